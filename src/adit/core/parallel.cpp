@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/core/parallel.hpp"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <mutex>
+
+#include "adit/core/check.hpp"
+
+namespace adit {
+namespace {
+
+// The limit is a property of the process and of TBB's worker pool, not of any robot; no result depends on it.
+std::mutex limit_mutex;
+std::unique_ptr<tbb::global_control> limit;
+
+}  // namespace
+
+void set_num_threads(int num_threads) {
+  ADIT_CHECK(num_threads >= 1, "at least one thread");
+  const std::lock_guard lock(limit_mutex);
+  limit.reset();
+  limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                static_cast<std::size_t>(num_threads));
+}
+
+int num_threads() {
+  return static_cast<int>(std::min<std::size_t>(
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism),
+      static_cast<std::size_t>(tbb::info::default_concurrency())));
+}
+
+void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+  ADIT_CHECK(grain >= 1, "a part holds at least one item");
+  const std::size_t num_parts = (n + grain - 1) / grain;
+  if (num_parts <= 1 || num_threads() == 1) {
+    for (std::size_t part = 0; part < num_parts; ++part) body(part * grain, std::min(n, (part + 1) * grain));
+    return;
+  }
+  tbb::parallel_for(
+      std::size_t{0}, num_parts,
+      [&](std::size_t part) { body(part * grain, std::min(n, (part + 1) * grain)); }, tbb::simple_partitioner{});
+}
+
+}  // namespace adit

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "adit/core/check.hpp"
+#include "adit/core/pose.hpp"
+
+namespace adit {
+
+/// Points in metres. The owner says in which frame. `intensities` and `time_offsets_ns` are each empty or as long as
+/// `points`. A time offset is the point's own time minus the stamp of the scan that holds the cloud.
+struct PointCloud {
+  std::vector<Eigen::Vector3f> points;
+  std::vector<float> intensities;
+  std::vector<std::int32_t> time_offsets_ns;
+
+  [[nodiscard]] std::size_t size() const { return points.size(); }
+  [[nodiscard]] bool empty() const { return points.empty(); }
+  [[nodiscard]] bool has_times() const { return !time_offsets_ns.empty(); }
+  void check() const {
+    ADIT_CHECK(intensities.empty() || intensities.size() == points.size(), "one intensity a point, or none at all");
+    ADIT_CHECK(time_offsets_ns.empty() || time_offsets_ns.size() == points.size(), "one time a point, or none at all");
+  }
+};
+
+/// The same points seen from frame a: p_a = T_a_b * p_b. Intensities and times are kept.
+[[nodiscard]] PointCloud transformed(const Pose& T_a_b, PointCloud cloud_b);
+
+}  // namespace adit

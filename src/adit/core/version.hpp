@@ -1,0 +1,10 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string_view>
+
+namespace adit {
+/// "0.1.0", from the build.
+[[nodiscard]] std::string_view version();
+}  // namespace adit
