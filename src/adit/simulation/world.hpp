@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Procedural tunnel networks: a mesh to cast rays at and the routes of four robots through it (section 2.1
+/// of the paper, whose robots drive through Zentrum am Berg). The same configuration gives the same bytes.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "adit/core/config.hpp"
+#include "adit/core/result.hpp"
+#include "adit/geometry/triangle_mesh.hpp"
+#include "adit/simulation/route.hpp"
+
+namespace adit {
+
+/// World frame: metres, z up. The mesh faces the free space inside the tunnels; tunnels end in open portals.
+struct World {
+  std::string name;
+  TriangleMesh mesh;
+  std::vector<Route> routes;   ///< Four, each from an entrance of its own.
+  double tunnel_length = 0.0;  ///< Sum over the centre lines of all tunnels, metres.
+};
+
+/// What makes a world hard: smooth, bare walls leave LiDAR nothing to hold on to along the axis, and equal
+/// places deceive place recognition. Each factor scales what the preset brings along; 1 keeps the preset as
+/// designed.
+struct WorldConfig {
+  std::string preset = "zab";
+  std::uint64_t seed = 1;
+  double relief_factor = 1.0;
+  double furniture_spacing_factor = 1.0;
+  double passage_spacing_factor = 1.0;
+  double curvature_factor = 1.0;
+  double cell_size = 0.25;
+};
+
+/// "zab": two road and two rail tubes with irregular cross passages, after Zentrum am Berg. "mine": rough
+/// drifts with ramps and loops. "metro": two running tubes with identical stations and cross passages.
+[[nodiscard]] std::vector<std::string> world_presets();
+
+inline Fields fields_of(WorldConfig& c) {
+  return {
+      {"preset", &c.preset, "", 0, 0, "kind of tunnel network", world_presets()},
+      {"seed", &c.seed, "", 0, 9e15, "another seed, another network of the same kind"},
+      {"relief_factor", &c.relief_factor, "", 0.0, 10.0, "scales the relief of the walls"},
+      {"furniture_spacing_factor", &c.furniture_spacing_factor, "", 0.3, 100.0,
+       "scales the distance between niches, cabinets, pipes' ends and parked machines"},
+      {"passage_spacing_factor", &c.passage_spacing_factor, "", 0.7, 1.3,
+       "scales the distance between cross passages"},
+      {"curvature_factor", &c.curvature_factor, "", 0.0, 3.0,
+       "scales the curvature of the tunnels; 0: straight"},
+      {"cell_size", &c.cell_size, "m", 0.1, 0.5,
+       "edge of the grid that junctions and rough walls are meshed on"},
+  };
+}
+
+/// Fails on a field out of range (the message lists the presets when the preset is unknown).
+Result<World> make_world(const WorldConfig& config);
+
+}  // namespace adit
