@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "adit/core/point_cloud.hpp"
+#include "adit/registration/registration_config.hpp"
+
+namespace adit {
+
+/// A fast point feature histogram (Rusu et al., ICRA 2009): three histograms of 11 bins, each summing to
+/// about 100 and rounded, so one byte a bin.
+inline constexpr int kDescriptorSize = 33;
+using Descriptor = std::array<std::uint8_t, kDescriptorSize>;
+
+/// What registration needs of a cloud; compute it once a keyframe and keep it (57 bytes a point). All three
+/// vectors are equally long. Points that have no reliable descriptor were left out.
+struct Features {
+  std::vector<Eigen::Vector3f> points;   ///< Metres, in the frame of the cloud.
+  std::vector<Eigen::Vector3f> normals;  ///< Unit length, pointing to the origin of that frame.
+  std::vector<Descriptor> descriptors;
+
+  [[nodiscard]] std::size_t size() const { return points.size(); }
+  [[nodiscard]] bool empty() const { return points.empty(); }
+};
+
+/// Thins the cloud to one point (the mean) a voxel and describes each. `cloud` is in the frame of the sensor
+/// or of the robot's base: normals are turned towards its origin. NaN points are dropped. An empty result is
+/// no error; what it means shows in the verdict of the registration.
+[[nodiscard]] Features compute_features(const PointCloud& cloud, const RegistrationConfig& config);
+
+}  // namespace adit

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Global registration of two clouds without a first guess: KISS-Matcher (Lim et al., arXiv 2409.15615), then
+/// optionally a point-to-plane refinement, then a verdict. The same answer on every run and with any number
+/// of threads.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "adit/core/point_cloud.hpp"
+#include "adit/core/pose.hpp"
+#include "adit/core/records.hpp"
+#include "adit/registration/features.hpp"
+#include "adit/registration/registration_config.hpp"
+
+namespace adit {
+
+/// Two clouds' relative pose with its evidence. `accepted` implies that `T_a_b` is there. A rejected
+/// registration may still carry its best guess, for display and diagnosis only; none when there was nothing
+/// to guess from.
+struct Registration {
+  std::optional<Pose> T_a_b;    ///< p_a = T_a_b * p_b.
+  int num_correspondences = 0;  ///< After matching.
+  int num_pruned = 0;           ///< Left after the consistency graph was pruned.
+  int num_inliers = 0;          ///< Of those, agreeing with the global solution.
+  double overlap =
+      0.0;  ///< Share of points with a neighbour in the other cloud, the smaller of both directions.
+  /// Inverse covariance of T_a_b (right perturbation, [translation; rotation]), from the point-to-plane
+  /// Hessian: zero along directions that the geometry leaves open. Zero as a whole when there is no
+  /// transform.
+  Matrix6 information = Matrix6::Zero();
+  /// Smallest eigenvalue of the translational part of the point-to-plane Hessian per correspondence: 0 when
+  /// the clouds can slide along an axis (smooth tunnel), 1/3 when all directions are held alike.
+  double weak_axis = 0.0;
+  Vector3 weak_direction = Vector3::Zero();  ///< That axis in frame a, unit length; zero when unknown.
+  LoopVerdict verdict = LoopVerdict::rejected;
+  std::string reason;  ///< One sentence: why.
+};
+
+[[nodiscard]] Registration register_features(const Features& a, const Features& b,
+                                             const RegistrationConfig& config);
+[[nodiscard]] Registration register_clouds(const PointCloud& a, const PointCloud& b,
+                                           const RegistrationConfig& config);
+
+}  // namespace adit

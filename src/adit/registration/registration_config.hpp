@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "adit/core/config.hpp"
+
+namespace adit {
+
+/// Parameters of KISS-Matcher (Lim et al., arXiv 2409.15615) with its published defaults, then those of the
+/// refinement and of the verdict. Lengths named `_voxels` are multiples of `voxel_size`, so one number scales
+/// the whole method.
+///
+/// The paper's plain pipeline is `refine = false`, `min_overlap = 0`: the global result, accepted by
+/// `min_inliers`.
+struct RegistrationConfig {
+  double voxel_size = 0.3;
+
+  double normal_radius_voxels = 3.0;
+  double feature_radius_voxels = 5.0;
+  double max_linearity = 1.0;
+
+  bool ratio_test = true;
+  double max_ratio = 0.9;
+  double max_descriptor_distance = 30.0;
+  int max_correspondences = 5000;
+
+  std::string pruning = "k_core";
+  double graph_noise_voxels = 1.0;
+  double clique_time_limit_ms = 50.0;
+
+  double solver_noise_voxels = 0.75;
+  double max_noise_bound = 1.0;
+  int gnc_max_iterations = 100;
+  double gnc_factor = 1.4;
+  double gnc_tolerance = 1e-6;
+
+  bool refine = true;
+  double refine_distance_voxels = 2.0;
+  int refine_max_iterations = 30;
+
+  int min_inliers = 20;
+  double overlap_distance_voxels = 1.5;
+  double min_overlap = 0.3;
+};
+
+[[nodiscard]] Fields fields_of(RegistrationConfig& c);
+
+}  // namespace adit
