@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// A spinning multi-beam LiDAR. Frame: x forward, y left, z up, origin in the sensor's centre.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "adit/core/config.hpp"
+#include "adit/core/pose.hpp"
+#include "adit/core/records.hpp"
+#include "adit/simulation/raycaster.hpp"
+
+namespace adit {
+
+/// Defaults: Ouster OS2-128.
+struct LidarConfig {
+  std::string name = "os2-128";
+  int beams = 128;
+  int columns = 1024;
+  double elevation_min_deg = -11.25;  ///< Lowest beam; beams are spread evenly up to the highest.
+  double elevation_max_deg = 11.25;
+  double rate_hz = 10.0;
+  double range_min = 0.5;
+  double range_max = 200.0;
+  double noise_near = 0.025;        ///< Standard deviation of a range at range_min; linear in between.
+  double noise_far = 0.08;          ///< The same at range_max.
+  double dropout_start_deg = 75.0;  ///< Incidence angle (0: head-on) from which returns start to get lost ...
+  double dropout_end_deg = 88.0;    ///< ... and from which none is left; linear in between.
+  double mount_forward = 0.0;       ///< Position on the robot, in the base frame.
+  double mount_height = 0.9;
+};
+
+inline Fields fields_of(LidarConfig& c) {
+  return {
+      {"name", &c.name, "", 0, 0, "the sensor's name, noted in recordings"},
+      {"beams", &c.beams, "", 1, 1024, "beams, spread evenly over the vertical field of view"},
+      {"columns", &c.columns, "", 4, 8192, "firings of all beams in one turn"},
+      {"elevation_min_deg", &c.elevation_min_deg, "deg", -90, 90, "elevation of the lowest beam"},
+      {"elevation_max_deg", &c.elevation_max_deg, "deg", -90, 90, "elevation of the highest beam"},
+      {"rate_hz", &c.rate_hz, "Hz", 0.1, 100, "turns a second"},
+      {"range_min", &c.range_min, "m", 0, 100, "nearer returns are dropped"},
+      {"range_max", &c.range_max, "m", 0.1, 1000, "farther returns are dropped"},
+      {"noise_near", &c.noise_near, "m", 0, 1, "standard deviation of a range at range_min"},
+      {"noise_far", &c.noise_far, "m", 0, 1, "standard deviation of a range at range_max"},
+      {"dropout_start_deg", &c.dropout_start_deg, "deg", 0, 90,
+       "incidence angle where returns start to get lost"},
+      {"dropout_end_deg", &c.dropout_end_deg, "deg", 0, 90, "incidence angle beyond which no return is left"},
+      {"mount_forward", &c.mount_forward, "m", -5, 5, "sensor ahead of the base frame's origin"},
+      {"mount_height", &c.mount_height, "m", 0.05, 5, "sensor above the floor"}};
+}
+
+/// Ranges of the fields, and: elevations, ranges and drop-out angles in ascending order.
+Result<> check_lidar(LidarConfig config);
+
+/// os2-128, os2-128-512, os2-128-2048 (the suffix is the number of columns), os2-32 (thinned, for quick
+/// runs), os1-64, os1-128, os0-128, vlp-16. An unknown name fails with the list.
+[[nodiscard]] Result<LidarConfig> lidar_preset(const std::string& name);
+[[nodiscard]] std::vector<std::string> lidar_presets();
+
+[[nodiscard]] inline Pose T_base_lidar(const LidarConfig& config) {
+  return Pose::translation_of(config.mount_forward, 0.0, config.mount_height);
+}
+/// Duration of one turn.
+[[nodiscard]] inline Duration sweep_time(const LidarConfig& config) {
+  return from_seconds(1.0 / config.rate_hz);
+}
+
+/// One turn of the sensor, moving steadily (on a geodesic) from its pose at the start to its pose at the end.
+struct Sweep {
+  Pose T_world_lidar_start;
+  Pose T_world_lidar_end;
+  Stamp end;  ///< Stamp of the scan.
+  std::uint64_t noise_seed =
+      0;  ///< One number a scan. A ray's noise hangs on it, its beam and its column alone.
+};
+
+/// What the sensor sees during one sweep, as it would report it: each point in the lidar frame of its own
+/// column's time, with motion distortion, range noise and drop-out. Columns in the order of time (clockwise
+/// from straight back), beams from the highest down; rays without a return leave no point. Time offsets run
+/// from almost minus one turn to 0 at the last column: the stamp is the END of the sweep.
+[[nodiscard]] Scan cast_scan(const Raycaster& raycaster, const LidarConfig& config, const Sweep& sweep);
+
+}  // namespace adit

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "adit/core/result.hpp"
+#include "adit/geometry/triangle_mesh.hpp"
+
+namespace adit {
+
+/// World frame, metres; `direction` has unit length.
+struct Ray {
+  Eigen::Vector3f origin = Eigen::Vector3f::Zero();
+  Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
+};
+
+/// Where a ray first meets the mesh.
+struct RayHit {
+  static constexpr float kMiss = std::numeric_limits<float>::infinity();
+  float distance = kMiss;                            ///< Metres along the ray; `kMiss` when nothing is met.
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< Unit; the side follows the triangle's winding.
+
+  [[nodiscard]] bool hit() const { return distance < kMiss; }
+};
+
+/// Casts rays against a triangle mesh (Embree behind it). A cheap value: copies share one acceleration
+/// structure. All casting is const and may run on any number of threads at once.
+///
+/// A hit's distance and normal are computed from the triangle itself and not taken from Embree, whose kernels
+/// round differently from processor to processor; so single rays, packets and all machines agree on them.
+class Raycaster {
+ public:
+  /// Copies what it needs of `mesh`. Fails as `check_mesh` does: no triangles, an index out of range, a NaN.
+  [[nodiscard]] static Result<Raycaster> build(const TriangleMesh& mesh);
+
+  /// The first surface, from either side, within `max_distance`.
+  [[nodiscard]] RayHit cast(const Ray& ray, float max_distance) const;
+
+  /// The same for many rays, several at a time: fastest when neighbours in the list start and point alike.
+  [[nodiscard]] std::vector<RayHit> cast(std::span<const Ray> rays, float max_distance) const;
+
+ private:
+  struct Scene;
+  explicit Raycaster(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {}
+  std::shared_ptr<const Scene> scene_;
+};
+
+}  // namespace adit

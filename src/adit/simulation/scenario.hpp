@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "adit/core/config.hpp"
+#include "adit/core/records.hpp"
+#include "adit/simulation/lidar_model.hpp"
+#include "adit/simulation/trajectory.hpp"
+#include "adit/simulation/wheel_model.hpp"
+#include "adit/simulation/world.hpp"
+
+namespace adit {
+
+struct ScenarioConfig {
+  LidarConfig lidar;
+  WheelConfig wheels;
+  DriveConfig drive;
+  std::uint64_t seed = 1;
+};
+
+inline Fields fields_of(ScenarioConfig& c) {
+  Fields fields{{"seed", &c.seed, "", 0, 1e15, "of all noise of sensors and wheels"}};
+  append(fields, "lidar", fields_of(c.lidar));
+  append(fields, "wheels", fields_of(c.wheels));
+  append(fields, "drive", fields_of(c.drive));
+  return fields;
+}
+
+/// Drives every route of the world at the same time, each robot on a clock that starts at 0. One recording a
+/// route, in their order. Nothing is cast or stored now: `read_scan` casts a scan whenever it is asked for,
+/// always the same one, on any thread. `wheel` covers every sweep from its start; `truth` has a pose at every
+/// scan stamp and between them.
+///
+/// Fails on a mesh that `check_mesh` refuses, a field out of range, no route at all, two routes of one name,
+/// and routes that `drive` refuses.
+[[nodiscard]] Result<std::vector<Recording>> simulate(const World& world, const ScenarioConfig& config);
+
+}  // namespace adit
