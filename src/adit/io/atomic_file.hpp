@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Output that appears whole or not at all. Everything is built beside its final place under a name that
+/// contains
+/// ".partial-" and renamed at the end; when the process fails or is interrupted in between, what stood there
+/// before is untouched, and the destructor removes the partial output.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "adit/core/result.hpp"
+
+namespace adit {
+
+/// The whole file as bytes; a missing or unreadable file or a folder is an error that names it.
+Result<std::string> read_bytes(const std::filesystem::path& path);
+
+/// Writes all of `bytes`; replaces an existing file only at the end.
+Result<> write_bytes(const std::filesystem::path& path, std::string_view bytes);
+
+/// A file written piece by piece. Without `commit` nothing appears at `path`.
+class AtomicFile {
+ public:
+  static Result<AtomicFile> create(const std::filesystem::path& path);
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&& other) = delete;
+  ~AtomicFile();
+
+  [[nodiscard]] std::ostream& stream() { return stream_; }
+  /// Flushes, closes and renames. Fails when any write before it failed (disk full).
+  Result<> commit();
+
+ private:
+  explicit AtomicFile(const std::filesystem::path& path);
+
+  std::filesystem::path path_;
+  std::filesystem::path partial_;  ///< Empty once committed or moved from.
+  std::ofstream stream_;
+};
+
+/// A directory of output. It is built in DIR.partial-PID and takes the place of DIR at `commit`.
+///
+/// An existing DIR is only ever replaced when it is empty or is adit's own output of the same kind, which
+/// carries the file `.adit-KIND` (a directory with session.toml also counts as kind "session", one with
+/// metrics.json as "study"). Anything else is refused by `create`, before any work is done: it may be the
+/// user's.
+class OutputDir {
+ public:
+  static Result<OutputDir> create(const std::filesystem::path& path, const std::string& kind = "session");
+  OutputDir(OutputDir&& other) noexcept;
+  OutputDir& operator=(OutputDir&& other) = delete;
+  ~OutputDir();
+
+  /// Where to write until `commit`; sub-folders are the caller's business.
+  [[nodiscard]] const std::filesystem::path& path() const { return partial_; }
+  /// Puts the directory in its place. After it, `path()` is the final path.
+  Result<> commit();
+
+ private:
+  OutputDir(std::filesystem::path target, std::filesystem::path partial)
+      : target_(std::move(target)), partial_(std::move(partial)) {}
+
+  std::filesystem::path target_;
+  std::filesystem::path partial_;
+  bool committed_ = false;
+};
+
+}  // namespace adit

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Point clouds on disk. The format is chosen by the extension, in any case: .pcd, .ply, .bin (KITTI).
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+#include "adit/core/point_cloud.hpp"
+#include "adit/core/result.hpp"
+
+namespace adit {
+
+/// What a cloud reader found. Points with a NaN or infinite coordinate are left out and counted.
+struct CloudFile {
+  PointCloud cloud;
+  std::size_t num_skipped_nan = 0;
+};
+
+/// Reads a cloud, in the frame and unit of the file. A missing, truncated or empty file, an unknown extension
+/// and a cloud without any finite point are errors that name the file and the place.
+Result<CloudFile> read_cloud_file(const std::filesystem::path& path);
+
+/// The same without the count.
+Result<PointCloud> read_cloud(const std::filesystem::path& path);
+
+/// Writes binary PCD, binary little-endian PLY or KITTI .bin by extension. The file appears whole or not at
+/// all. Intensities and times are kept (KITTI: intensities only). An empty cloud is an error: no reader would
+/// accept it.
+Result<> write_cloud(const std::filesystem::path& path, const PointCloud& cloud);
+
+}  // namespace adit

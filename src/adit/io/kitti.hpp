@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// KITTI's velodyne .bin: float32 x, y, z, intensity, one after the other, little-endian, nothing else.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "adit/core/records.hpp"
+#include "adit/io/cloud_files.hpp"
+
+namespace adit {
+
+/// A size that is no multiple of 16 bytes is a truncated file: an error that names the last whole point.
+Result<CloudFile> read_kitti(std::string_view bytes);
+
+/// Points without intensity get 0.
+[[nodiscard]] std::string write_kitti(const PointCloud& cloud);
+
+/// KITTI's pose file: one line a pose, the upper three rows of T_world_body row by row; it holds no stamps.
+[[nodiscard]] std::string write_kitti_poses(const Trajectory& trajectory);
+
+}  // namespace adit

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// PCD, the point cloud format of the Point Cloud Library, versions 0.5 to 0.7: ascii, binary and
+/// binary_compressed.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "adit/io/cloud_files.hpp"
+
+namespace adit {
+
+/// Reads the bytes of a PCD file. Fields taken:
+///  - x, y, z (F4 or F8), needed;
+///  - intensity, intensities or i (any numeric type);
+///  - t, time, time_offset, timestamp: floats are seconds, integers nanoseconds, both relative to the scan's
+///  stamp.
+///    Times that lie further than 2.1 s from 0 (absolute clocks) are made relative to the earliest point.
+/// All other fields are skipped. Errors name the header line or the byte offset.
+Result<CloudFile> read_pcd(std::string_view bytes);
+
+enum class PcdData { ascii, binary, binary_compressed };
+
+/// The bytes of a PCD 0.7 file with fields x y z F4, and where the cloud has them intensity F4 and t I4
+/// (nanoseconds). A compressed file holds LZF streams of literal runs: readable everywhere, not smaller.
+[[nodiscard]] std::string write_pcd(const PointCloud& cloud, PcdData data = PcdData::binary);
+
+}  // namespace adit

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// PLY, the Stanford polygon format: point clouds (meshes are read by mesh_files.hpp).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "adit/geometry/triangle_mesh.hpp"
+#include "adit/io/cloud_files.hpp"
+
+namespace adit {
+
+/// Reads the `vertex` element of a PLY file: ascii, binary_little_endian or binary_big_endian. Taken are the
+/// scalar properties x, y, z (needed), intensity (also intensities, i, scalar_Intensity) and t (also time,
+/// time_offset, timestamp; units as in pcd.hpp). Other properties, list properties and elements are stepped
+/// over. Errors name the header line or the byte offset.
+Result<CloudFile> read_ply(std::string_view bytes);
+
+enum class PlyData { ascii, binary_little_endian, binary_big_endian };
+
+/// The bytes of a PLY file with float x, y, z, and where the cloud has them float intensity and int t
+/// (nanoseconds).
+[[nodiscard]] std::string write_ply(const PointCloud& cloud, PlyData data = PlyData::binary_little_endian);
+
+/// The bytes of a binary little-endian PLY file with float vertices and triangles as `vertex_indices` lists.
+[[nodiscard]] std::string write_ply(const TriangleMesh& mesh);
+
+}  // namespace adit

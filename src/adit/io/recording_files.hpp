@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What commands take as a recording.
+#pragma once
+
+#include <string>
+
+#include "adit/core/records.hpp"
+#include "adit/core/result.hpp"
+
+namespace adit {
+
+/// Opens
+///  - FILE.mcap: see mcap.hpp;
+///  - FOLDER: a folder of clouds, see scan_folder.hpp;
+///  - FOLDER@even, FOLDER@odd, FOLDER@FIRST:STEP: part of the scans, so that one drive can serve as two
+///  robots. The
+///    recording's name then carries the part: "nclt_even".
+/// Anything else is an error that says what would do.
+Result<Recording> open_recording(const std::string& input);
+
+}  // namespace adit
