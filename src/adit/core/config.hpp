@@ -30,7 +30,7 @@ struct Field {
   double min = 0.0;    ///< Inclusive range of a number.
   double max = 0.0;
   std::string meaning;               ///< One line.
-  std::vector<std::string> choices;  ///< Allowed values of a string; empty: any.
+  std::vector<std::string> choices = {};  ///< Allowed values of a string; empty: any.
 };
 using Fields = std::vector<Field>;
 

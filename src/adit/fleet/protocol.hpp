@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What robots say to one another. Every message is bounded in size, can be encoded (transport/wire), may arrive twice
+/// and may be lost: state is synchronised by asking "what do you have" and sending the rest.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "adit/core/records.hpp"
+#include "adit/place/scan_context.hpp"
+
+namespace adit {
+
+inline constexpr std::uint8_t kProtocolVersion = 1;
+inline constexpr std::size_t kPlacesPerMessage = 64;
+inline constexpr std::size_t kCloudsPerMessage = 16;
+inline constexpr std::size_t kNodesPerMessage = 512;
+inline constexpr std::size_t kLoopsPerMessage = 256;
+
+/// A keyframe as the graph needs it. `step_covariance` is of the relative pose from the keyframe before (zero for the
+/// first).
+struct GraphNode {
+  Stamp stamp;
+  Pose T_odom_base;
+  Matrix6 step_covariance = Matrix6::Zero();
+};
+
+/// Opens a meeting: what the sender knows already, so that only the rest is sent.
+struct Hello {
+  struct Known {
+    RobotId robot;
+    std::uint32_t num_nodes = 0;
+    std::uint32_t num_places = 0;
+  };
+  std::vector<Known> known;
+  std::uint32_t num_loops = 0;
+  bool answer = false;  ///< This is the reply to a Hello.
+};
+
+/// Nodes first_index, first_index + 1, ... of the graph of `owner`, who need not be the sender.
+struct GraphPart {
+  RobotId owner;
+  std::string name;
+  std::uint32_t first_index = 0;
+  std::vector<GraphNode> nodes;
+};
+
+/// Descriptors of the sender's own searchable keyframes, in their order; `first` counts those sent before.
+struct Places {
+  struct Place {
+    std::uint32_t index = 0;
+    ScanContext context;
+  };
+  std::uint32_t first = 0;
+  std::vector<Place> places;
+  bool last = false;  ///< Nothing follows.
+};
+
+struct CloudRequest {
+  std::vector<std::uint32_t> indices;
+};
+
+/// The sender's own keyframe clouds, each in its keyframe's base frame.
+struct Clouds {
+  struct Cloud {
+    std::uint32_t index = 0;
+    std::vector<Eigen::Vector3f> points;
+  };
+  std::vector<Cloud> clouds;
+};
+
+/// Registered loops, accepted and rejected ones alike, so that both robots know what was tried.
+struct Loops {
+  std::vector<LoopClosure> loops;
+};
+
+struct Message {
+  RobotId from;
+  RobotId to;
+  std::variant<Hello, GraphPart, Places, CloudRequest, Clouds, Loops> body;
+};
+
+}  // namespace adit

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/robot/robot_map.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <utility>
+
+#include "adit/core/format.hpp"
+
+namespace adit {
+namespace {
+
+constexpr std::array<std::pair<KeyframeSelection, std::string_view>, 3> kSelections = {
+    {{KeyframeSelection::all, "all"},
+     {KeyframeSelection::tunnel_filter, "tunnel_filter"},
+     {KeyframeSelection::tunnel_filter_keep, "tunnel_filter_keep"}}};
+
+void append_keyframe(RobotMap& to, const RobotMap& from, std::size_t k, const Matrix6& covariance) {
+  Keyframe keyframe = from.keyframes[k];
+  keyframe.id.index = static_cast<std::uint32_t>(to.keyframes.size());
+  to.keyframes.push_back(std::move(keyframe));
+  to.step_covariances.push_back(covariance);
+  to.places.push_back(from.places[k]);
+  to.tunnel.push_back(from.tunnel[k]);
+  to.searchable.push_back(true);
+}
+
+RobotMap without_tunnel_keyframes(const RobotMap& map) {
+  RobotMap kept;
+  kept.id = map.id;
+  kept.name = map.name;
+  kept.odometry = map.odometry;
+  kept.num_degenerate = map.num_degenerate;
+  kept.num_refused = map.num_refused;
+  Matrix6 covariance = Matrix6::Zero();  // of the pose of k relative to the last keyframe that stayed
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    if (k > 0) {
+      const Pose T_prev_k = map.keyframes[k - 1].T_odom_base.inverse() * map.keyframes[k].T_odom_base;
+      const Matrix6 carry = T_prev_k.inverse().adjoint();
+      covariance = carry * covariance * carry.transpose() + map.step_covariances[k];
+    }
+    if (map.tunnel[k].tunnel_like) continue;
+    append_keyframe(kept, map, k, kept.keyframes.empty() ? Matrix6(Matrix6::Zero()) : covariance);
+    covariance.setZero();
+  }
+  return kept;
+}
+
+}  // namespace
+
+Matrix6 odometry_covariance(const OdometryNoise& noise, double distance_m) {
+  const double distance = std::max(distance_m, 0.01);
+  const double rotation = noise.rotation_deg * std::numbers::pi / 180.0;
+  Vector6 variance;
+  variance << Vector3::Constant(noise.translation_m * noise.translation_m * distance),
+      Vector3::Constant(rotation * rotation * distance);
+  return variance.asDiagonal();
+}
+
+std::string_view to_string(KeyframeSelection selection) {
+  return std::ranges::find(kSelections, selection, &decltype(kSelections)::value_type::first)->second;
+}
+
+Result<KeyframeSelection> keyframe_selection(std::string_view name) {
+  for (const auto& [selection, text] : kSelections) {
+    if (text == name) return selection;
+  }
+  return fail(format("unknown keyframe policy '{}'; known are all, tunnel_filter, tunnel_filter_keep", name));
+}
+
+RobotMap select_keyframes(const RobotMap& map, KeyframeSelection selection) {
+  if (selection == KeyframeSelection::tunnel_filter) return without_tunnel_keyframes(map);
+  RobotMap selected = map;
+  for (std::size_t k = 0; k < selected.keyframes.size(); ++k) {
+    selected.searchable[k] = selection == KeyframeSelection::all || !selected.tunnel[k].tunnel_like;
+  }
+  return selected;
+}
+
+}  // namespace adit

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "adit/core/config.hpp"
+#include "adit/core/records.hpp"
+#include "adit/keyframes/tunnel_filter.hpp"
+#include "adit/place/scan_context.hpp"
+
+namespace adit {
+
+/// How far the odometry between two keyframes may be off: a random walk, so that variances grow with the distance
+/// driven and add up along the chain whatever the spacing of the keyframes.
+struct OdometryNoise {
+  double translation_m = 0.05;   ///< Sigma of each axis after one metre.
+  double rotation_deg = 0.15;    ///< Sigma about each axis after one metre.
+};
+inline Fields fields_of(OdometryNoise& c) {
+  return {{"translation_m", &c.translation_m, "m/sqrt(m)", 1e-4, 1.0, "odometry noise, translation after one metre"},
+          {"rotation_deg", &c.rotation_deg, "deg/sqrt(m)", 1e-4, 10.0, "odometry noise, rotation after one metre"}};
+}
+
+/// Covariance of the relative pose over `distance_m` metres of odometry (right perturbation). Never below that of 1 cm.
+[[nodiscard]] Matrix6 odometry_covariance(const OdometryNoise& noise, double distance_m);
+
+/// One robot's own map: its keyframes in the order driven and the odometry that joins them. All vectors but
+/// `odometry` are as long as `keyframes`, and keyframes[k].id.index == k.
+struct RobotMap {
+  RobotId id;
+  std::string name;
+  std::vector<Keyframe> keyframes;
+  std::vector<Matrix6> step_covariances;  ///< Of T_{k-1}_{k}; entry 0 is zero.
+  std::vector<ScanContext> places;
+  std::vector<TunnelVerdict> tunnel;
+  std::vector<bool> searchable;  ///< Takes part in loop search.
+  Trajectory odometry;           ///< T_odom_base of every scan.
+  int num_degenerate = 0;        ///< Steps with an open direction.
+  int num_refused = 0;           ///< Scans with too few points, or that diverged.
+};
+
+/// Which keyframes take part in what: the paper's two policies, and its filter applied to the loop search alone.
+enum class KeyframeSelection {
+  all,                 ///< Every keyframe in the graph and in the loop search.
+  tunnel_filter,       ///< Tunnel-like keyframes leave graph and search, as in the paper.
+  tunnel_filter_keep,  ///< Tunnel-like keyframes stay in the graph and are barred from the search only.
+};
+[[nodiscard]] std::string_view to_string(KeyframeSelection selection);
+[[nodiscard]] Result<KeyframeSelection> keyframe_selection(std::string_view name);
+
+/// The map under that policy. Where keyframes leave, the others are numbered anew and covariances are composed over
+/// the gaps. A map whose keyframes all leave is returned empty.
+[[nodiscard]] RobotMap select_keyframes(const RobotMap& map, KeyframeSelection selection);
+
+}  // namespace adit

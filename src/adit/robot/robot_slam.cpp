@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/robot/robot_slam.hpp"
+
+#include <memory>
+
+#include "adit/core/format.hpp"
+#include "adit/geometry/voxel_grid.hpp"
+
+namespace adit {
+namespace {
+
+RobotSlamConfig checked(RobotSlamConfig config) {
+  const Result<> valid = check_fields(fields_of(config));
+  ADIT_CHECK(valid.has_value(), valid ? "" : valid.error().message.c_str());
+  return config;
+}
+
+}  // namespace
+
+Fields fields_of(RobotSlamConfig& c) {
+  Fields fields = {{"cloud_voxel_m", &c.cloud_voxel_m, "m", 0.01, 2.0, "keyframe clouds keep one point a voxel"}};
+  append(fields, "odometry", fields_of(c.odometry));
+  append(fields, "keyframes", fields_of(c.keyframes));
+  append(fields, "tunnel_filter", fields_of(c.tunnel_filter));
+  append(fields, "scan_context", fields_of(c.scan_context));
+  append(fields, "noise", fields_of(c.noise));
+  return fields;
+}
+
+RobotSlam::RobotSlam(RobotId id, const std::string& name, const RobotSlamConfig& config, const Pose& T_base_lidar)
+    : config_(checked(config)), odometry_(config.odometry, T_base_lidar), keyframe_policy_(config.keyframes) {
+  map_.id = id;
+  map_.name = name;
+}
+
+RobotStep RobotSlam::process(const Scan& scan, const std::optional<WheelDelta>& wheel) {
+  const OdometryStep step = odometry_.register_scan(scan, wheel);
+  map_.odometry.push_back({step.stamp, step.T_odom_base});
+  map_.num_degenerate += step.status == StepStatus::degenerate ? 1 : 0;
+  map_.num_refused += step.status == StepStatus::too_few_points || step.status == StepStatus::diverged ? 1 : 0;
+  if (!keyframe_policy_.accepts(step)) return {step};
+  add_keyframe(step);
+  return {step, map_.keyframes.back().id};
+}
+
+void RobotSlam::add_keyframe(const OdometryStep& step) {
+  const PointCloud full = odometry_.cloud_of_last_scan();
+  Keyframe keyframe;
+  keyframe.id = {map_.id, static_cast<std::uint32_t>(map_.keyframes.size())};
+  keyframe.stamp = step.stamp;
+  keyframe.T_odom_base = step.T_odom_base;
+  PointCloud thinned = voxel_downsample(full, config_.cloud_voxel_m);
+  thinned.time_offsets_ns.clear();  // deskewed: the times have done their work
+  keyframe.cloud = std::make_shared<const PointCloud>(std::move(thinned));
+  map_.places.push_back(describe(full, config_.scan_context));
+  // A cloud too thin for a box says nothing about the place, so it takes no part in loop search either.
+  map_.tunnel.push_back(tunnel_filter(*keyframe.cloud, config_.tunnel_filter).value_or(TunnelVerdict{{}, true}));
+  map_.searchable.push_back(true);
+  Matrix6 covariance = Matrix6::Zero();
+  if (!map_.keyframes.empty()) {
+    const Pose T_before_now = map_.keyframes.back().T_odom_base.inverse() * keyframe.T_odom_base;
+    covariance = odometry_covariance(config_.noise, T_before_now.translation().norm());
+  }
+  map_.step_covariances.push_back(covariance);
+  map_.keyframes.push_back(std::move(keyframe));
+}
+
+Result<std::optional<WheelDelta>> wheel_before(const Recording& recording, std::size_t index) {
+  if (recording.wheel.empty() || index == 0) return std::optional<WheelDelta>{};
+  return wheel_delta(recording.wheel, recording.scan_stamps[index - 1], recording.scan_stamps[index])
+      .map([](const WheelDelta& delta) { return std::optional<WheelDelta>(delta); });
+}
+
+Result<RobotMap> map_recording(const Recording& recording, RobotId id, const RobotSlamConfig& config,
+                               const ScanObserver& observer) {
+  if (config.odometry.method == "kinematic-icp" && recording.wheel.empty()) {
+    return fail(format("{}: kinematic-icp needs wheel odometry and the recording has none; use "
+                       "--set robot.odometry.method=kiss-icp", recording.name));
+  }
+  RobotSlam slam(id, recording.name, config, recording.T_base_lidar);
+  for (std::size_t i = 0; i < recording.num_scans(); ++i) {
+    const Result<Scan> scan = recording.read_scan(i);
+    if (!scan) return fail(recording.name, scan.error());
+    const Result<std::optional<WheelDelta>> wheel = wheel_before(recording, i);
+    if (!wheel) return fail(recording.name, wheel.error());
+    slam.process(*scan, *wheel);
+    if (observer && !observer(i + 1)) return fail(recording.name + ": interrupted");
+  }
+  if (slam.map().keyframes.empty()) {
+    return fail(format("{}: none of {} scans became a keyframe: each had too few points for the odometry",
+                       recording.name, recording.num_scans()));
+  }
+  return slam.map();
+}
+
+}  // namespace adit

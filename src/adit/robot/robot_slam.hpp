@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "adit/keyframes/keyframe_policy.hpp"
+#include "adit/odometry/odometry.hpp"
+#include "adit/robot/robot_map.hpp"
+
+namespace adit {
+
+struct RobotSlamConfig {
+  OdometryConfig odometry;
+  KeyframePolicyConfig keyframes;
+  TunnelFilterConfig tunnel_filter;
+  ScanContextConfig scan_context;
+  OdometryNoise noise;
+  double cloud_voxel_m = 0.15;  ///< Keyframe clouds are thinned to one point a voxel.
+};
+Fields fields_of(RobotSlamConfig& config);
+
+struct RobotStep {
+  OdometryStep odometry;
+  std::optional<KeyframeId> keyframe;  ///< Set when this scan became one.
+};
+
+/// SLAM of one robot on its own: scan -> odometry -> keyframe with its descriptor. Loops with other robots are found
+/// by fleet/.
+class RobotSlam {
+ public:
+  /// Throws ContractViolation when `config` is out of its documented ranges.
+  RobotSlam(RobotId id, const std::string& name, const RobotSlamConfig& config, const Pose& T_base_lidar);
+
+  /// `wheel` from the scan before to this one; needed by kinematic-icp, ignored by kiss-icp.
+  RobotStep process(const Scan& scan, const std::optional<WheelDelta>& wheel);
+
+  [[nodiscard]] const RobotMap& map() const { return map_; }
+
+ private:
+  void add_keyframe(const OdometryStep& step);
+
+  RobotSlamConfig config_;
+  Odometry odometry_;
+  KeyframePolicy keyframe_policy_;
+  RobotMap map_;
+};
+
+/// The wheel motion from scan `index` - 1 to `index`; none for the first scan and for recordings without wheels.
+[[nodiscard]] Result<std::optional<WheelDelta>> wheel_before(const Recording& recording, std::size_t index);
+
+/// Called after each scan with the number done; returns false to stop early.
+using ScanObserver = std::function<bool(std::size_t num_done)>;
+
+/// The whole recording through RobotSlam. Fails when a scan cannot be read, when kinematic-icp is asked for and there
+/// is no wheel odometry, or when the observer stops it.
+[[nodiscard]] Result<RobotMap> map_recording(const Recording& recording, RobotId id, const RobotSlamConfig& config,
+                                             const ScanObserver& observer = {});
+
+}  // namespace adit

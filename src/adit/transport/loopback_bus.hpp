@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "adit/core/config.hpp"
+#include "adit/fleet/agent.hpp"
+
+namespace adit {
+
+struct LoopbackConfig {
+  double loss = 0.0;  ///< Share of messages that never arrive.
+  std::uint64_t seed = 1;
+};
+inline Fields fields_of(LoopbackConfig& c) {
+  return {{"loss", &c.loss, "", 0.0, 0.95, "share of messages that the loopback bus loses"},
+          {"seed", &c.seed, "", 0.0, 1.8e19, "seed of the losses"}};
+}
+
+/// Carries messages between agents of one process. Each is encoded and decoded, so that nothing but bytes passes.
+class LoopbackBus {
+ public:
+  explicit LoopbackBus(const LoopbackConfig& config = {}) : config_(config) {}
+
+  /// The agent must outlive the bus.
+  void join(Agent& agent) { agents_[agent.id()] = &agent; }
+
+  /// The two come into range: delivers until both have nothing more to say. A message that cannot be decoded, or that
+  /// an agent fails on, is dropped and counted; nobody else is affected.
+  Result<> meet(RobotId a, RobotId b);
+
+  [[nodiscard]] std::uint64_t bytes_sent(RobotId robot) const;
+  [[nodiscard]] int num_lost() const { return num_lost_; }
+
+ private:
+  void send(const std::vector<Message>& messages);
+
+  LoopbackConfig config_;
+  std::map<RobotId, Agent*> agents_;
+  std::map<RobotId, std::uint64_t> bytes_sent_;
+  std::deque<std::pair<RobotId, std::vector<std::byte>>> queue_;
+  std::uint64_t num_sent_ = 0;
+  int num_lost_ = 0;
+};
+
+}  // namespace adit

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "adit/core/result.hpp"
+#include "adit/fleet/protocol.hpp"
+
+namespace adit {
+
+/// The bytes of a message: little-endian, a version byte first. Numbers travel exactly, but for cloud points (16-bit
+/// steps of 5 mm, so at most 163 m away; farther ones are left out) and descriptor cells (steps of 1/16 m).
+[[nodiscard]] std::vector<std::byte> encode(const Message& message);
+
+/// Reads what `encode` wrote; cut, foreign or damaged bytes are an error that names the place, never a crash.
+[[nodiscard]] Result<Message> decode(std::span<const std::byte> bytes);
+
+}  // namespace adit
