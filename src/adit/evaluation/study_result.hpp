@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// All that a study found out, as plain data: what the tables, the figures, report.html and metrics.json are
+/// made of.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adit/core/point_cloud.hpp"
+#include "adit/evaluation/ate.hpp"
+#include "adit/evaluation/loop_stats.hpp"
+#include "adit/evaluation/plan.hpp"
+
+namespace adit {
+
+/// One odometry method on one robot.
+struct OdometryResult {
+  std::string method;            ///< "kiss_icp", "kinematic_icp".
+  std::optional<AteResult> ate;  ///< After the robot's own alignment; none where there is no truth.
+  std::optional<double> ms_per_scan_median;
+};
+
+struct RobotResult {
+  std::string name;
+  double path_length_m = 0.0;
+  double duration_s = 0.0;
+  int scans = 0;
+  int keyframes = 0;
+  std::vector<OdometryResult> odometry;
+  std::vector<Vector3> route;  ///< True positions in the world frame, for the figure of the routes.
+
+  [[nodiscard]] double speed_mean_mps() const { return duration_s > 0.0 ? path_length_m / duration_s : 0.0; }
+};
+
+/// An inter-robot loop as a line of a picture.
+struct PictureLoop {
+  Vector3 a;
+  Vector3 b;
+  LoopClass loop_class = LoopClass::correct;
+};
+
+/// A pose graph as it is drawn: keyframe positions of each robot in the order driven, and the loops between
+/// them, all in one frame.
+struct GraphPicture {
+  std::vector<std::vector<Vector3>> robot_paths;
+  std::vector<PictureLoop> loops;
+
+  [[nodiscard]] bool empty() const { return robot_paths.empty(); }
+};
+
+/// One robot of a merged (or refused) group.
+struct MergedRobot {
+  std::string name;
+  double path_length_m = 0.0;
+  /// After one alignment of all merged robots together; of a robot that was not merged, after its own.
+  std::optional<AteResult> ate;
+
+  [[nodiscard]] std::optional<double> ate_max_over_path_pct() const;
+};
+
+/// One robot pair under one keyframe policy, with or without PCM.
+struct PairResult {
+  std::array<MergedRobot, 2> robots;
+  std::string keyframes;  ///< "all", "tunnel_filter", "adaptive".
+  bool pcm = true;
+  LoopCounts loops_before_pcm;
+  LoopCounts loops_after_pcm;
+  int wrong_loops_in_solution = 0;  ///< Of either wrong class, with a final GNC weight of at least 0.5.
+  bool merged = false;
+  std::string refused_reason;  ///< One sentence where the pair was not merged, else empty.
+  GraphPicture initial;        ///< All loops over the odometry.
+  GraphPicture after_pcm;      ///< The loops that PCM kept, over the odometry.
+  GraphPicture optimized;      ///< The solution; loops that the solver switched off are left out.
+
+  /// Merged, and the largest ATE of both robots is below 1 % of their path lengths (the paper's rule).
+  [[nodiscard]] bool success() const;
+};
+
+/// All robots at once.
+struct JointResult {
+  std::string keyframes;
+  std::vector<std::vector<std::string>>
+      components;                   ///< Names of the robots that share a map, one list a map.
+  std::vector<MergedRobot> robots;  ///< In the order of StudyResult::robots.
+  LoopCounts loops;                 ///< In the solution, or before GNC.
+  int wrong_loops_in_solution = 0;
+  std::vector<std::uint64_t> bytes_sent_per_robot;
+  std::vector<std::string> refusals;  ///< "robot_0 and robot_3 were not merged: ...".
+  std::vector<PointCloud>
+      maps;  ///< Each robot's map in the common frame, thinned, for the figure; may be empty.
+};
+
+struct StudyResult {
+  std::string version;  ///< Of adit.
+  std::string world;
+  std::string lidar;
+  std::uint64_t seed = 0;
+  double wall_s = 0.0;
+  double peak_rss_mb = 0.0;
+  std::vector<RobotResult> robots;
+  std::vector<PairResult> pairs;
+  std::optional<JointResult> joint;
+  Plan world_plan;            ///< The world's walls from above; may be empty.
+  std::string configuration;  ///< TOML, as it was used.
+  std::string command;        ///< The command line that makes this study again; may be empty.
+};
+
+/// The pair result of two robots (by index of `robots`, in that order), or null.
+[[nodiscard]] const PairResult* find_pair(const StudyResult& study, std::array<std::string, 2> robots,
+                                          const std::string& keyframes, bool pcm);
+
+}  // namespace adit

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The paper's tables as data; report/text_tables turns them into text, Markdown or HTML.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "adit/evaluation/study_result.hpp"
+
+namespace adit {
+
+/// Cells are UTF-8 text. Every row is as long as the header. The first column is left-aligned, all others are
+/// centred or right-aligned as the writer likes.
+struct Table {
+  std::string title;
+  std::string caption;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+};
+
+/// Whether the paper's own figures stand beside ours. They are comparable where the study has four robots on
+/// a world like the paper's; rows that the paper does not have stay blank in its columns.
+enum class PaperFigures { hide, show };
+
+[[nodiscard]] Table trajectories_table(const StudyResult& study, PaperFigures paper = PaperFigures::hide);
+/// Per cent of wrong loops of each pair and keyframe policy, as the paper's tables 2 and 3; "-" stands for 0
+/// as there, "none" for "there was no loop at all".
+[[nodiscard]] Table outliers_before_pcm_table(const StudyResult& study,
+                                              PaperFigures paper = PaperFigures::hide);
+[[nodiscard]] Table outliers_after_pcm_table(const StudyResult& study,
+                                             PaperFigures paper = PaperFigures::hide);
+/// "✓" success, "✗" merged but wrong by the 1 % rule, "○" not merged (refused with a reason).
+[[nodiscard]] Table success_table(const StudyResult& study, PaperFigures paper = PaperFigures::hide);
+/// Largest ATE of both robots of each pair with PCM, tunnel-filtered keyframes first as the paper's table 5.
+[[nodiscard]] Table max_ate_table(const StudyResult& study, PaperFigures paper = PaperFigures::hide);
+
+/// Beyond the paper: both odometries of each robot, and all robots merged jointly.
+[[nodiscard]] Table odometry_table(const StudyResult& study);
+[[nodiscard]] Table joint_table(const StudyResult& study);
+
+/// The five of the paper, then the odometries and the joint run where the study has them.
+[[nodiscard]] std::vector<Table> study_tables(const StudyResult& study,
+                                              PaperFigures paper = PaperFigures::hide);
+
+}  // namespace adit

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The figures of a study, each a self-contained SVG document: no script, no network, no font of its own.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adit/evaluation/study_result.hpp"
+
+namespace adit {
+
+struct Figure {
+  std::string name;     ///< Safe as a file name: "routes", "graph_robot_0_robot_1_all_initial".
+  std::string title;    ///< One line.
+  std::string caption;  ///< A sentence or two; says what the colours mean.
+  std::string svg;
+};
+
+/// A named path in the colour of its robot (its index in the fleet).
+struct Route {
+  std::string name;
+  std::size_t robot = 0;
+  std::vector<Vector3> path;
+};
+
+/// Robots' routes over the walls of the world (`plan` may be empty), a dot where each starts.
+[[nodiscard]] std::string plot_routes(const Plan& plan, std::span<const Route> routes);
+
+/// One group of boxes a robot, one box a method. The axis turns logarithmic when the boxes span more than a
+/// factor of 30.
+struct BoxGroup {
+  std::string name;
+  std::vector<std::vector<double>>
+      samples;  ///< One list a method, in the order of the methods; may be empty.
+};
+[[nodiscard]] std::string plot_boxes(std::span<const std::string> methods, std::span<const BoxGroup> groups,
+                                     const std::string& axis_title);
+
+/// A pose graph: paths in their robots' colours, loops green (correct), red (wrong place), blue (wrong
+/// registration). `robots` name the picture's paths and their colours; its paths are not read.
+[[nodiscard]] std::string plot_graph(const GraphPicture& picture, std::span<const Route> robots);
+
+/// Paths coloured by their error, with a colour bar; errors and paths have the same lengths.
+struct ErrorPath {
+  std::string name;
+  std::vector<Vector3> path;
+  std::vector<double> errors_m;
+};
+[[nodiscard]] std::string plot_error_paths(const Plan& plan, std::span<const ErrorPath> paths);
+
+/// Maps of several robots from above, each in its colour, darker where more points lie.
+struct RobotCloud {
+  std::string name;
+  std::size_t robot = 0;
+  std::span<const Eigen::Vector3f> points;
+};
+[[nodiscard]] std::string plot_merged_map(std::span<const RobotCloud> clouds);
+
+/// Every figure that the study has data for, in the order of the paper: routes, odometry boxes, the pose
+/// graphs of each pair, error-coloured trajectories of each pair, the merged map and the joint run's
+/// trajectories.
+[[nodiscard]] std::vector<Figure> study_figures(const StudyResult& study);
+
+}  // namespace adit
