@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include "adit/core/result.hpp"
+#include "adit/posegraph/pose_graph.hpp"
+
+namespace adit {
+
+/// A start that needs no guess: rotations by linear least squares over all matrices, each then brought to the
+/// nearest rotation; translations by linear least squares given these. Anchors keep their poses; the other
+/// nodes' poses are not looked at. Source: Carlone, Tron, Daniilidis, Dellaert, "Initialization techniques
+/// for 3D SLAM" (ICRA 2015), section III.B (chordal relaxation). Fails when the edges leave a node free.
+template <class P>
+[[nodiscard]] Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph,
+                                                   const std::vector<double>& edge_weights = {});
+
+}  // namespace adit

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "adit/core/result.hpp"
+#include "adit/posegraph/pose_graph.hpp"
+
+namespace adit {
+
+/// Marginal covariances of node poses (right perturbation, [translation; rotation]; metres and radians),
+/// given the anchor of their component, at the linearization point graph.nodes[i].pose: put the solution in
+/// first. Factorizes once; each question then costs two sparse triangular solves a column.
+template <class P>
+class Marginals {
+ public:
+  using Covariance = Eigen::Matrix<double, P::kDof, P::kDof>;
+  using JointCovariance = Eigen::Matrix<double, 2 * P::kDof, 2 * P::kDof>;
+
+  /// Fails when the graph is singular or an information matrix is indefinite. `edge_weights` as in
+  /// `optimize`.
+  static Result<Marginals> compute(const BasicPoseGraph<P>& graph,
+                                   const std::vector<double>& edge_weights = {});
+
+  /// Of one node; zero for an anchor.
+  [[nodiscard]] Covariance covariance(std::size_t node) const;
+  /// Of two nodes together: [a; b].
+  [[nodiscard]] JointCovariance joint(std::size_t a, std::size_t b) const;
+  /// Of T_a_b, right perturbation. Both nodes must belong to one component for this to mean anything.
+  [[nodiscard]] Covariance relative(std::size_t a, std::size_t b) const;
+
+ private:
+  struct Impl;
+  std::shared_ptr<const Impl> impl_;
+};
+
+}  // namespace adit

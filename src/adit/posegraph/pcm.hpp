@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "adit/core/config.hpp"
+#include "adit/core/pose.hpp"
+#include "adit/posegraph/max_clique.hpp"
+
+namespace adit {
+
+struct PcmConfig {
+  double probability =
+      0.99;  ///< Two true loops pass the test this often (chi-square with 6 degrees of freedom).
+  std::uint64_t max_search_nodes = 20'000'000;
+};
+inline Fields fields_of(PcmConfig& c) {
+  return {{"probability", &c.probability, "", 0.01, 0.999999, "two true loops agree this often"},
+          {"max_search_nodes", &c.max_search_nodes, "", 1, 1e15, "budget of the clique search, in branches"}};
+}
+
+/// One robot's odometry over its keyframes. Covariances between any two keyframes compose along it in O(1).
+class OdometryChain {
+ public:
+  /// `step_covariances[k]`: of T_k_(k+1), right perturbation, [translation; rotation]; one less than the
+  /// poses.
+  OdometryChain(std::vector<Pose> T_odom_keyframe, const std::vector<Matrix6>& step_covariances);
+
+  [[nodiscard]] std::size_t size() const { return T_odom_keyframe_.size(); }
+  [[nodiscard]] const Pose& pose(std::size_t i) const { return T_odom_keyframe_[i]; }
+  /// T_i_j by odometry.
+  [[nodiscard]] Pose between(std::size_t i, std::size_t j) const { return pose(i).inverse() * pose(j); }
+  /// Covariance of T_i_j, right perturbation, for i before, after or equal to j.
+  [[nodiscard]] Matrix6 covariance(std::size_t i, std::size_t j) const;
+  /// What the steps between i and j (any order) add to the covariance, as seen from the frame odom.
+  [[nodiscard]] Matrix6 covariance_in_odom(std::size_t i, std::size_t j) const;
+
+ private:
+  std::vector<Pose> T_odom_keyframe_;
+  std::vector<Matrix6> prefix_;  ///< prefix_[j]: sum over steps k < j of Ad(T_odom_(k+1)) Sigma_k Ad^T.
+};
+
+/// A loop as PCM sees it: keyframe `a` of the first chain, `b` of the second.
+struct PcmLoop {
+  std::size_t a = 0;
+  std::size_t b = 0;
+  Pose T_a_b;
+  Matrix6 information = Matrix6::Identity();  ///< Of T_a_b, right perturbation.
+};
+
+struct PcmResult {
+  BitGraph consistency{0};           ///< One vertex a loop.
+  std::vector<std::size_t> largest;  ///< Indices of loops, ascending: the loops to keep.
+  std::vector<std::size_t>
+      second;           ///< Largest clique among the rest: a rival explanation when nearly as large.
+  bool optimal = true;  ///< Both cliques are proven largest.
+};
+
+/// Pairwise consistent measurement set maximization: the largest set of loops of which any two agree along
+/// both odometries. Two loops (i, k), (j, l) agree when E = Z_ik^-1 X_ij Z_jl X_lk, the way round the cycle,
+/// has log(E)^T S^-1 log(E) < chi2inv(probability, 6), S being composed of the four covariances, each carried
+/// to the end of the cycle by adjoints. With the same chain given twice (loops within one robot) the
+/// correlation of shared stretches is taken into account. Loops with a singular information matrix or indices
+/// outside the chains throw ContractViolation. Source: Mangelson, Dominic, Eustice, Vasudevan, "Pairwise
+/// consistent measurement set maximization for robust multi-robot map merging" (ICRA 2018), eq. (3)-(6).
+[[nodiscard]] PcmResult pcm(const OdometryChain& chain_a, const OdometryChain& chain_b,
+                            const std::vector<PcmLoop>& loops, const PcmConfig& config = {});
+
+/// log(E)^T S^-1 log(E) of one pair of loops.
+[[nodiscard]] double consistency_distance2(const OdometryChain& chain_a, const OdometryChain& chain_b,
+                                           const PcmLoop& first, const PcmLoop& second);
+
+}  // namespace adit

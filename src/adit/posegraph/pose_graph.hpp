@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "adit/core/pose.hpp"
+
+namespace adit {
+
+/// What an edge is, said by whoever made it and never guessed from keys: odometry edges are trusted (known
+/// inliers), loops may be false.
+enum class EdgeKind { odometry, loop };
+[[nodiscard]] std::string_view to_string(EdgeKind kind);
+
+/// Poses to be estimated (nodes) and relative poses that were measured (edges), in space (`PoseGraph`) or in
+/// the plane
+/// (`PoseGraph2`). All node poses are in one common frame, called world, though robots that no edge links yet
+/// only share its name.
+///
+/// Gauge: the node with the smallest key of each connected component is its anchor and keeps its pose.
+template <class P>
+struct BasicPoseGraph {
+  using Information = Eigen::Matrix<double, P::kDof, P::kDof>;
+  struct Node {
+    std::uint64_t key = 0;  ///< Unique. Keyframes use `graph_key`.
+    P pose;                 ///< T_world_node: the guess that solvers start from.
+  };
+  struct Edge {
+    std::size_t from = 0;  ///< Index into `nodes`, not a key.
+    std::size_t to = 0;    ///< Different from `from`.
+    P T_from_to;           ///< The measurement.
+    Information information =
+        Information::Identity();  ///< Inverse covariance of [translation; rotation], full.
+    EdgeKind kind = EdgeKind::odometry;
+  };
+  std::vector<Node> nodes;
+  std::vector<Edge> edges;
+
+  /// Throws ContractViolation when an edge names a node that is not there, or joins a node to itself.
+  void check() const;
+};
+using PoseGraph = BasicPoseGraph<Pose>;
+using PoseGraph2 = BasicPoseGraph<Pose2>;
+
+/// Which nodes hang together. Components are numbered in the order of their anchors' keys.
+struct Components {
+  std::vector<std::size_t> of_node;  ///< Component of each node.
+  std::vector<std::size_t> anchors;  ///< Node index of each component's anchor: its smallest key.
+};
+template <class P>
+[[nodiscard]] Components connected_components(const BasicPoseGraph<P>& graph);
+
+/// Poses by composing edges outwards from the nodes whose pose is known, along as few loop edges as can be,
+/// then as few edges as can be. A component with no known pose starts with its anchor at the identity. Known
+/// poses come back unchanged. `is_known`: one a node.
+template <class P>
+[[nodiscard]] std::vector<P> spanning_tree_poses(const BasicPoseGraph<P>& graph,
+                                                 const std::vector<bool>& is_known);
+
+/// The graph's poses as a list.
+template <class P>
+[[nodiscard]] std::vector<P> poses_of(const BasicPoseGraph<P>& graph) {
+  std::vector<P> poses;
+  poses.reserve(graph.nodes.size());
+  for (const auto& node : graph.nodes) poses.push_back(node.pose);
+  return poses;
+}
+
+}  // namespace adit
