@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+#include "adit/core/config.hpp"
+#include "adit/core/records.hpp"
+#include "adit/geometry/deskew.hpp"
+#include "adit/odometry/adaptive_threshold.hpp"
+#include "adit/odometry/local_map.hpp"
+#include "adit/odometry/scan_to_map.hpp"
+
+namespace adit {
+
+struct KissIcpConfig : ScanToMapConfig {
+  double initial_threshold = 2.0;
+  double min_motion = 0.1;
+};
+
+inline Fields fields_of(KissIcpConfig& c) {
+  Fields fields = fields_of(static_cast<ScanToMapConfig&>(c));
+  fields.push_back(
+      {"initial_threshold", &c.initial_threshold, "m", 0.01, 100.0, "first sigma of the motion model"});
+  fields.push_back({"min_motion", &c.min_motion, "m", 0.0, 10.0, "smaller deviations do not train sigma"});
+  return fields;
+}
+
+/// LiDAR-only odometry: I. Vizzo, T. Guadagnino, B. Mersch, L. Wiesmann, J. Behley, C. Stachniss, "KISS-ICP:
+/// In Defense of Point-to-Point ICP - Simple, Accurate, and Robust Registration If Done the Right Way", RA-L
+/// 2023. It works in the base frame: T_odom_base starts at identity.
+///
+/// A step is `degenerate` when the scene leaves a direction open. That is a diagnosis only: the method has no
+/// such notion, and as in the paper the scan enters the map (in a smooth tunnel it slips, which is what is to
+/// be shown). Steps that are `too_few_points` or `diverged` keep the constant-velocity prediction and stay
+/// out of the map.
+class KissIcp {
+ public:
+  KissIcp(const KissIcpConfig& config, const Pose& T_base_lidar);
+
+  /// Stamps must ascend strictly from scan to scan.
+  OdometryStep register_scan(const Scan& scan);
+  /// The last scan, deskewed and range-cropped at full density, in the base frame at its stamp.
+  [[nodiscard]] PointCloud cloud_of_last_scan() const { return cloud_; }
+  [[nodiscard]] const LocalMap& map() const { return map_; }
+  [[nodiscard]] double sigma() const { return threshold_.sigma(); }
+
+ private:
+  KissIcpConfig config_;
+  Pose T_base_lidar_;
+  LocalMap map_;
+  AdaptiveThreshold threshold_;
+  Pose T_odom_base_;
+  std::optional<Stamp> stamp_;
+  std::optional<ConstantVelocity> motion_;  ///< From the scan before the last to the last.
+  PointCloud cloud_;
+};
+
+}  // namespace adit

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "adit/odometry/kinematic_icp.hpp"
+#include "adit/odometry/kiss_icp.hpp"
+
+namespace adit {
+
+struct OdometryConfig {
+  std::string method = "kinematic-icp";
+  KissIcpConfig kiss_icp;
+  KinematicIcpConfig kinematic_icp;
+};
+
+inline Fields fields_of(OdometryConfig& c) {
+  Fields fields = {
+      {"method", &c.method, "", 0, 0, "LiDAR alone, or LiDAR and wheels", {"kiss-icp", "kinematic-icp"}}};
+  append(fields, "kiss_icp", fields_of(c.kiss_icp));
+  append(fields, "kinematic_icp", fields_of(c.kinematic_icp));
+  return fields;
+}
+
+/// The odometry that the configuration names.
+class Odometry {
+ public:
+  /// Throws ContractViolation when the configuration is outside its ranges or names no known method.
+  Odometry(const OdometryConfig& config, const Pose& T_base_lidar);
+
+  /// `wheel`: motion of the base since the last scan. KISS-ICP does not look at it; Kinematic-ICP throws
+  /// ContractViolation without it, the first scan excepted.
+  OdometryStep register_scan(const Scan& scan, const std::optional<WheelDelta>& wheel);
+  /// The last scan, deskewed and range-cropped at full density, in the base frame at its stamp.
+  [[nodiscard]] PointCloud cloud_of_last_scan() const;
+
+ private:
+  std::variant<KissIcp, KinematicIcp> method_;
+};
+
+}  // namespace adit

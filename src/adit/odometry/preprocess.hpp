@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+#include "adit/core/records.hpp"
+#include "adit/geometry/deskew.hpp"
+
+namespace adit {
+
+/// Metres from the sensor; both bounds are exclusive, so that the (0, 0, 0) some drivers write for "no echo"
+/// goes too.
+struct RangeLimits {
+  double min_range = 0.0;
+  double max_range = 100.0;
+};
+
+/// A raw cloud in the lidar frame -> all points with a finite position and a range within the limits, in the
+/// base frame at the scan's stamp, at full density and in their order; intensities are kept, times are used
+/// up. With `motion` (of the base) and per-point times the sweep is deskewed; without either it is only moved
+/// into the base frame.
+[[nodiscard]] PointCloud preprocess(const PointCloud& cloud_lidar, const RangeLimits& limits,
+                                    const Pose& T_base_lidar, const std::optional<ConstantVelocity>& motion);
+
+}  // namespace adit
