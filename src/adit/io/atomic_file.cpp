@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/atomic_file.hpp"
+
+#include <unistd.h>
+
+#include <array>
+#include <system_error>
+#include <utility>
+
+#include "adit/core/format.hpp"
+
+namespace adit {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Beside the target, so that the rename stays on one file system.
+fs::path partial_beside(const fs::path& path) { return path.string() + format(".partial-{}", getpid()); }
+
+fs::path without_trailing_slash(const fs::path& path) {
+  return path.has_filename() ? path : path.parent_path();
+}
+
+Result<> check_parent(const fs::path& path) {
+  const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::error_code ignored;
+  if (fs::is_directory(parent, ignored)) return {};
+  return fail(format("{}: the folder {} does not exist; make it first", path.string(), parent.string()));
+}
+
+bool is_own_output(const fs::path& directory, const std::string& kind) {
+  std::error_code ignored;
+  return fs::exists(directory / (".adit-" + kind), ignored) ||
+         (kind == "session" && fs::exists(directory / "session.toml", ignored)) ||
+         (kind == "study" && fs::exists(directory / "metrics.json", ignored));
+}
+
+Result<> check_replaceable(const fs::path& path, const std::string& kind) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return {};
+  if (!fs::is_directory(path, error))
+    return fail(path.string() + ": is a file, a folder is needed; choose another name");
+  if (fs::is_empty(path, error) || is_own_output(path, kind)) return {};
+  return fail(
+      format("{}: holds files that are no {} of adit and is left alone; choose another folder or empty it",
+             path.string(), kind));
+}
+
+}  // namespace
+
+Result<std::string> read_bytes(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) return fail(path.string() + ": no such file");
+  if (fs::is_directory(status)) return fail(path.string() + ": is a folder, a file is needed");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return fail(path.string() + ": cannot be opened for reading; check its permissions");
+  std::string bytes;
+  std::array<char, 1U << 16U> block{};
+  while (stream.read(block.data(), block.size()) || stream.gcount() > 0) {
+    bytes.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  if (stream.bad()) return fail(format("{}: reading failed at byte {}", path.string(), bytes.size()));
+  return bytes;
+}
+
+Result<> write_bytes(const fs::path& path, std::string_view bytes) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return tl::unexpected(file.error());
+  file->stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return file->commit();
+}
+
+Result<AtomicFile> AtomicFile::create(const fs::path& path) {
+  std::error_code ignored;
+  if (!path.has_filename() || fs::is_directory(path, ignored)) {
+    return fail(path.string() + ": is a folder, a file name is needed");
+  }
+  if (Result<> parent = check_parent(path); !parent) return tl::unexpected(parent.error());
+  AtomicFile file(path);
+  if (!file.stream_) return fail(path.string() + ": cannot be written; check the permissions of its folder");
+  return file;
+}
+
+AtomicFile::AtomicFile(const fs::path& path)
+    : path_(path), partial_(partial_beside(path)), stream_(partial_, std::ios::binary | std::ios::trunc) {}
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      partial_(std::exchange(other.partial_, {})),
+      stream_(std::move(other.stream_)) {}
+
+AtomicFile::~AtomicFile() {
+  if (partial_.empty()) return;
+  stream_.close();
+  std::error_code ignored;
+  fs::remove(partial_, ignored);
+}
+
+Result<> AtomicFile::commit() {
+  stream_.close();
+  if (!stream_) return fail(path_.string() + ": writing failed; is the disk full?");
+  std::error_code error;
+  fs::rename(partial_, path_, error);
+  if (error) return fail(format("{}: cannot be put in place: {}", path_.string(), error.message()));
+  partial_.clear();
+  return {};
+}
+
+Result<OutputDir> OutputDir::create(const fs::path& path, const std::string& kind) {
+  const fs::path target = without_trailing_slash(path);
+  if (target.empty()) return fail("an output folder needs a name");
+  if (Result<> parent = check_parent(target); !parent) return tl::unexpected(parent.error());
+  if (Result<> free = check_replaceable(target, kind); !free) return tl::unexpected(free.error());
+  OutputDir output(target, partial_beside(target));
+  std::error_code error;
+  fs::remove_all(output.partial_, error);
+  fs::create_directory(output.partial_, error);
+  if (error) return fail(format("{}: cannot be made: {}", target.string(), error.message()));
+  return write_bytes(output.partial_ / (".adit-" + kind), "").map([&] { return std::move(output); });
+}
+
+OutputDir::OutputDir(OutputDir&& other) noexcept
+    : target_(std::move(other.target_)),
+      partial_(std::move(other.partial_)),
+      committed_(std::exchange(other.committed_, true)) {}
+
+OutputDir::~OutputDir() {
+  if (committed_) return;
+  std::error_code ignored;
+  fs::remove_all(partial_, ignored);
+}
+
+Result<> OutputDir::commit() {
+  std::error_code error;
+  const fs::path old = target_.string() + format(".partial-{}-old", getpid());
+  const bool replaces = fs::exists(target_, error);
+  if (replaces) fs::rename(target_, old, error);
+  if (!error) fs::rename(partial_, target_, error);
+  if (error) {
+    std::error_code ignored;
+    if (replaces && !fs::exists(target_, ignored)) fs::rename(old, target_, ignored);
+    return fail(format("{}: cannot be put in place: {}", target_.string(), error.message()));
+  }
+  committed_ = true;
+  partial_ = target_;
+  fs::remove_all(old, error);
+  return {};
+}
+
+}  // namespace adit

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/cloud_files.hpp"
+
+#include "adit/core/format.hpp"
+#include "adit/io/atomic_file.hpp"
+#include "adit/io/kitti.hpp"
+#include "adit/io/pcd.hpp"
+#include "adit/io/ply.hpp"
+#include "adit/io/text.hpp"
+
+namespace adit {
+namespace {
+
+enum class CloudFormat { pcd, ply, kitti };
+
+Result<CloudFormat> format_of(const std::filesystem::path& path) {
+  const std::string extension = lower_case(path.extension().string());
+  if (extension == ".pcd") return CloudFormat::pcd;
+  if (extension == ".ply") return CloudFormat::ply;
+  if (extension == ".bin") return CloudFormat::kitti;
+  return fail(
+      format("{}: '{}' is no extension of a point cloud; .pcd, .ply and .bin are", path.string(), extension));
+}
+
+Result<CloudFile> parse(CloudFormat format, std::string_view bytes) {
+  switch (format) {
+    case CloudFormat::pcd:
+      return read_pcd(bytes);
+    case CloudFormat::ply:
+      return read_ply(bytes);
+    case CloudFormat::kitti:
+      break;
+  }
+  return read_kitti(bytes);
+}
+
+std::string bytes_of(CloudFormat format, const PointCloud& cloud) {
+  switch (format) {
+    case CloudFormat::pcd:
+      return write_pcd(cloud);
+    case CloudFormat::ply:
+      return write_ply(cloud);
+    case CloudFormat::kitti:
+      break;
+  }
+  return write_kitti(cloud);
+}
+
+}  // namespace
+
+Result<CloudFile> read_cloud_file(const std::filesystem::path& path) {
+  const Result<CloudFormat> format = format_of(path);
+  if (!format) return tl::unexpected(format.error());
+  const Result<std::string> bytes = read_bytes(path);
+  if (!bytes) return tl::unexpected(bytes.error());
+  Result<CloudFile> file = parse(*format, *bytes);
+  if (!file) return fail(path.string(), file.error());
+  return file;
+}
+
+Result<PointCloud> read_cloud(const std::filesystem::path& path) {
+  return read_cloud_file(path).map([](CloudFile file) { return std::move(file.cloud); });
+}
+
+Result<> write_cloud(const std::filesystem::path& path, const PointCloud& cloud) {
+  if (cloud.empty()) return fail(path.string() + ": the cloud has no points; nothing is written");
+  return format_of(path).and_then(
+      [&](CloudFormat format) { return write_bytes(path, bytes_of(format, cloud)); });
+}
+
+}  // namespace adit

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/config_toml.hpp"
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <sstream>
+
+#include "adit/core/format.hpp"
+#include "adit/io/atomic_file.hpp"
+
+namespace adit {
+namespace {
+
+/// The value as the text that `set_field` takes; nothing for lists, dates and the like.
+std::optional<std::string> text_of(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+  if (const auto* whole = node.as_integer()) return format("{}", whole->get());
+  if (const auto* real = node.as_floating_point()) return format("{}", real->get());
+  return std::nullopt;
+}
+
+/// A quoted number is no number: `set_field` alone, which sees text only, would take it.
+Result<> check_type(const Field& field, const toml::node& node) {
+  const bool wants_text = std::holds_alternative<std::string*>(field.target);
+  if (wants_text == node.is_string()) return {};
+  return fail(format("{}: {}", field.key,
+                     wants_text ? "a string in quotes is needed" : "a bare value, no string, is needed"));
+}
+
+Result<> set_node(const Fields& fields, const std::string& key, const toml::node& node) {
+  const std::string place = format("line {}", node.source().begin.line);
+  const std::optional<std::string> text = text_of(node);
+  if (!text) return fail(format("{}: {}: a number, true, false or a string is needed", place, key));
+  const auto field = std::ranges::find(fields, key, &Field::key);
+  Result<> set = field == fields.end() ? Result<>{} : check_type(*field, node);
+  if (set) set = set_field(fields, key, *text);
+  if (!set) return fail(place, set.error());
+  return {};
+}
+
+Result<> set_table(const Fields& fields, const std::string& prefix, const toml::table& table) {
+  for (const auto& [name, node] : table) {
+    const std::string key = prefix + std::string(name.str());
+    const auto* nested = node.as_table();
+    Result<> set = nested != nullptr ? set_table(fields, key + ".", *nested) : set_node(fields, key, node);
+    if (!set) return set;
+  }
+  return {};
+}
+
+/// "kiss_icp" and "voxel_size" of kiss_icp.voxel_size.
+std::pair<std::string, std::string> split_key(const std::string& key) {
+  const std::size_t dot = key.rfind('.');
+  if (dot == std::string::npos) return {"", key};
+  return {key.substr(0, dot), key.substr(dot + 1)};
+}
+
+/// The table names in the order of their first field; fields without a table come first, as TOML needs it.
+std::vector<std::string> table_names(const Fields& fields) {
+  std::vector<std::string> names = {""};
+  for (const Field& field : fields) {
+    std::string table = split_key(field.key).first;
+    if (std::ranges::find(names, table) == names.end()) names.push_back(std::move(table));
+  }
+  return names;
+}
+
+Fields fields_of_table(const Fields& fields, const std::string& table) {
+  Fields members;
+  std::ranges::copy_if(fields, std::back_inserter(members),
+                       [&](const Field& field) { return split_key(field.key).first == table; });
+  return members;
+}
+
+std::string range_text(const Field& field) {
+  if (std::holds_alternative<bool*>(field.target)) return "true, false";
+  if (std::holds_alternative<std::string*>(field.target)) {
+    return field.choices.empty() ? "any text" : format("{}", fmt::join(field.choices, ", "));
+  }
+  return format("{} to {}", field.min, field.max);
+}
+
+std::string toml_value(const Field& field) {
+  const std::string text = value_text(field);
+  if (const auto* string = std::get_if<std::string*>(&field.target)) {
+    std::ostringstream quoted;
+    quoted << toml::value<std::string>(**string);
+    return quoted.str();
+  }
+  // TOML tells real numbers by their point or exponent, and wants a digit behind the point.
+  const bool is_real = std::holds_alternative<double*>(field.target);
+  return is_real && text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+}
+
+}  // namespace
+
+Result<> parse_config(const Fields& fields, std::string_view toml) {
+  try {
+    return set_table(fields, "", toml::parse(toml));
+  } catch (const toml::parse_error& error) {
+    const toml::source_position& at = error.source().begin;
+    return fail(format("line {}, column {}: {}", at.line, at.column, error.description()));
+  }
+}
+
+Result<> load_config(const std::filesystem::path& path, const Fields& fields) {
+  const Result<std::string> bytes = read_bytes(path);
+  if (!bytes) return tl::unexpected(bytes.error());
+  const Result<> parsed = parse_config(fields, *bytes);
+  if (!parsed) return fail(path.string(), parsed.error());
+  return {};
+}
+
+std::string to_toml(const Fields& fields) {
+  std::string text;
+  for (const std::string& table : table_names(fields)) {
+    const Fields members = fields_of_table(fields, table);
+    if (!table.empty()) text += format("{}[{}]\n", text.empty() ? "" : "\n", table);
+    for (const Field& field : members) {
+      text += format("{} = {}  # {}{}{}; {}\n", split_key(field.key).second, toml_value(field), field.meaning,
+                     field.unit.empty() ? "" : ", ", field.unit, range_text(field));
+    }
+  }
+  return text;
+}
+
+std::string to_markdown(const Fields& fields) {
+  std::string text;
+  for (const std::string& table : table_names(fields)) {
+    const Fields members = fields_of_table(fields, table);
+    if (members.empty()) continue;
+    text += format("{}## {}\n\n| key | default | unit | range | meaning |\n| --- | --- | --- | --- | --- |\n",
+                   text.empty() ? "" : "\n", table.empty() ? "General" : "`" + table + "`");
+    for (const Field& field : members) {
+      text += format("| `{}` | {} | {} | {} | {} |\n", field.key, value_text(field), field.unit,
+                     range_text(field), field.meaning);
+    }
+  }
+  return text;
+}
+
+}  // namespace adit

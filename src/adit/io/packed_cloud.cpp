@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/packed_cloud.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "adit/core/format.hpp"
+#include "adit/io/text.hpp"
+
+namespace adit {
+namespace {
+
+/// Calls `use` with a value of the C++ type that `type` stands for.
+template <class Use>
+auto with_type(ScalarType type, const Use& use) {
+  switch (type) {
+    case ScalarType::int8:
+      return use(std::int8_t{});
+    case ScalarType::uint8:
+      return use(std::uint8_t{});
+    case ScalarType::int16:
+      return use(std::int16_t{});
+    case ScalarType::uint16:
+      return use(std::uint16_t{});
+    case ScalarType::int32:
+      return use(std::int32_t{});
+    case ScalarType::uint32:
+      return use(std::uint32_t{});
+    case ScalarType::int64:
+      return use(std::int64_t{});
+    case ScalarType::uint64:
+      return use(std::uint64_t{});
+    case ScalarType::float32:
+      return use(float{});
+    case ScalarType::float64:
+      break;
+  }
+  return use(double{});
+}
+
+template <class T>
+T load(const char* bytes, std::endian order) {
+  std::array<char, sizeof(T)> raw{};
+  std::memcpy(raw.data(), bytes, sizeof(T));
+  if (order != std::endian::native) std::ranges::reverse(raw);
+  return std::bit_cast<T>(raw);
+}
+
+template <class T>
+std::optional<T> parse_number(std::string_view word) {
+  T value{};
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+/// Nanoseconds; integers stay integers, since absolute times need all 64 bits. Nothing when not finite or too
+/// large.
+std::optional<std::int64_t> load_time(ScalarType type, const char* bytes, std::endian order) {
+  if (type == ScalarType::uint64) {
+    const auto ns = load<std::uint64_t>(bytes, order);
+    if (ns > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) return std::nullopt;
+    return static_cast<std::int64_t>(ns);
+  }
+  if (type == ScalarType::int64) return load<std::int64_t>(bytes, order);
+  const double value = load_scalar(type, bytes, order);
+  if (!is_float(type)) return static_cast<std::int64_t>(value);
+  const double ns = value * 1e9;
+  if (!(std::abs(ns) < 9.2e18)) return std::nullopt;
+  return std::llround(ns);
+}
+
+Result<> check_field(const PackedCloud& cloud, const std::optional<PackedField>& field, const char* name) {
+  if (!field) return fail(format("no field '{}'", name));
+  const std::size_t size = size_of(field->type);
+  const std::size_t available = cloud.bytes.size();
+  const bool fits =
+      field->offset <= available && size <= available - field->offset &&
+      (field->stride == 0 || cloud.num_points - 1 <= (available - field->offset - size) / field->stride);
+  if (fits) return {};
+  return fail(format("field '{}' of {} points reaches past the {} bytes of data; the file is truncated", name,
+                     cloud.num_points, available));
+}
+
+Result<> check_layout(const PackedCloud& cloud) {
+  if (cloud.num_points == 0) return fail("the cloud has no points");
+  Result<> checked = check_field(cloud, cloud.x, "x")
+                         .and_then([&] { return check_field(cloud, cloud.y, "y"); })
+                         .and_then([&] { return check_field(cloud, cloud.z, "z"); });
+  if (checked && cloud.intensity) checked = check_field(cloud, cloud.intensity, "intensity");
+  if (checked && cloud.time) checked = check_field(cloud, cloud.time, "t");
+  return checked;
+}
+
+/// Offsets from the scan's stamp: as they are when they fit, else relative to the stamp, else to the earliest
+/// point.
+Result<std::vector<std::int32_t>> relative_times(const std::vector<std::int64_t>& times,
+                                                 std::optional<Stamp> stamp) {
+  constexpr std::int64_t kLimit = std::numeric_limits<std::int32_t>::max();
+  const auto [low, high] = std::ranges::minmax_element(times);
+  // Absolute times may lie anywhere in 64 bits, so their differences need more.
+  __extension__ using Wide = __int128;
+  const auto fits = [&](Wide origin) { return *low - origin >= -kLimit && *high - origin <= kLimit; };
+  const std::int64_t from_stamp = stamp ? stamp->ns : *low;
+  const std::int64_t origin = fits(0) ? 0 : from_stamp;
+  if (!fits(origin)) {
+    return fail(format("field 't' spans {:.3f} s around the scan's stamp; a sweep of more than 2.1 s is none",
+                       static_cast<double>(Wide{*high} - *low) * 1e-9));
+  }
+  std::vector<std::int32_t> offsets(times.size());
+  std::ranges::transform(times, offsets.begin(),
+                         [&](std::int64_t t) { return static_cast<std::int32_t>(t - origin); });
+  return offsets;
+}
+
+}  // namespace
+
+std::size_t size_of(ScalarType type) {
+  return with_type(type, [](auto value) { return sizeof(value); });
+}
+
+bool is_float(ScalarType type) { return type == ScalarType::float32 || type == ScalarType::float64; }
+
+double load_scalar(ScalarType type, const char* bytes, std::endian order) {
+  return with_type(type,
+                   [&](auto value) { return static_cast<double>(load<decltype(value)>(bytes, order)); });
+}
+
+bool append_scalar(std::string& bytes, ScalarType type, std::string_view word) {
+  return with_type(type, [&](auto zero) {
+    using T = decltype(zero);
+    if (const std::optional<T> exact = parse_number<T>(word)) {
+      append_little_endian(bytes, *exact);
+      return true;
+    }
+    // Some writers print whole numbers as "12.0" or "1e3".
+    const std::optional<double> value = parse_double(word);
+    if (!value || !(std::abs(*value) <= static_cast<double>(std::numeric_limits<T>::max()))) return false;
+    append_little_endian(bytes, static_cast<T>(*value));
+    return true;
+  });
+}
+
+void assign_field(PackedCloud& cloud, std::string_view name, PackedField field) {
+  const auto take = [&](std::optional<PackedField>& place, std::initializer_list<std::string_view> names) {
+    if (!place && std::ranges::find(names, name) != names.end()) place = field;
+  };
+  take(cloud.x, {"x"});
+  take(cloud.y, {"y"});
+  take(cloud.z, {"z"});
+  take(cloud.intensity, {"intensity", "intensities", "i", "scalar_Intensity"});
+  take(cloud.time, {"t", "time", "time_offset", "offset_time", "timestamp"});
+}
+
+Result<CloudFile> unpack(const PackedCloud& packed) {
+  if (Result<> checked = check_layout(packed); !checked) return tl::unexpected(checked.error());
+  CloudFile file;
+  PointCloud& cloud = file.cloud;
+  std::vector<std::int64_t> times;
+  cloud.points.reserve(packed.num_points);
+  const auto at = [&](const PackedField& field, std::size_t i) {
+    return packed.bytes.data() + field.offset + i * field.stride;
+  };
+  const auto coordinate = [&](const PackedField& field, std::size_t i) {
+    return static_cast<float>(load_scalar(field.type, at(field, i), packed.order));
+  };
+  for (std::size_t i = 0; i < packed.num_points; ++i) {
+    const Eigen::Vector3f point(coordinate(*packed.x, i), coordinate(*packed.y, i), coordinate(*packed.z, i));
+    std::optional<std::int64_t> time = 0;
+    if (packed.time) time = load_time(packed.time->type, at(*packed.time, i), packed.order);
+    if (!point.allFinite() || !time) {
+      ++file.num_skipped_nan;
+      continue;
+    }
+    cloud.points.push_back(point);
+    if (packed.intensity) cloud.intensities.push_back(coordinate(*packed.intensity, i));
+    if (packed.time) times.push_back(*time);
+  }
+  if (cloud.empty()) return fail(format("none of the {} points is finite", packed.num_points));
+  if (!packed.time) return file;
+  return relative_times(times, packed.stamp).map([&](std::vector<std::int32_t> offsets) {
+    cloud.time_offsets_ns = std::move(offsets);
+    return std::move(file);
+  });
+}
+
+std::string packed_rows(const PointCloud& cloud) {
+  const std::size_t row_size = 12 + (cloud.intensities.empty() ? 0U : 4U) + (cloud.has_times() ? 4U : 0U);
+  std::string rows;
+  rows.reserve(cloud.size() * row_size);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) append_little_endian(rows, cloud.points[i][axis]);
+    if (!cloud.intensities.empty()) append_little_endian(rows, cloud.intensities[i]);
+    if (cloud.has_times()) append_little_endian(rows, cloud.time_offsets_ns[i]);
+  }
+  return rows;
+}
+
+}  // namespace adit

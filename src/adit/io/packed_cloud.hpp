@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Clouds as binary files and messages hold them: fields of any numeric type at fixed strides.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "adit/core/time.hpp"
+#include "adit/io/cloud_files.hpp"
+
+namespace adit {
+
+enum class ScalarType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+[[nodiscard]] std::size_t size_of(ScalarType type);
+[[nodiscard]] bool is_float(ScalarType type);
+
+/// The number at `bytes`, which must hold size_of(type) bytes.
+[[nodiscard]] double load_scalar(ScalarType type, const char* bytes, std::endian order);
+/// Appends the number that `word` spells as little-endian bytes of that type; false when it is none or out of
+/// range.
+bool append_scalar(std::string& bytes, ScalarType type, std::string_view word);
+/// Appends the bytes of a number, least significant first.
+template <class T>
+void append_little_endian(std::string& bytes, T value);
+
+/// Point i's value of the field lies at offset + i * stride.
+struct PackedField {
+  ScalarType type = ScalarType::float32;
+  std::size_t offset = 0;
+  std::size_t stride = 0;
+};
+
+struct PackedCloud {
+  std::string_view bytes;
+  std::size_t num_points = 0;
+  std::endian order = std::endian::little;
+  std::optional<Stamp> stamp;  ///< Of the scan, where known: the origin of absolute point times.
+  std::optional<PackedField> x;
+  std::optional<PackedField> y;
+  std::optional<PackedField> z;
+  std::optional<PackedField> intensity;
+  std::optional<PackedField> time;
+};
+
+/// Takes the field when its name is one that clouds use (see pcd.hpp) and its place is still free.
+void assign_field(PackedCloud& cloud, std::string_view name, PackedField field);
+
+/// Fails when x, y or z is absent, a field reaches past the bytes, no point is finite, or times span more
+/// than 2.1 s.
+Result<CloudFile> unpack(const PackedCloud& packed);
+
+/// x y z float32, [intensity float32], [t int32 ns], point after point, little-endian: what adit writes
+/// everywhere.
+[[nodiscard]] std::string packed_rows(const PointCloud& cloud);
+
+template <class T>
+void append_little_endian(std::string& bytes, T value) {
+  static_assert(std::endian::native == std::endian::little, "adit runs on little-endian machines");
+  const auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
+  bytes.append(raw.data(), raw.size());
+}
+
+}  // namespace adit

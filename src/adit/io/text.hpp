@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Lines, words and numbers of text formats.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace adit {
+
+/// Steps through the lines of a text, numbered from 1; "\n" and "\r\n" both end one.
+class LineReader {
+ public:
+  explicit LineReader(std::string_view text) : text_(text) {}
+  /// False at the end of the text.
+  bool next();
+  [[nodiscard]] std::string_view line() const { return line_; }
+  [[nodiscard]] std::size_t number() const { return number_; }
+  /// Where the next line starts.
+  [[nodiscard]] std::size_t offset() const { return offset_; }
+
+ private:
+  std::string_view text_;
+  std::string_view line_;
+  std::size_t offset_ = 0;
+  std::size_t number_ = 0;
+};
+
+/// The parts between blanks.
+[[nodiscard]] std::vector<std::string_view> split_words(std::string_view line);
+
+/// The whole word as a number, with an optional leading +; "nan" and "inf" count.
+[[nodiscard]] std::optional<double> parse_double(std::string_view word);
+/// The whole word as a non-negative whole number.
+[[nodiscard]] std::optional<std::size_t> parse_size(std::string_view word);
+
+/// ASCII letters in lower case.
+[[nodiscard]] std::string lower_case(std::string_view text);
+
+}  // namespace adit
