@@ -33,7 +33,7 @@ struct BackEndConfig {
   bool pcm_on = true;
   bool gnc_on = true;
   int min_loops = 1;               ///< Loops in use between two robots before they count as merged.
-  double loop_translation_m = 0.1; ///< Fixed sigmas of a loop, as in Swarm-SLAM's back-end.
+  double loop_translation = 0.1; ///< Fixed sigmas of a loop, as in Swarm-SLAM's back-end.
   double loop_rotation_deg = 0.6;
   PcmConfig pcm;
   GncConfig gnc;

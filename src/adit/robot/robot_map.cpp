@@ -54,7 +54,7 @@ Matrix6 odometry_covariance(const OdometryNoise& noise, double distance_m) {
   const double distance = std::max(distance_m, 0.01);
   const double rotation = noise.rotation_deg * std::numbers::pi / 180.0;
   Vector6 variance;
-  variance << Vector3::Constant(noise.translation_m * noise.translation_m * distance),
+  variance << Vector3::Constant(noise.translation * noise.translation * distance),
       Vector3::Constant(rotation * rotation * distance);
   return variance.asDiagonal();
 }

@@ -15,11 +15,11 @@ namespace adit {
 /// How far the odometry between two keyframes may be off: a random walk, so that variances grow with the distance
 /// driven and add up along the chain whatever the spacing of the keyframes.
 struct OdometryNoise {
-  double translation_m = 0.05;   ///< Sigma of each axis after one metre.
+  double translation = 0.05;   ///< Sigma of each axis after one metre.
   double rotation_deg = 0.15;    ///< Sigma about each axis after one metre.
 };
 inline Fields fields_of(OdometryNoise& c) {
-  return {{"translation_m", &c.translation_m, "m/sqrt(m)", 1e-4, 1.0, "odometry noise, translation after one metre"},
+  return {{"translation", &c.translation, "m/sqrt(m)", 1e-4, 1.0, "odometry noise, translation after one metre"},
           {"rotation_deg", &c.rotation_deg, "deg/sqrt(m)", 1e-4, 10.0, "odometry noise, rotation after one metre"}};
 }
 

@@ -19,7 +19,7 @@ RobotSlamConfig checked(RobotSlamConfig config) {
 }  // namespace
 
 Fields fields_of(RobotSlamConfig& c) {
-  Fields fields = {{"cloud_voxel_m", &c.cloud_voxel_m, "m", 0.01, 2.0, "keyframe clouds keep one point a voxel"}};
+  Fields fields = {{"cloud_voxel", &c.cloud_voxel, "m", 0.01, 2.0, "keyframe clouds keep one point a voxel"}};
   append(fields, "odometry", fields_of(c.odometry));
   append(fields, "keyframes", fields_of(c.keyframes));
   append(fields, "tunnel_filter", fields_of(c.tunnel_filter));
@@ -50,12 +50,13 @@ void RobotSlam::add_keyframe(const OdometryStep& step) {
   keyframe.id = {map_.id, static_cast<std::uint32_t>(map_.keyframes.size())};
   keyframe.stamp = step.stamp;
   keyframe.T_odom_base = step.T_odom_base;
-  PointCloud thinned = voxel_downsample(full, config_.cloud_voxel_m);
+  PointCloud thinned = voxel_downsample(full, config_.cloud_voxel);
   thinned.time_offsets_ns.clear();  // deskewed: the times have done their work
   keyframe.cloud = std::make_shared<const PointCloud>(std::move(thinned));
   map_.places.push_back(describe(full, config_.scan_context));
   // A cloud too thin for a box says nothing about the place, so it takes no part in loop search either.
-  map_.tunnel.push_back(tunnel_filter(*keyframe.cloud, config_.tunnel_filter).value_or(TunnelVerdict{{}, true}));
+  map_.tunnel.push_back(
+      tunnel_filter(*keyframe.cloud, config_.tunnel_filter).value_or(TunnelVerdict{Vector3::Zero(), true}));
   map_.searchable.push_back(true);
   Matrix6 covariance = Matrix6::Zero();
   if (!map_.keyframes.empty()) {

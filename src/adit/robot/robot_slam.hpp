@@ -17,13 +17,13 @@ struct RobotSlamConfig {
   TunnelFilterConfig tunnel_filter;
   ScanContextConfig scan_context;
   OdometryNoise noise;
-  double cloud_voxel_m = 0.15;  ///< Keyframe clouds are thinned to one point a voxel.
+  double cloud_voxel = 0.15;  ///< Keyframe clouds are thinned to one point a voxel.
 };
 Fields fields_of(RobotSlamConfig& config);
 
 struct RobotStep {
   OdometryStep odometry;
-  std::optional<KeyframeId> keyframe;  ///< Set when this scan became one.
+  std::optional<KeyframeId> keyframe = {};  ///< Set when this scan became one.
 };
 
 /// SLAM of one robot on its own: scan -> odometry -> keyframe with its descriptor. Loops with other robots are found

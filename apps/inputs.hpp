@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// From what the user names on the command line to recordings.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "adit/core/records.hpp"
+#include "adit/simulation/scenario.hpp"
+#include "adit/simulation/world.hpp"
+
+namespace adit::app {
+
+/// The world that routes are driven in. `world_file` overrides the one that the routes name.
+Result<World> load_world(const std::filesystem::path& world_file, const std::filesystem::path& routes_file);
+
+/// Recordings, folders of scans, or one routes.yaml that is simulated on the fly; robots in the order given.
+/// Fails on no input, on a routes.yaml among others, and on two robots of one name.
+Result<std::vector<Recording>> open_inputs(const std::vector<std::string>& inputs, const ScenarioConfig& simulation);
+
+/// The simulated LiDAR of that name (`--lidar`) put into `config`; its mount stays as it was.
+Result<> choose_lidar(const std::string& name, ScenarioConfig& config);
+
+}  // namespace adit::app

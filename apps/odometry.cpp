@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "adit/core/format.hpp"
+#include "adit/evaluation/ate.hpp"
+#include "adit/evaluation/statistics.hpp"
+#include "adit/io/recording_files.hpp"
+#include "adit/io/tum.hpp"
+#include "adit/odometry/odometry.hpp"
+#include "adit/robot/robot_slam.hpp"
+#include "command_line.hpp"
+#include "progress.hpp"
+
+namespace adit::app {
+namespace {
+
+struct Options {
+  std::string input;
+  std::string method = "kinematic-icp";
+  std::string out;
+  std::string truth;
+};
+
+struct Run {
+  Trajectory trajectory;
+  std::vector<double> scan_ms;
+  std::map<StepStatus, int> statuses;
+};
+
+Result<Run> run(const Recording& recording, const OdometryConfig& config) {
+  if (config.method == "kinematic-icp" && recording.wheel.empty()) {
+    return fail(recording.name + ": kinematic-icp needs wheel odometry and the recording has none; use --method kiss-icp");
+  }
+  Odometry odometry(config, recording.T_base_lidar);
+  Progress progress("scans", recording.num_scans());
+  Run out;
+  for (std::size_t i = 0; i < recording.num_scans(); ++i) {
+    if (interrupted()) return fail("interrupted");
+    const Result<Scan> scan = recording.read_scan(i);
+    if (!scan) return tl::unexpected(scan.error());
+    const Result<std::optional<WheelDelta>> wheel = wheel_before(recording, i);
+    if (!wheel) return tl::unexpected(wheel.error());
+    const auto start = std::chrono::steady_clock::now();
+    const OdometryStep step = odometry.register_scan(*scan, *wheel);
+    out.scan_ms.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    out.trajectory.push_back({step.stamp, step.T_odom_base});
+    ++out.statuses[step.status];
+    progress.advance();
+  }
+  return out;
+}
+
+std::string status_line(const std::map<StepStatus, int>& statuses) {
+  std::string line;
+  for (const auto& [status, count] : statuses) line += format("{}{} {}", line.empty() ? "" : ", ", count, to_string(status));
+  return line;
+}
+
+Result<> odometry(const Options& options, const Common& common) {
+  OdometryConfig config;
+  Fields fields;
+  append(fields, "odometry", fields_of(config));
+  if (const Result<> configured = configure(fields, common); !configured) return configured;
+  config.method = options.method;
+  const Result<Recording> recording = open_recording(options.input);
+  if (!recording) return tl::unexpected(recording.error());
+  Result<Trajectory> truth = recording->truth;
+  if (!options.truth.empty()) truth = read_tum(options.truth);
+  if (!truth) return tl::unexpected(truth.error());
+  catch_interrupts();
+  const Result<Run> done = run(*recording, config);
+  if (!done) return tl::unexpected(done.error());
+  if (const Result<> written = write_tum(options.out, done->trajectory); !written) return written;
+
+  nlohmann::ordered_json report = {{"scans", done->trajectory.size()}, {"ms_per_scan_median", median(done->scan_ms)}};
+  std::string line = format("{}: {} scans ({}), {:.1f} m, {:.1f} ms a scan (median)", recording->name,
+                            done->trajectory.size(), status_line(done->statuses), path_length(done->trajectory),
+                            median(done->scan_ms));
+  if (!truth->empty()) {
+    const Result<AteResult> error = ate(done->trajectory, *truth);
+    if (!error) return fail(options.truth.empty() ? "ground truth" : options.truth, error.error());
+    report["ate_max_m"] = error->max_m;
+    report["ate_rmse_m"] = error->rmse_m;
+    line += format(", ATE max {:.3f} m, rmse {:.3f} m", error->max_m, error->rmse_m);
+  }
+  std::printf("%s\n", common.json ? report.dump().c_str() : line.c_str());
+  return {};
+}
+
+}  // namespace
+
+void add_odometry(Program& program) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_command("odometry", "Odometry of one robot",
+                                          [options](const Common& common) { return odometry(*options, common); });
+  command->add_option("input", options->input, "Recording (.mcap) or folder of scans")->required();
+  command->add_option("--method", options->method, "kiss-icp: LiDAR alone; kinematic-icp: with wheels")
+      ->check(CLI::IsMember({"kiss-icp", "kinematic-icp"}))
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Trajectory to write (TUM)")->required();
+  command->add_option("--truth", options->truth, "True trajectory (TUM), for the error; default: the recording's own");
+}
+
+}  // namespace adit::app

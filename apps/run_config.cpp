@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "run_config.hpp"
+
+namespace adit::app {
+
+RunConfig::RunConfig() {
+  loops.registration.refine = false;
+  loops.registration.min_overlap = 0.0;
+}
+
+Fields fields_of(RunConfig& c) {
+  Fields fields;
+  append(fields, "simulation", fields_of(c.simulation));
+  append(fields, "robot", fields_of(c.robot));
+  append(fields, "loops", fields_of(c.loops));
+  append(fields, "back_end", fields_of(c.back_end));
+  append(fields, "bus", fields_of(c.bus));
+  return fields;
+}
+
+}  // namespace adit::app

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The whole configuration of a run, in one tree of keys.
+#pragma once
+
+#include "adit/fleet/agent.hpp"
+#include "adit/robot/robot_slam.hpp"
+#include "adit/simulation/scenario.hpp"
+#include "adit/transport/loopback_bus.hpp"
+#include "command_line.hpp"
+
+namespace adit::app {
+
+struct RunConfig {
+  ScenarioConfig simulation;
+  RobotSlamConfig robot;
+  AgentConfig loops;
+  BackEndConfig back_end;
+  LoopbackConfig bus;
+
+  /// The paper's pipeline: Kinematic-ICP, KISS-Matcher's global result accepted by its inliers, PCM, GNC.
+  RunConfig();
+};
+Fields fields_of(RunConfig& config);
+
+}  // namespace adit::app

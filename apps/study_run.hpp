@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The paper's experiment, stage by stage; apps/study.cpp puts them together and writes the results.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adit/evaluation/study_result.hpp"
+#include "run_config.hpp"
+
+namespace adit::app {
+
+/// One robot after its drive: its map (by the configured odometry) and what the evaluation needs.
+struct RobotRun {
+  std::shared_ptr<const RobotMap> map;
+  Trajectory truth;  ///< For evaluation alone.
+  RobotResult result;
+};
+
+/// Drives every recording once through RobotSlam and, beside it, through KISS-ICP for the comparison of section 3.1;
+/// robots in parallel.
+Result<std::vector<RobotRun>> run_robots(const std::vector<Recording>& recordings, const RobotSlamConfig& config);
+
+/// The agents of some robots after all of them have met, under one keyframe policy.
+struct Meeting {
+  std::vector<std::shared_ptr<const RobotMap>> maps;
+  std::vector<Agent> agents;
+  std::vector<std::uint64_t> bytes_sent;  ///< One an agent.
+};
+Result<Meeting> hold_meeting(const std::vector<const RobotRun*>& runs, KeyframeSelection selection,
+                             const RunConfig& config);
+
+/// What the ground truth says about one solution of a meeting.
+struct JudgedSolution {
+  FleetSolution solution;
+  std::vector<LoopClass> loop_classes;  ///< One an entry of solution.loops.
+};
+Result<JudgedSolution> judge(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
+                             const FleetSolution& solution);
+
+PairResult pair_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting, const JudgedSolution& judged);
+JointResult joint_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
+                         const JudgedSolution& judged);
+
+/// The optimized trajectory of a robot: its keyframes' stamps and poses in the common frame.
+Trajectory solved_trajectory(const RobotMap& map, const std::vector<Pose>& T_world_keyframe);
+
+}  // namespace adit::app

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// A session on disk: what `adit slam` made of some robots, in the layout of a session directory
+/// (docs/architecture.md): session.toml, ROBOT/{trajectory.tum,odometry.tum,map.ply}, map.ply, graph_*.g2o,
+/// loops.csv.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adit/evaluation/loop_stats.hpp"
+#include "adit/fleet/fleet_graph.hpp"
+#include "adit/robot/robot_map.hpp"
+
+namespace adit {
+
+/// Where a session came from.
+struct Provenance {
+  std::string command;
+  std::vector<std::string> inputs;
+  std::uint64_t seed = 0;
+  std::string configuration;  ///< TOML of every field.
+};
+
+/// What is to be written. Maps and solution are of the same robots.
+struct Session {
+  Provenance provenance;
+  std::vector<std::shared_ptr<const RobotMap>> maps;
+  FleetGraph fleet;  ///< With every registered candidate, accepted or not.
+  FleetSolution solution;
+  std::vector<LoopClass> loop_classes;  ///< One an entry of solution.loops, or empty without ground truth.
+};
+
+enum class MapFiles { write, leave_out };
+
+/// Writes all files into `dir`, which exists (an OutputDir's path). With MapFiles::leave_out no clouds.
+Result<> write_session(const std::filesystem::path& dir, const Session& session, MapFiles map_files);
+
+/// All keyframe clouds of a robot in the common frame, thinned to one point a voxel.
+[[nodiscard]] PointCloud merged_cloud(const RobotMap& map, const std::vector<Pose>& T_world_keyframe,
+                                      double voxel);
+
+/// One line of loops.csv that was used in the solution or not, as far as evaluation needs it.
+struct SavedLoop {
+  std::string from_robot, to_robot;
+  Stamp from_stamp, to_stamp;
+  LoopClosure loop;  ///< Ends, transform, inliers, overlap and verdict.
+  bool in_clique = false;
+  double weight = 0.0;
+};
+
+/// What `adit evaluate` and `adit info` read back.
+struct SavedSession {
+  std::string version;
+  std::uint64_t seed = 0;
+  std::vector<std::string> robots;                   ///< In id order.
+  std::vector<std::vector<std::string>> components;  ///< Names that share one frame.
+  std::vector<Trajectory> optimized;                 ///< One a robot.
+  std::vector<Trajectory> odometry;
+  std::vector<SavedLoop> loops;
+};
+Result<SavedSession> read_session(const std::filesystem::path& dir);
+
+}  // namespace adit

@@ -1,0 +1,301 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/transport/wire.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "adit/core/format.hpp"
+
+namespace adit {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the wire is little-endian, as all machines that adit runs on");
+
+constexpr float kPointStep = 0.005F;  // metres
+constexpr float kPointReach = kPointStep * 32767.0F;
+
+class Writer {
+ public:
+  template <class T>
+  void scalar(T value) {
+    const auto* begin = reinterpret_cast<const std::byte*>(&value);
+    bytes_.insert(bytes_.end(), begin, begin + sizeof(T));
+  }
+  template <class T>
+  void vector(const std::vector<T>& items) {
+    scalar(static_cast<std::uint32_t>(items.size()));
+    for (const T& item : items) put(*this, item);
+  }
+  std::vector<std::byte> take() { return std::move(bytes_); }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+/// Reads until the bytes end; from then on every value is zero and `ok` is false.
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  template <class T>
+  T scalar() {
+    T value{};
+    if (bytes_.size() - at_ < sizeof(T)) {
+      ok_ = false;
+      at_ = bytes_.size();
+      return value;
+    }
+    std::memcpy(&value, bytes_.data() + at_, sizeof(T));
+    at_ += sizeof(T);
+    return value;
+  }
+  template <class T>
+  void vector(std::vector<T>& items) {
+    const auto size = scalar<std::uint32_t>();
+    // Every item takes at least a byte: a damaged count must not make us allocate gigabytes.
+    if (size > bytes_.size() - at_) return refuse();
+    for (std::uint32_t i = 0; i < size && ok_; ++i) get(*this, items.emplace_back());
+  }
+  void refuse() { ok_ = false; }
+  [[nodiscard]] bool ok() const { return ok_; }
+  [[nodiscard]] std::size_t at() const { return at_; }
+  [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
+
+ private:
+  std::span<const std::byte> bytes_;
+  std::size_t at_ = 0;
+  bool ok_ = true;
+};
+
+// One `put` and one `get` a type, side by side.
+
+void put(Writer& out, std::uint8_t value) { out.scalar(value); }
+void get(Reader& in, std::uint8_t& value) { value = in.scalar<std::uint8_t>(); }
+
+void put(Writer& out, std::uint32_t value) { out.scalar(value); }
+void get(Reader& in, std::uint32_t& value) { value = in.scalar<std::uint32_t>(); }
+
+void put(Writer& out, const std::string& text) {
+  out.scalar(static_cast<std::uint32_t>(text.size()));
+  for (const char c : text) out.scalar(c);
+}
+void get(Reader& in, std::string& text) {
+  const auto size = in.scalar<std::uint32_t>();
+  for (std::uint32_t i = 0; i < size && in.ok(); ++i) text.push_back(in.scalar<char>());
+}
+
+void put(Writer& out, const Pose& pose) {
+  for (int i = 0; i < 3; ++i) out.scalar(pose.translation()[i]);
+  for (int i = 0; i < 4; ++i) out.scalar(pose.rotation().coeffs()[i]);
+}
+void get(Reader& in, Pose& pose) {
+  Vector3 t;
+  Eigen::Quaterniond q;
+  for (int i = 0; i < 3; ++i) t[i] = in.scalar<double>();
+  for (int i = 0; i < 4; ++i) q.coeffs()[i] = in.scalar<double>();
+  const bool valid = in.ok() && t.allFinite() && q.coeffs().allFinite() && std::abs(q.norm() - 1.0) < 1e-6;
+  if (!valid) return in.refuse();
+  pose = Pose(q, t);
+}
+
+void put(Writer& out, const Matrix6& symmetric) {
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) out.scalar(symmetric(row, column));
+  }
+}
+void get(Reader& in, Matrix6& symmetric) {
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) {
+      symmetric(row, column) = symmetric(column, row) = in.scalar<double>();
+    }
+  }
+  if (!symmetric.allFinite()) in.refuse();
+}
+
+void put(Writer& out, KeyframeId id) {
+  out.scalar(id.robot.value);
+  out.scalar(id.index);
+}
+void get(Reader& in, KeyframeId& id) {
+  id.robot.value = in.scalar<std::uint8_t>();
+  id.index = in.scalar<std::uint32_t>();
+}
+
+void put(Writer& out, const Eigen::Vector3f& point) {
+  for (int i = 0; i < 3; ++i) out.scalar(static_cast<std::int16_t>(std::lround(point[i] / kPointStep)));
+}
+void get(Reader& in, Eigen::Vector3f& point) {
+  for (int i = 0; i < 3; ++i) point[i] = static_cast<float>(in.scalar<std::int16_t>()) * kPointStep;
+}
+
+void put(Writer& out, const ScanContext& context) { out.vector(encode(context)); }
+void get(Reader& in, ScanContext& context) {
+  std::vector<std::uint8_t> bytes;
+  in.vector(bytes);
+  Result<ScanContext> decoded = decode(std::span<const std::uint8_t>(bytes));
+  if (!in.ok() || !decoded) return in.refuse();
+  context = std::move(*decoded);
+}
+
+void put(Writer& out, const Hello::Known& known) {
+  out.scalar(known.robot.value);
+  out.scalar(known.num_nodes);
+  out.scalar(known.num_places);
+}
+void get(Reader& in, Hello::Known& known) {
+  known.robot.value = in.scalar<std::uint8_t>();
+  known.num_nodes = in.scalar<std::uint32_t>();
+  known.num_places = in.scalar<std::uint32_t>();
+}
+
+void put(Writer& out, const GraphNode& node) {
+  out.scalar(node.stamp.ns);
+  put(out, node.T_odom_base);
+  put(out, node.step_covariance);
+}
+void get(Reader& in, GraphNode& node) {
+  node.stamp.ns = in.scalar<std::int64_t>();
+  get(in, node.T_odom_base);
+  get(in, node.step_covariance);
+}
+
+void put(Writer& out, const Places::Place& place) {
+  out.scalar(place.index);
+  put(out, place.context);
+}
+void get(Reader& in, Places::Place& place) {
+  place.index = in.scalar<std::uint32_t>();
+  get(in, place.context);
+}
+
+void put(Writer& out, const Clouds::Cloud& cloud) {
+  out.scalar(cloud.index);
+  std::vector<Eigen::Vector3f> near;
+  for (const Eigen::Vector3f& point : cloud.points) {
+    if (point.cwiseAbs().maxCoeff() <= kPointReach) near.push_back(point);
+  }
+  out.vector(near);
+}
+void get(Reader& in, Clouds::Cloud& cloud) {
+  cloud.index = in.scalar<std::uint32_t>();
+  in.vector(cloud.points);
+}
+
+void put(Writer& out, const LoopClosure& loop) {
+  put(out, loop.from);
+  put(out, loop.to);
+  put(out, loop.T_from_to);
+  put(out, loop.information);
+  out.scalar(loop.place_distance);
+  out.scalar(loop.num_inliers);
+  out.scalar(loop.overlap);
+  out.scalar(loop.weak_axis);
+  out.scalar(static_cast<std::uint8_t>(loop.verdict));
+  put(out, loop.reason);
+}
+void get(Reader& in, LoopClosure& loop) {
+  get(in, loop.from);
+  get(in, loop.to);
+  get(in, loop.T_from_to);
+  get(in, loop.information);
+  loop.place_distance = in.scalar<double>();
+  loop.num_inliers = in.scalar<int>();
+  loop.overlap = in.scalar<double>();
+  loop.weak_axis = in.scalar<double>();
+  loop.verdict = in.scalar<std::uint8_t>() == 0 ? LoopVerdict::accepted : LoopVerdict::rejected;
+  get(in, loop.reason);
+}
+
+void put(Writer& out, const Hello& hello) {
+  out.vector(hello.known);
+  out.scalar(hello.num_loops);
+  out.scalar(static_cast<std::uint8_t>(hello.answer ? 1 : 0));
+}
+void get(Reader& in, Hello& hello) {
+  in.vector(hello.known);
+  hello.num_loops = in.scalar<std::uint32_t>();
+  hello.answer = in.scalar<std::uint8_t>() != 0;
+}
+
+void put(Writer& out, const GraphPart& part) {
+  out.scalar(part.owner.value);
+  put(out, part.name);
+  out.scalar(part.first_index);
+  out.vector(part.nodes);
+}
+void get(Reader& in, GraphPart& part) {
+  part.owner.value = in.scalar<std::uint8_t>();
+  get(in, part.name);
+  part.first_index = in.scalar<std::uint32_t>();
+  in.vector(part.nodes);
+}
+
+void put(Writer& out, const Places& places) {
+  out.scalar(places.first);
+  out.vector(places.places);
+  out.scalar(static_cast<std::uint8_t>(places.last ? 1 : 0));
+}
+void get(Reader& in, Places& places) {
+  places.first = in.scalar<std::uint32_t>();
+  in.vector(places.places);
+  places.last = in.scalar<std::uint8_t>() != 0;
+}
+
+void put(Writer& out, const CloudRequest& request) { out.vector(request.indices); }
+void get(Reader& in, CloudRequest& request) { in.vector(request.indices); }
+
+void put(Writer& out, const Clouds& clouds) { out.vector(clouds.clouds); }
+void get(Reader& in, Clouds& clouds) { in.vector(clouds.clouds); }
+
+void put(Writer& out, const Loops& loops) { out.vector(loops.loops); }
+void get(Reader& in, Loops& loops) { in.vector(loops.loops); }
+
+using Body = decltype(Message::body);
+
+/// The body that `kind` (its index in the variant) names.
+template <std::size_t Index = 0>
+std::optional<Body> body_of(Reader& in, std::size_t kind) {
+  if constexpr (Index == std::variant_size_v<Body>) {
+    return std::nullopt;
+  } else {
+    if (kind != Index) return body_of<Index + 1>(in, kind);
+    std::variant_alternative_t<Index, Body> body;
+    get(in, body);
+    return body;
+  }
+}
+
+}  // namespace
+
+std::vector<std::byte> encode(const Message& message) {
+  Writer out;
+  out.scalar(kProtocolVersion);
+  out.scalar(message.from.value);
+  out.scalar(message.to.value);
+  out.scalar(static_cast<std::uint8_t>(message.body.index()));
+  std::visit([&](const auto& body) { put(out, body); }, message.body);
+  return out.take();
+}
+
+Result<Message> decode(std::span<const std::byte> bytes) {
+  Reader in(bytes);
+  const auto version = in.scalar<std::uint8_t>();
+  if (version != kProtocolVersion) {
+    return fail(format("message of protocol version {}, this adit speaks {}", version, kProtocolVersion));
+  }
+  Message message;
+  message.from.value = in.scalar<std::uint8_t>();
+  message.to.value = in.scalar<std::uint8_t>();
+  const std::size_t kind = in.scalar<std::uint8_t>();
+  std::optional<Body> body = body_of(in, kind);
+  if (!body) return fail(format("message of unknown kind {}", kind));
+  if (!in.ok()) return fail(format("message of kind {} is cut or damaged near byte {} of {}", kind, in.at(), bytes.size()));
+  if (!in.at_end()) return fail(format("message of kind {} has {} bytes too many", kind, bytes.size() - in.at()));
+  message.body = std::move(*body);
+  return message;
+}
+
+}  // namespace adit
