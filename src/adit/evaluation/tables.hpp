@@ -3,6 +3,7 @@
 /// The paper's tables as data; report/text_tables turns them into text, Markdown or HTML.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -10,11 +11,18 @@
 
 namespace adit {
 
+/// A title over several neighbouring columns.
+struct ColumnGroup {
+  std::string title;
+  std::size_t columns = 1;
+};
+
 /// Cells are UTF-8 text. Every row is as long as the header. The first column is left-aligned, all others are
 /// centred or right-aligned as the writer likes.
 struct Table {
   std::string title;
   std::string caption;
+  std::vector<ColumnGroup> groups;  ///< Over the header; empty, or as many columns in all as the header has.
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
 };

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/evaluation/rpe.hpp"
+
+#include "adit/core/check.hpp"
+#include "adit/core/format.hpp"
+#include "adit/evaluation/associate.hpp"
+#include "adit/evaluation/statistics.hpp"
+
+namespace adit {
+namespace {
+
+/// Metres driven until each pose, along the polyline.
+std::vector<double> distances_driven(const std::vector<Pose>& poses) {
+  std::vector<double> driven(poses.size(), 0.0);
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    driven[i] = driven[i - 1] + (poses[i].translation() - poses[i - 1].translation()).norm();
+  }
+  return driven;
+}
+
+}  // namespace
+
+Result<RpeResult> rpe(const Trajectory& estimate, const Trajectory& truth, double segment_m) {
+  ADIT_CHECK(segment_m > 0.0, "a segment has a length");
+  const Result<AssociatedPoses> pairs = associate(estimate, truth);
+  if (!pairs) return tl::unexpected(pairs.error());
+  const std::vector<double> driven = distances_driven(pairs->truth);
+  RpeResult result;
+  result.segment_m = segment_m;
+  for (std::size_t i = 0, j = 0; i < pairs->size(); ++i) {
+    while (j < pairs->size() && driven[j] < driven[i] + segment_m) ++j;
+    if (j == pairs->size()) break;
+    const Pose true_step = pairs->truth[i].inverse() * pairs->truth[j];
+    const Pose error = true_step.inverse() * (pairs->estimate[i].inverse() * pairs->estimate[j]);
+    result.translation_errors_m.push_back(error.translation().norm());
+    result.rotation_errors_rad.push_back(error.angle());
+  }
+  if (result.translation_errors_m.empty()) {
+    return fail(format("the true path is {:.1f} m long, shorter than one segment of {:.1f} m", driven.back(),
+                       segment_m));
+  }
+  result.translation_rmse_m = root_mean_square(result.translation_errors_m);
+  result.translation_median_m = median(result.translation_errors_m);
+  result.rotation_rmse_rad = root_mean_square(result.rotation_errors_rad);
+  result.rotation_median_rad = median(result.rotation_errors_rad);
+  return result;
+}
+
+}  // namespace adit
