@@ -10,22 +10,26 @@
 
 namespace adit {
 
-/// Dimension of the smallest flat that holds a cloud, to the rounding of its coordinates.
+/// What the points of a cloud span, exactly: a tilted plane whose coordinates were rounded is a thin solid.
 enum class HullShape { empty, point, segment, planar, solid };
 
-/// The convex hull of a cloud. `vertices` are indices into the points, ascending; `triangles` (of a solid
-/// hull alone) are triples of indices, counter-clockwise seen from outside.
+/// The convex hull of a cloud.
 struct ConvexHull {
   HullShape shape = HullShape::empty;
+  /// The extreme points, as indices into the cloud, ascending; points inside a face or an edge are none, so
+  /// that a wall counts the same however densely it was sampled.
   std::vector<std::uint32_t> vertices;
+  /// The surface of a solid hull (no others have one): indices, counter-clockwise seen from outside. Where
+  /// faces are flat its corners may include points that are no `vertices`.
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Quickhull in 3-D (Barber, Dobkin, Huhdanpaa 1996). Points within `tolerance` metres of a face count as
-/// inside; 0 means the rounding of the coordinates (about 1e-7 of the largest). Of duplicates the first is
-/// taken. Points that are not finite are left out. A planar or collinear cloud gives its hull in that plane
-/// or line. Equal input gives equal bytes; the expected time is O(n log h) for h vertices.
-[[nodiscard]] ConvexHull convex_hull(std::span<const Eigen::Vector3f> points, double tolerance = 0.0);
+/// Quickhull in 3-D with exact predicates: coordinates are rounded to a grid of 2^-24 of the largest (the
+/// resolution of a float of that size), and from there on no decision depends on rounding, so that
+/// duplicates, grids of coplanar points, planes and lines need no tolerance. Points that are not finite are
+/// left out; of duplicates one is taken. Equal input gives equal bytes. Expected time O(n log h) for h
+/// vertices. Source: Barber, Dobkin, Huhdanpaa, "The Quickhull algorithm for convex hulls", 1996.
+[[nodiscard]] ConvexHull convex_hull(std::span<const Eigen::Vector3f> points);
 
 /// Volume enclosed by a solid hull, cubic metres; 0 for every other shape.
 [[nodiscard]] double volume(const ConvexHull& hull, std::span<const Eigen::Vector3f> points);
