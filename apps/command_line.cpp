@@ -14,9 +14,12 @@ Program::Program() : cli_("Multi-robot LiDAR SLAM for tunnels, mines and caves",
   cli_.require_subcommand(1);
   cli_.set_version_flag("--version", std::string(version()));
   cli_.add_flag("--json", common_.json, "Print the result as JSON on stdout, alone");
-  cli_.add_option("--threads", common_.threads, "Threads to use (default: all cores)")->check(CLI::PositiveNumber);
-  cli_.add_option("--config", common_.config_file, "TOML file with configuration fields")->check(CLI::ExistingFile);
-  cli_.add_option("--set", common_.sets, "Set one configuration field: key=value (repeatable)")->allow_extra_args(false);
+  cli_.add_option("--threads", common_.threads, "Threads to use (default: all cores)")
+      ->check(CLI::PositiveNumber);
+  cli_.add_option("--config", common_.config_file, "TOML file with configuration fields")
+      ->check(CLI::ExistingFile);
+  cli_.add_option("--set", common_.sets, "Set one configuration field: key=value (repeatable)")
+      ->allow_extra_args(false);
   cli_.fallthrough();
 }
 

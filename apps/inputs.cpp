@@ -37,9 +37,12 @@ Result<World> load_world(const std::filesystem::path& world_file, const std::fil
   return world;
 }
 
-Result<std::vector<Recording>> open_inputs(const std::vector<std::string>& inputs, const ScenarioConfig& simulation) {
+Result<std::vector<Recording>> open_inputs(const std::vector<std::string>& inputs,
+                                           const ScenarioConfig& simulation) {
   if (inputs.size() == 1 && is_routes_file(inputs.front())) {
-    return load_world({}, inputs.front()).and_then([&](const World& world) { return simulate(world, simulation); });
+    return load_world({}, inputs.front()).and_then([&](const World& world) {
+      return simulate(world, simulation);
+    });
   }
   std::vector<Recording> recordings;
   std::set<std::string> names;
@@ -48,7 +51,8 @@ Result<std::vector<Recording>> open_inputs(const std::vector<std::string>& input
     Result<Recording> recording = open_recording(input);
     if (!recording) return tl::unexpected(recording.error());
     if (!names.insert(recording->name).second) {
-      return fail(format("{}: a robot named '{}' was given before; rename the file or folder", input, recording->name));
+      return fail(format("{}: a robot named '{}' was given before; rename the file or folder", input,
+                         recording->name));
     }
     recordings.push_back(std::move(*recording));
   }

@@ -18,7 +18,8 @@ Result<World> load_world(const std::filesystem::path& world_file, const std::fil
 
 /// Recordings, folders of scans, or one routes.yaml that is simulated on the fly; robots in the order given.
 /// Fails on no input, on a routes.yaml among others, and on two robots of one name.
-Result<std::vector<Recording>> open_inputs(const std::vector<std::string>& inputs, const ScenarioConfig& simulation);
+Result<std::vector<Recording>> open_inputs(const std::vector<std::string>& inputs,
+                                           const ScenarioConfig& simulation);
 
 /// The simulated LiDAR of that name (`--lidar`) put into `config`; its mount stays as it was.
 Result<> choose_lidar(const std::string& name, ScenarioConfig& config);

@@ -33,7 +33,8 @@ struct Run {
 
 Result<Run> run(const Recording& recording, const OdometryConfig& config) {
   if (config.method == "kinematic-icp" && recording.wheel.empty()) {
-    return fail(recording.name + ": kinematic-icp needs wheel odometry and the recording has none; use --method kiss-icp");
+    return fail(recording.name +
+                ": kinematic-icp needs wheel odometry and the recording has none; use --method kiss-icp");
   }
   Odometry odometry(config, recording.T_base_lidar);
   Progress progress("scans", recording.num_scans());
@@ -57,7 +58,8 @@ Result<Run> run(const Recording& recording, const OdometryConfig& config) {
 
 std::string status_line(const std::map<StepStatus, int>& statuses) {
   std::string line;
-  for (const auto& [status, count] : statuses) line += format("{}{} {}", line.empty() ? "" : ", ", count, to_string(status));
+  for (const auto& [status, count] : statuses)
+    line += format("{}{} {}", line.empty() ? "" : ", ", count, to_string(status));
   return line;
 }
 
@@ -77,10 +79,11 @@ Result<> odometry(const Options& options, const Common& common) {
   if (!done) return tl::unexpected(done.error());
   if (const Result<> written = write_tum(options.out, done->trajectory); !written) return written;
 
-  nlohmann::ordered_json report = {{"scans", done->trajectory.size()}, {"ms_per_scan_median", median(done->scan_ms)}};
+  nlohmann::ordered_json report = {{"scans", done->trajectory.size()},
+                                   {"ms_per_scan_median", median(done->scan_ms)}};
   std::string line = format("{}: {} scans ({}), {:.1f} m, {:.1f} ms a scan (median)", recording->name,
-                            done->trajectory.size(), status_line(done->statuses), path_length(done->trajectory),
-                            median(done->scan_ms));
+                            done->trajectory.size(), status_line(done->statuses),
+                            path_length(done->trajectory), median(done->scan_ms));
   if (!truth->empty()) {
     const Result<AteResult> error = ate(done->trajectory, *truth);
     if (!error) return fail(options.truth.empty() ? "ground truth" : options.truth, error.error());
@@ -96,14 +99,16 @@ Result<> odometry(const Options& options, const Common& common) {
 
 void add_odometry(Program& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_command("odometry", "Odometry of one robot",
-                                          [options](const Common& common) { return odometry(*options, common); });
+  CLI::App* command =
+      program.add_command("odometry", "Odometry of one robot",
+                          [options](const Common& common) { return odometry(*options, common); });
   command->add_option("input", options->input, "Recording (.mcap) or folder of scans")->required();
   command->add_option("--method", options->method, "kiss-icp: LiDAR alone; kinematic-icp: with wheels")
       ->check(CLI::IsMember({"kiss-icp", "kinematic-icp"}))
       ->capture_default_str();
   command->add_option("--out", options->out, "Trajectory to write (TUM)")->required();
-  command->add_option("--truth", options->truth, "True trajectory (TUM), for the error; default: the recording's own");
+  command->add_option("--truth", options->truth,
+                      "True trajectory (TUM), for the error; default: the recording's own");
 }
 
 }  // namespace adit::app

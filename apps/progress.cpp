@@ -50,8 +50,8 @@ void Progress::draw(std::size_t done) {
   if (percent == drawn_percent_) return;
   drawn_percent_ = percent;
   const int filled = static_cast<int>(static_cast<std::size_t>(kWidth) * done / total_);
-  std::fprintf(stderr, "\r%s [%.*s%*s] %zu%%", title_.c_str(), filled, "########################################",
-               kWidth - filled, "", percent);
+  std::fprintf(stderr, "\r%s [%.*s%*s] %zu%%", title_.c_str(), filled,
+               "########################################", kWidth - filled, "", percent);
   std::fflush(stderr);
 }
 

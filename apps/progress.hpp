@@ -9,7 +9,8 @@
 
 namespace adit::app {
 
-/// A progress bar on stderr where that is a terminal, nothing elsewhere. `advance` may be called from any thread.
+/// A progress bar on stderr where that is a terminal, nothing elsewhere. `advance` may be called from any
+/// thread.
 class Progress {
  public:
   Progress(std::string title, std::size_t total);
@@ -29,9 +30,11 @@ class Progress {
   std::size_t drawn_percent_ = 101;
 };
 
-/// From now on Ctrl-C (SIGINT) and SIGTERM set a flag instead of ending the process; a second one ends it at once.
+/// From now on Ctrl-C (SIGINT) and SIGTERM set a flag instead of ending the process; a second one ends it at
+/// once.
 void catch_interrupts();
-/// Whether one came. Long loops ask after each step and stop with an error, so that partial output is removed.
+/// Whether one came. Long loops ask after each step and stop with an error, so that partial output is
+/// removed.
 [[nodiscard]] bool interrupted();
 
 }  // namespace adit::app

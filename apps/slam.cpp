@@ -10,8 +10,8 @@
 #include "adit/io/config_toml.hpp"
 #include "adit/io/session_dir.hpp"
 #include "inputs.hpp"
+#include "meeting.hpp"
 #include "progress.hpp"
-#include "run_config.hpp"
 
 namespace adit::app {
 namespace {
@@ -46,43 +46,12 @@ Result<std::vector<std::shared_ptr<const RobotMap>>> map_robots(const std::vecto
   return selected;
 }
 
-struct Met {
-  std::vector<Agent> agents;
-  std::vector<std::uint64_t> bytes_sent;
-};
-
-Result<Met> let_meet(const std::vector<std::shared_ptr<const RobotMap>>& maps, const RunConfig& config) {
-  Met met;
-  LoopbackBus bus(config.bus);
-  met.agents.reserve(maps.size());  // the bus keeps addresses
-  for (const auto& map : maps) {
-    met.agents.emplace_back(map, std::make_shared<FeatureStore>(map, config.loops.registration), config.loops);
-    bus.join(met.agents.back());
-  }
-  Progress progress("meetings", maps.size() * (maps.size() - 1) / 2);
-  for (std::size_t a = 0; a < maps.size(); ++a) {
-    for (std::size_t b = a + 1; b < maps.size(); ++b) {
-      if (interrupted()) return fail("interrupted");
-      const Result<> done = bus.meet(maps[a]->id, maps[b]->id);
-      if (!done) return tl::unexpected(done.error());
-      progress.advance();
-    }
-  }
-  // What later meetings taught one robot, the others hear of when they meet it again.
-  for (std::size_t b = 1; b < maps.size(); ++b) {
-    const Result<> done = bus.meet(maps.front()->id, maps[b]->id);
-    if (!done) return tl::unexpected(done.error());
-  }
-  for (const Agent& agent : met.agents) met.bytes_sent.push_back(bus.bytes_sent(agent.id()));
-  return met;
-}
-
 void print_summary(const Session& session, const std::vector<std::uint64_t>& bytes_sent) {
   for (std::size_t i = 0; i < session.maps.size(); ++i) {
     const RobotMap& map = *session.maps[i];
-    std::printf("%s: %zu scans, %zu keyframes, %d degenerate and %d refused steps, %.2f MB sent\n", map.name.c_str(),
-                map.odometry.size(), map.keyframes.size(), map.num_degenerate, map.num_refused,
-                static_cast<double>(bytes_sent[i]) * 1e-6);
+    std::printf("%s: %zu scans, %zu keyframes, %d degenerate and %d refused steps, %.2f MB sent\n",
+                map.name.c_str(), map.odometry.size(), map.keyframes.size(), map.num_degenerate,
+                map.num_refused, static_cast<double>(bytes_sent[i]) * 1e-6);
   }
   const auto name = [&](RobotId id) { return session.fleet.robots.at(id).name; };
   for (const PairOutcome& pair : session.solution.pairs) {
@@ -118,7 +87,8 @@ nlohmann::ordered_json summary_json(const Session& session, const std::vector<st
 
 Result<> slam(const Options& options, const Common& common) {
   RunConfig config;
-  if (const Result<> chosen = choose_lidar(options.lidar, config.simulation); !chosen) usage_error(chosen.error().message);
+  if (const Result<> chosen = choose_lidar(options.lidar, config.simulation); !chosen)
+    usage_error(chosen.error().message);
   const Result<KeyframeSelection> selection = keyframe_selection(options.keyframes);
   if (!selection) usage_error(selection.error().message);
   if (const Result<> configured = configure(fields_of(config), common); !configured) return configured;
@@ -129,21 +99,21 @@ Result<> slam(const Options& options, const Common& common) {
   catch_interrupts();
   const auto maps = map_robots(*recordings, config.robot, *selection);
   if (!maps) return tl::unexpected(maps.error());
-  const Result<Met> met = let_meet(*maps, config);
-  if (!met) return tl::unexpected(met.error());
+  const Result<Meeting> meeting = hold_meeting(*maps, config);
+  if (!meeting) return tl::unexpected(meeting.error());
 
   Session session;
   session.provenance = {"adit slam", options.inputs, config.simulation.seed, to_toml(fields_of(config))};
   session.maps = *maps;
-  session.fleet = met->agents.front().known();
-  session.solution = met->agents.front().solve(config.back_end);
+  session.fleet = meeting->agents.front().known();
+  session.solution = meeting->agents.front().solve(config.back_end);
   if (const Result<> written = write_session(out->path(), session, MapFiles::write); !written) return written;
   if (interrupted()) return fail("interrupted");
   if (const Result<> done = out->commit(); !done) return done;
   if (common.json) {
-    std::printf("%s\n", summary_json(session, met->bytes_sent).dump().c_str());
+    std::printf("%s\n", summary_json(session, meeting->bytes_sent).dump().c_str());
   } else {
-    print_summary(session, met->bytes_sent);
+    print_summary(session, meeting->bytes_sent);
   }
   return {};
 }
@@ -154,7 +124,8 @@ void add_slam(Program& program) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_command("slam", "All robots given, merged decentrally, into one session",
                                           [options](const Common& common) { return slam(*options, common); });
-  command->add_option("inputs", options->inputs, "Recordings, folders of scans, or one routes.yaml")->required();
+  command->add_option("inputs", options->inputs, "Recordings, folders of scans, or one routes.yaml")
+      ->required();
   command->add_option("--out", options->out, "Session directory to write")->required();
   command->add_option("--lidar", options->lidar, "Simulated LiDAR (routes.yaml only)")->capture_default_str();
   command->add_option("--keyframes", options->keyframes, "all, tunnel_filter or tunnel_filter_keep")

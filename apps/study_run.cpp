@@ -46,9 +46,12 @@ RobotResult robot_facts(const Recording& recording, const RobotMap& map) {
   return result;
 }
 
-std::string json_name(const std::string& method) { return method == "kiss-icp" ? "kiss_icp" : "kinematic_icp"; }
+std::string json_name(const std::string& method) {
+  return method == "kiss-icp" ? "kiss_icp" : "kinematic_icp";
+}
 
-Result<RobotRun> run_robot(const Recording& recording, RobotId id, const RobotSlamConfig& config, Progress& progress) {
+Result<RobotRun> run_robot(const Recording& recording, RobotId id, const RobotSlamConfig& config,
+                           Progress& progress) {
   RobotSlam slam(id, recording.name, config, recording.T_base_lidar);
   KissIcp kiss_icp(config.odometry.kiss_icp, recording.T_base_lidar);
   const bool compare = config.odometry.method != "kiss-icp";
@@ -76,7 +79,8 @@ Result<RobotRun> run_robot(const Recording& recording, RobotId id, const RobotSl
   if (run.map->keyframes.empty()) return fail(recording.name + ": no scan became a keyframe");
   run.truth = recording.truth;
   run.result = robot_facts(recording, *run.map);
-  if (compare) run.result.odometry.push_back(odometry_result("kiss_icp", kiss_trajectory, run.truth, kiss_ms));
+  if (compare)
+    run.result.odometry.push_back(odometry_result("kiss_icp", kiss_trajectory, run.truth, kiss_ms));
   run.result.odometry.push_back(
       odometry_result(json_name(config.odometry.method), run.map->odometry, run.truth, own_ms));
   return run;
@@ -107,12 +111,14 @@ Trajectory keyframe_odometry(const RobotMap& map) {
 }
 
 /// Each robot's keyframes as odometry has them, laid over the world by that robot's own alignment.
-std::vector<std::vector<Vector3>> odometry_paths(const std::vector<const RobotRun*>& runs, const Meeting& meeting) {
+std::vector<std::vector<Vector3>> odometry_paths(const std::vector<const RobotRun*>& runs,
+                                                 const Meeting& meeting) {
   std::vector<std::vector<Vector3>> paths;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const Trajectory odometry = keyframe_odometry(*meeting.maps[i]);
     const Result<AteResult> aligned = ate(odometry, runs[i]->truth);
-    paths.push_back(aligned && aligned->positions.size() == odometry.size() ? aligned->positions : positions(odometry));
+    paths.push_back(aligned && aligned->positions.size() == odometry.size() ? aligned->positions
+                                                                            : positions(odometry));
   }
   return paths;
 }
@@ -129,7 +135,8 @@ GraphPicture picture(const std::vector<std::vector<Vector3>>& paths, const std::
     const LoopOutcome& outcome = judged.solution.loops[l];
     if (!keep(outcome)) continue;
     drawn.loops.push_back({paths[place_of(outcome.loop.from.robot)].at(outcome.loop.from.index),
-                           paths[place_of(outcome.loop.to.robot)].at(outcome.loop.to.index), judged.loop_classes[l]});
+                           paths[place_of(outcome.loop.to.robot)].at(outcome.loop.to.index),
+                           judged.loop_classes[l]});
   }
   return drawn;
 }
@@ -174,7 +181,8 @@ Trajectory solved_trajectory(const RobotMap& map, const std::vector<Pose>& T_wor
   return trajectory;
 }
 
-Result<std::vector<RobotRun>> run_robots(const std::vector<Recording>& recordings, const RobotSlamConfig& config) {
+Result<std::vector<RobotRun>> run_robots(const std::vector<Recording>& recordings,
+                                         const RobotSlamConfig& config) {
   std::size_t num_scans = 0;
   for (const Recording& recording : recordings) num_scans += recording.num_scans();
   Progress progress("scans", num_scans);
@@ -185,27 +193,13 @@ Result<std::vector<RobotRun>> run_robots(const std::vector<Recording>& recording
   return all_or_first_error(std::move(runs));
 }
 
-Result<Meeting> hold_meeting(const std::vector<const RobotRun*>& runs, KeyframeSelection selection,
-                             const RunConfig& config) {
-  Meeting meeting;
+std::vector<std::shared_ptr<const RobotMap>> selected_maps(const std::vector<const RobotRun*>& runs,
+                                                           KeyframeSelection selection) {
+  std::vector<std::shared_ptr<const RobotMap>> maps;
   for (const RobotRun* run : runs) {
-    meeting.maps.push_back(std::make_shared<const RobotMap>(select_keyframes(*run->map, selection)));
+    maps.push_back(std::make_shared<const RobotMap>(select_keyframes(*run->map, selection)));
   }
-  meeting.agents.reserve(runs.size());  // the bus keeps addresses
-  LoopbackBus bus(config.bus);
-  for (const auto& map : meeting.maps) {
-    meeting.agents.emplace_back(map, std::make_shared<FeatureStore>(map, config.loops.registration), config.loops);
-    bus.join(meeting.agents.back());
-  }
-  for (std::size_t a = 0; a < runs.size(); ++a) {
-    for (std::size_t b = a + 1; b < runs.size(); ++b) {
-      if (interrupted()) return fail("interrupted");
-      const Result<> met = bus.meet(meeting.agents[a].id(), meeting.agents[b].id());
-      if (!met) return tl::unexpected(met.error());
-    }
-  }
-  for (const Agent& agent : meeting.agents) meeting.bytes_sent.push_back(bus.bytes_sent(agent.id()));
-  return meeting;
+  return maps;
 }
 
 Result<JudgedSolution> judge(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
@@ -229,7 +223,8 @@ Result<JudgedSolution> judge(const std::vector<const RobotRun*>& runs, const Mee
   return judged;
 }
 
-PairResult pair_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting, const JudgedSolution& judged) {
+PairResult pair_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
+                       const JudgedSolution& judged) {
   PairResult result;
   const std::vector<MergedRobot> robots = merged_robots(runs, meeting, judged.solution);
   result.robots = {robots[0], robots[1]};
@@ -245,10 +240,12 @@ PairResult pair_result(const std::vector<const RobotRun*>& runs, const Meeting& 
   result.initial = picture(paths, runs, judged, [](const LoopOutcome&) { return true; });
   result.after_pcm = picture(paths, runs, judged, [](const LoopOutcome& loop) { return loop.in_clique; });
   std::vector<std::vector<Vector3>> solved;
-  for (const MergedRobot& robot : robots) solved.push_back(robot.ate ? robot.ate->positions : std::vector<Vector3>{});
+  for (const MergedRobot& robot : robots)
+    solved.push_back(robot.ate ? robot.ate->positions : std::vector<Vector3>{});
   for (std::size_t i = 0; i < solved.size(); ++i) {  // a picture needs every keyframe that a loop may name
     if (solved[i].size() != meeting.maps[i]->keyframes.size()) {
-      solved[i] = positions(solved_trajectory(*meeting.maps[i], judged.solution.T_world_keyframe.at(runs[i]->map->id)));
+      solved[i] = positions(
+          solved_trajectory(*meeting.maps[i], judged.solution.T_world_keyframe.at(runs[i]->map->id)));
     }
   }
   result.optimized = picture(solved, runs, judged, [](const LoopOutcome& loop) { return loop.in_use(); });

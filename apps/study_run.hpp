@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "adit/evaluation/study_result.hpp"
-#include "run_config.hpp"
+#include "meeting.hpp"
 
 namespace adit::app {
 
@@ -19,18 +19,14 @@ struct RobotRun {
   RobotResult result;
 };
 
-/// Drives every recording once through RobotSlam and, beside it, through KISS-ICP for the comparison of section 3.1;
-/// robots in parallel.
-Result<std::vector<RobotRun>> run_robots(const std::vector<Recording>& recordings, const RobotSlamConfig& config);
+/// Drives every recording once through RobotSlam and, beside it, through KISS-ICP for the comparison of
+/// section 3.1; robots in parallel.
+Result<std::vector<RobotRun>> run_robots(const std::vector<Recording>& recordings,
+                                         const RobotSlamConfig& config);
 
-/// The agents of some robots after all of them have met, under one keyframe policy.
-struct Meeting {
-  std::vector<std::shared_ptr<const RobotMap>> maps;
-  std::vector<Agent> agents;
-  std::vector<std::uint64_t> bytes_sent;  ///< One an agent.
-};
-Result<Meeting> hold_meeting(const std::vector<const RobotRun*>& runs, KeyframeSelection selection,
-                             const RunConfig& config);
+/// What those robots' maps are under a keyframe policy.
+std::vector<std::shared_ptr<const RobotMap>> selected_maps(const std::vector<const RobotRun*>& runs,
+                                                           KeyframeSelection selection);
 
 /// What the ground truth says about one solution of a meeting.
 struct JudgedSolution {
@@ -40,7 +36,8 @@ struct JudgedSolution {
 Result<JudgedSolution> judge(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
                              const FleetSolution& solution);
 
-PairResult pair_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting, const JudgedSolution& judged);
+PairResult pair_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
+                       const JudgedSolution& judged);
 JointResult joint_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
                          const JudgedSolution& judged);
 

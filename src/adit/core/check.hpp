@@ -7,15 +7,16 @@
 
 namespace adit {
 
-/// Thrown when the caller broke a documented contract. It is a bug in the program, not a property of the data: data
-/// errors are values of type `Result`.
+/// Thrown when the caller broke a documented contract. It is a bug in the program, not a property of the
+/// data: data errors are values of type `Result`.
 class ContractViolation : public std::logic_error {
  public:
   using std::logic_error::logic_error;
 };
 
 [[noreturn]] inline void fail_check(const char* condition, const char* message, const char* file, int line) {
-  throw ContractViolation(std::string(file) + ":" + std::to_string(line) + ": " + message + " (" + condition + ")");
+  throw ContractViolation(std::string(file) + ":" + std::to_string(line) + ": " + message + " (" + condition +
+                          ")");
 }
 
 }  // namespace adit

@@ -16,7 +16,8 @@ template <class T>
 Result<T> parse_number(std::string_view text) {
   T value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return fail(format("'{}' is no number", text));
+  if (error != std::errc{} || end != text.data() + text.size())
+    return fail(format("'{}' is no number", text));
   return value;
 }
 
@@ -45,7 +46,8 @@ Result<> assign(const Field& field, std::string_view text, Integer* target) {
 }
 
 Result<> assign(const Field& field, std::string_view text, bool* target) {
-  if (text != "true" && text != "false") return fail(format("{}: '{}' is neither true nor false", field.key, text));
+  if (text != "true" && text != "false")
+    return fail(format("{}: '{}' is neither true nor false", field.key, text));
   *target = text == "true";
   return {};
 }
@@ -81,7 +83,8 @@ std::string nearest_key(const std::vector<std::string>& known, std::string_view 
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(3, key.size() / 3);
   for (const std::string& candidate : known) {
-    // A bare field name is compared with the last part of a dotted key, so that "voxel_size" finds its module.
+    // A bare field name is compared with the last part of a dotted key, so that "voxel_size" finds its
+    // module.
     const std::string tail = candidate.substr(candidate.rfind('.') + 1);
     const std::size_t distance = std::min(edit_distance(key, candidate), edit_distance(key, tail) + 1);
     if (distance < best_distance) {
@@ -98,9 +101,9 @@ Result<> set_field(const Fields& fields, std::string_view key, std::string_view 
     std::vector<std::string> known;
     for (const Field& f : fields) known.push_back(f.key);
     const std::string nearest = nearest_key(known, key);
-    return fail(format("unknown configuration key '{}'{}", key,
-                       nearest.empty() ? "; docs/configuration.md lists them all"
-                                       : "; did you mean '" + nearest + "'?"));
+    return fail(format(
+        "unknown configuration key '{}'{}", key,
+        nearest.empty() ? "; docs/configuration.md lists them all" : "; did you mean '" + nearest + "'?"));
   }
   return std::visit([&](auto* target) { return assign(*field, value, target); }, field->target);
 }

@@ -21,7 +21,8 @@ struct KeyframeId {
   auto operator<=>(const KeyframeId&) const = default;
 };
 
-/// The key that g2o files carry: GTSAM's Symbol layout, a letter in the top byte ('a' + robot) and the index below.
+/// The key that g2o files carry: GTSAM's Symbol layout, a letter in the top byte ('a' + robot) and the index
+/// below.
 [[nodiscard]] constexpr std::uint64_t graph_key(KeyframeId id) {
   return (static_cast<std::uint64_t>('a' + id.robot.value) << 56U) | id.index;
 }

@@ -31,12 +31,13 @@ void set_num_threads(int num_threads) {
 }
 
 int num_threads() {
-  return static_cast<int>(std::min<std::size_t>(
-      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism),
-      static_cast<std::size_t>(tbb::info::default_concurrency())));
+  return static_cast<int>(
+      std::min<std::size_t>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism),
+                            static_cast<std::size_t>(tbb::info::default_concurrency())));
 }
 
-void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+void parallel_for(std::size_t n, std::size_t grain,
+                  const std::function<void(std::size_t, std::size_t)>& body) {
   ADIT_CHECK(grain >= 1, "a part holds at least one item");
   const std::size_t num_parts = (n + grain - 1) / grain;
   if (num_parts <= 1 || num_threads() == 1) {
@@ -45,7 +46,8 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
   }
   tbb::parallel_for(
       std::size_t{0}, num_parts,
-      [&](std::size_t part) { body(part * grain, std::min(n, (part + 1) * grain)); }, tbb::simple_partitioner{});
+      [&](std::size_t part) { body(part * grain, std::min(n, (part + 1) * grain)); },
+      tbb::simple_partitioner{});
 }
 
 }  // namespace adit

@@ -12,8 +12,8 @@
 
 namespace adit {
 
-/// Points in metres. The owner says in which frame. `intensities` and `time_offsets_ns` are each empty or as long as
-/// `points`. A time offset is the point's own time minus the stamp of the scan that holds the cloud.
+/// Points in metres. The owner says in which frame. `intensities` and `time_offsets_ns` are each empty or as
+/// long as `points`. A time offset is the point's own time minus the stamp of the scan that holds the cloud.
 struct PointCloud {
   std::vector<Eigen::Vector3f> points;
   std::vector<float> intensities;
@@ -23,8 +23,10 @@ struct PointCloud {
   [[nodiscard]] bool empty() const { return points.empty(); }
   [[nodiscard]] bool has_times() const { return !time_offsets_ns.empty(); }
   void check() const {
-    ADIT_CHECK(intensities.empty() || intensities.size() == points.size(), "one intensity a point, or none at all");
-    ADIT_CHECK(time_offsets_ns.empty() || time_offsets_ns.size() == points.size(), "one time a point, or none at all");
+    ADIT_CHECK(intensities.empty() || intensities.size() == points.size(),
+               "one intensity a point, or none at all");
+    ADIT_CHECK(time_offsets_ns.empty() || time_offsets_ns.size() == points.size(),
+               "one time a point, or none at all");
   }
 };
 

@@ -11,10 +11,12 @@
 namespace adit {
 namespace {
 
-// Below this angle the closed forms lose digits to cancellation and the series are exact to the last bit or two.
+// Below this angle the closed forms lose digits to cancellation and the series are exact to the last bit or
+// two.
 constexpr double kSmallAngle = 1e-4;
 
-// Q of Barfoot, "State Estimation for Robotics", eq. (7.86): the translation-rotation block of the left Jacobian.
+// Q of Barfoot, "State Estimation for Robotics", eq. (7.86): the translation-rotation block of the left
+// Jacobian.
 Matrix3 left_jacobian_coupling(const Vector3& rho, const Vector3& phi) {
   const double t2 = phi.squaredNorm();
   const double t = std::sqrt(t2);
@@ -73,7 +75,8 @@ Vector3 log(const Eigen::Quaterniond& q) {
   const Vector3 v = sign * q.vec();
   const double n = v.norm();
   // atan2 stays exact at half a turn, where acos(w) loses half of its digits.
-  const double k = n < 0.5 * kSmallAngle ? 2.0 / w - 2.0 * n * n / (3.0 * w * w * w) : 2.0 * std::atan2(n, w) / n;
+  const double k =
+      n < 0.5 * kSmallAngle ? 2.0 / w - 2.0 * n * n / (3.0 * w * w * w) : 2.0 * std::atan2(n, w) / n;
   return k * v;
 }
 
@@ -188,7 +191,9 @@ Matrix6 Pose::right_jacobian_inverse(const Tangent& xi) {
   return out;
 }
 
-Pose interpolate(const Pose& a, const Pose& b, double s) { return a * Pose::exp(s * (a.inverse() * b).log()); }
+Pose interpolate(const Pose& a, const Pose& b, double s) {
+  return a * Pose::exp(s * (a.inverse() * b).log());
+}
 
 double wrap_angle(double angle) {
   const double wrapped = std::remainder(angle, 2.0 * std::numbers::pi);

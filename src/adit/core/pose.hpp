@@ -12,8 +12,9 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix3 = Eigen::Matrix3d;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// Lie-algebra maps of SO(3). `phi` is axis * angle in radians. All of them switch to their series near zero, and
-/// `log` is exact up to and including half a turn. Source: Sola, Deray, Atchuthan, "A micro Lie theory", appendix B.
+/// Lie-algebra maps of SO(3). `phi` is axis * angle in radians. All of them switch to their series near zero,
+/// and `log` is exact up to and including half a turn. Source: Sola, Deray, Atchuthan, "A micro Lie theory",
+/// appendix B.
 namespace so3 {
 [[nodiscard]] Matrix3 hat(const Vector3& v);
 [[nodiscard]] Eigen::Quaterniond exp(const Vector3& phi);
@@ -24,8 +25,8 @@ namespace so3 {
 }  // namespace so3
 
 /// A rigid motion of space, SE(3). Named T_a_b: `p_a = T_a_b * p_b`, so `T_a_c = T_a_b * T_b_c`.
-/// Invariant: all numbers finite, rotation a unit quaternion; checked when a pose is made from outside numbers.
-/// Tangent vectors are [translation; rotation], metres and radians.
+/// Invariant: all numbers finite, rotation a unit quaternion; checked when a pose is made from outside
+/// numbers. Tangent vectors are [translation; rotation], metres and radians.
 class Pose {
  public:
   static constexpr int kDof = 6;
@@ -33,10 +34,11 @@ class Pose {
   using Jacobian = Matrix6;
 
   Pose() = default;  ///< Identity.
-  /// Throws ContractViolation when a number is not finite or the quaternion's norm is off 1 by more than 1e-3;
-  /// within that it is normalised.
+  /// Throws ContractViolation when a number is not finite or the quaternion's norm is off 1 by more than
+  /// 1e-3; within that it is normalised.
   Pose(const Eigen::Quaterniond& rotation, const Vector3& translation);
-  /// Throws ContractViolation when `rotation` is no rotation matrix (to 1e-3); within that the nearest one is taken.
+  /// Throws ContractViolation when `rotation` is no rotation matrix (to 1e-3); within that the nearest one is
+  /// taken.
   Pose(const Matrix3& rotation, const Vector3& translation);
   [[nodiscard]] static Pose translation_of(double x, double y, double z) {
     return {Eigen::Quaterniond::Identity(), Vector3(x, y, z)};

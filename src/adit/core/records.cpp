@@ -27,7 +27,8 @@ Result<Pose> pose_at(const Trajectory& trajectory, Stamp stamp) {
 double path_length(const Trajectory& trajectory) {
   double length = 0.0;
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
-    length += (trajectory[i].T_world_body.translation() - trajectory[i - 1].T_world_body.translation()).norm();
+    length +=
+        (trajectory[i].T_world_body.translation() - trajectory[i - 1].T_world_body.translation()).norm();
   }
   return length;
 }
@@ -53,11 +54,16 @@ Result<WheelDelta> wheel_delta(const Trajectory& wheel, Stamp from, Stamp to) {
 
 std::string_view to_string(StepStatus status) {
   switch (status) {
-    case StepStatus::ok: return "ok";
-    case StepStatus::no_map: return "no_map";
-    case StepStatus::too_few_points: return "too_few_points";
-    case StepStatus::degenerate: return "degenerate";
-    case StepStatus::diverged: return "diverged";
+    case StepStatus::ok:
+      return "ok";
+    case StepStatus::no_map:
+      return "no_map";
+    case StepStatus::too_few_points:
+      return "too_few_points";
+    case StepStatus::degenerate:
+      return "degenerate";
+    case StepStatus::diverged:
+      return "diverged";
   }
   return "unknown";
 }

@@ -30,8 +30,9 @@ using Trajectory = std::vector<StampedPose>;
 /// The length of the polyline through the positions, metres.
 [[nodiscard]] double path_length(const Trajectory& trajectory);
 
-/// One LiDAR sweep in the lidar frame. `stamp` is the time that the odometry's pose of this scan refers to; per-point
-/// times are offsets from it (adit's simulator stamps the end of the sweep, so its offsets are negative or zero).
+/// One LiDAR sweep in the lidar frame. `stamp` is the time that the odometry's pose of this scan refers to;
+/// per-point times are offsets from it (adit's simulator stamps the end of the sweep, so its offsets are
+/// negative or zero).
 struct Scan {
   Stamp stamp;
   PointCloud cloud;
@@ -45,27 +46,27 @@ struct WheelDelta {
   Matrix6 covariance = Matrix6::Identity() * 1e-4;
 };
 
-/// All that one robot measured, scan by scan. Scans are read (or cast, by the simulator) when they are asked for.
-/// `truth` is for evaluation alone; no other stage may look at it.
+/// All that one robot measured, scan by scan. Scans are read (or cast, by the simulator) when they are asked
+/// for. `truth` is for evaluation alone; no other stage may look at it.
 struct Recording {
   std::string name;   ///< The robot's name.
   std::string lidar;  ///< The sensor's name, "" when unknown.
   Pose T_base_lidar;
-  std::vector<Stamp> scan_stamps;                       ///< Strictly ascending.
-  std::function<Result<Scan>(std::size_t)> read_scan;   ///< Thread-safe; scan i has stamp scan_stamps[i].
-  Trajectory wheel;                                     ///< T_wheelodom_base; empty when there are no wheels.
-  Trajectory truth;                                     ///< T_world_base; empty when unknown.
+  std::vector<Stamp> scan_stamps;                      ///< Strictly ascending.
+  std::function<Result<Scan>(std::size_t)> read_scan;  ///< Thread-safe; scan i has stamp scan_stamps[i].
+  Trajectory wheel;                                    ///< T_wheelodom_base; empty when there are no wheels.
+  Trajectory truth;                                    ///< T_world_base; empty when unknown.
 
   [[nodiscard]] std::size_t num_scans() const { return scan_stamps.size(); }
 };
 
-/// Wheel motion from stamp to stamp, interpolated. Covariance from the distance and angle driven: sigma of 2 % along,
-/// 1 % across, 0.5 deg a metre plus 2 % of the angle; floors of 1 mm and 0.02 deg.
+/// Wheel motion from stamp to stamp, interpolated. Covariance from the distance and angle driven: sigma of 2
+/// % along, 1 % across, 0.5 deg a metre plus 2 % of the angle; floors of 1 mm and 0.02 deg.
 [[nodiscard]] Result<WheelDelta> wheel_delta(const Trajectory& wheel, Stamp from, Stamp to);
 
 enum class StepStatus {
   ok,
-  no_map,          ///< The first scan: there was nothing to register to. The pose is the start or the wheels' word.
+  no_map,  ///< The first scan: there was nothing to register to. The pose is the start or the wheels' word.
   too_few_points,  ///< Fewer points or correspondences than needed. The pose is the prediction.
   degenerate,      ///< The geometry leaves a direction open; the pose stands on the prediction along it.
   diverged,        ///< The solver left the trust region around the prediction. The pose is the prediction.
@@ -109,10 +110,12 @@ struct LoopClosure {
   Matrix6 information = Matrix6::Identity();  ///< Of T_from_to, right perturbation.
   double place_distance = 1.0;
   int num_inliers = 0;
-  double overlap = 0.0;    ///< Share of points of one cloud that have a neighbour in the other, smaller side, 0 to 1.
-  double weak_axis = 0.0;  ///< Smallest eigenvalue of the normalised translational information, 0 (open) to 1/3.
+  double overlap =
+      0.0;  ///< Share of points of one cloud that have a neighbour in the other, smaller side, 0 to 1.
+  double weak_axis =
+      0.0;  ///< Smallest eigenvalue of the normalised translational information, 0 (open) to 1/3.
   LoopVerdict verdict = LoopVerdict::rejected;
-  std::string reason;      ///< One sentence: why.
+  std::string reason;  ///< One sentence: why.
 };
 
 /// The same measurement with its ends exchanged: T_to_from, with the information carried over by the adjoint.

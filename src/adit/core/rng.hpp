@@ -9,8 +9,8 @@
 
 namespace adit {
 
-/// A well-mixed 64-bit hash (the finaliser of SplitMix64, Steele et al. 2014). For noise that must not depend on the
-/// order or thread in which it is drawn, hash the item's own coordinates.
+/// A well-mixed 64-bit hash (the finaliser of SplitMix64, Steele et al. 2014). For noise that must not depend
+/// on the order or thread in which it is drawn, hash the item's own coordinates.
 [[nodiscard]] constexpr std::uint64_t mix64(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15ULL;
   x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
@@ -19,8 +19,8 @@ namespace adit {
 }
 [[nodiscard]] constexpr std::uint64_t mix64(std::uint64_t a, std::uint64_t b) { return mix64(mix64(a) ^ b); }
 
-/// A seeded random generator that gives the same numbers on every machine and compiler (the standard library's
-/// distributions do not). xoshiro256++ of Blackman and Vigna.
+/// A seeded random generator that gives the same numbers on every machine and compiler (the standard
+/// library's distributions do not). xoshiro256++ of Blackman and Vigna.
 class Rng {
  public:
   using result_type = std::uint64_t;

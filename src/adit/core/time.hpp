@@ -10,7 +10,8 @@ namespace adit {
 
 using Duration = std::chrono::nanoseconds;
 
-/// A sensor's own clock, integer nanoseconds since its epoch. Never a double: 1.6e9 s keeps only 0.2 us in one.
+/// A sensor's own clock, integer nanoseconds since its epoch. Never a double: 1.6e9 s keeps only 0.2 us in
+/// one.
 struct Stamp {
   std::int64_t ns = 0;
 

@@ -51,7 +51,8 @@ FeatureStore::FeatureStore(std::shared_ptr<const RobotMap> map, const Registrati
 
 void FeatureStore::prepare(const std::vector<std::uint32_t>& indices) {
   std::vector<std::uint32_t> missing;
-  std::ranges::copy_if(indices, std::back_inserter(missing), [&](std::uint32_t i) { return !features_.at(i); });
+  std::ranges::copy_if(indices, std::back_inserter(missing),
+                       [&](std::uint32_t i) { return !features_.at(i); });
   std::ranges::sort(missing);
   missing.erase(std::ranges::unique(missing).begin(), missing.end());
   parallel_for_each(missing.size(), [&](std::size_t i) {
@@ -64,12 +65,15 @@ const Features& FeatureStore::at(std::uint32_t index) const {
   return *features_[index];
 }
 
-Agent::Agent(std::shared_ptr<const RobotMap> map, std::shared_ptr<FeatureStore> features, const AgentConfig& config)
+Agent::Agent(std::shared_ptr<const RobotMap> map, std::shared_ptr<FeatureStore> features,
+             const AgentConfig& config)
     : map_(std::move(map)), features_(std::move(features)), config_(config) {
   known_.robots[map_->id] = graph_of(*map_);
 }
 
-Message Agent::to(RobotId peer, decltype(Message::body) body) const { return {map_->id, peer, std::move(body)}; }
+Message Agent::to(RobotId peer, decltype(Message::body) body) const {
+  return {map_->id, peer, std::move(body)};
+}
 
 Hello Agent::hello() const {
   Hello hello;
@@ -103,7 +107,8 @@ Agent::Replies Agent::on(RobotId from, const Hello& theirs) {
   };
   for (const auto& [robot, graph] : known_.robots) {
     const std::size_t has = std::min<std::size_t>(known_to_peer(robot).num_nodes, graph.nodes.size());
-    const std::vector<GraphNode> rest(graph.nodes.begin() + static_cast<std::ptrdiff_t>(has), graph.nodes.end());
+    const std::vector<GraphNode> rest(graph.nodes.begin() + static_cast<std::ptrdiff_t>(has),
+                                      graph.nodes.end());
     in_parts(rest, kNodesPerMessage, [&](std::size_t begin, std::vector<GraphNode> nodes) {
       replies.push_back(
           to(from, GraphPart{robot, graph.name, static_cast<std::uint32_t>(has + begin), std::move(nodes)}));
@@ -118,7 +123,8 @@ Agent::Replies Agent::on(RobotId from, const Hello& theirs) {
   }
   if (map_->id > from) {  // the robot with the smaller id searches
     std::vector<std::uint32_t> indices = searchable_indices(*map_);
-    const std::uint32_t has = std::min(known_to_peer(map_->id).num_places, static_cast<std::uint32_t>(indices.size()));
+    const std::uint32_t has =
+        std::min(known_to_peer(map_->id).num_places, static_cast<std::uint32_t>(indices.size()));
     indices.erase(indices.begin(), indices.begin() + has);
     in_parts(indices, kPlacesPerMessage, [&](std::size_t begin, const std::vector<std::uint32_t>& part) {
       Places places;
@@ -138,7 +144,8 @@ Agent::Replies Agent::on(RobotId /*from*/, const GraphPart& part) {
   if (part.owner == map_->id) return {};
   RobotGraph& graph = known_.robots[part.owner];
   graph.name = part.name;
-  if (part.first_index > graph.nodes.size()) return {};  // a part before it was lost; the next Hello asks for it
+  if (part.first_index > graph.nodes.size())
+    return {};  // a part before it was lost; the next Hello asks for it
   for (std::size_t i = graph.nodes.size() - part.first_index; i < part.nodes.size(); ++i) {
     graph.nodes.push_back(part.nodes[i]);
   }
@@ -162,7 +169,10 @@ void Agent::find_candidates(RobotId peer_id) {
   std::vector<std::optional<LoopCandidate>> best(queries.size());
   parallel_for_each(
       queries.size(),
-      [&](std::size_t i) { best[i] = index.best_match({map_->id, queries[i]}, map_->places[queries[i]], peer_id); }, 16);
+      [&](std::size_t i) {
+        best[i] = index.best_match({map_->id, queries[i]}, map_->places[queries[i]], peer_id);
+      },
+      16);
   for (const std::optional<LoopCandidate>& candidate : best) {
     if (!candidate || known_.loops.contains({candidate->query, candidate->match})) continue;
     std::vector<LoopCandidate>& waiting = peer.waiting[candidate->match.index];
@@ -233,7 +243,8 @@ Agent::Replies Agent::on(RobotId from, const Clouds& clouds) {
   });
   Loops found;
   found.loops.resize(jobs.size());
-  parallel_for_each(jobs.size(), [&](std::size_t i) { found.loops[i] = verify(jobs[i].first, theirs[jobs[i].second]); });
+  parallel_for_each(jobs.size(),
+                    [&](std::size_t i) { found.loops[i] = verify(jobs[i].first, theirs[jobs[i].second]); });
   for (const LoopClosure& loop : found.loops) known_.loops.try_emplace({loop.from, loop.to}, loop);
   Replies replies;
   in_parts(found.loops, kLoopsPerMessage, [&](std::size_t, std::vector<LoopClosure> part) {

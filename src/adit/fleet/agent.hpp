@@ -34,16 +34,17 @@ class FeatureStore {
   std::vector<std::optional<Features>> features_;
 };
 
-/// One robot of the fleet: messages in, messages out; no thread, socket or clock. It knows what its own robot measured
-/// and what messages brought, nothing else.
+/// One robot of the fleet: messages in, messages out; no thread, socket or clock. It knows what its own robot
+/// measured and what messages brought, nothing else.
 ///
-/// Of two robots that meet, the one with the smaller id searches: it receives the other's descriptors, asks for the
-/// clouds of promising matches, registers them and shares the loops. Messages may be repeated or lost; a later meeting
-/// sends what is missing.
+/// Of two robots that meet, the one with the smaller id searches: it receives the other's descriptors, asks
+/// for the clouds of promising matches, registers them and shares the loops. Messages may be repeated or
+/// lost; a later meeting sends what is missing.
 class Agent {
  public:
   /// `features` may be shared between agents that were made from the same map.
-  Agent(std::shared_ptr<const RobotMap> map, std::shared_ptr<FeatureStore> features, const AgentConfig& config);
+  Agent(std::shared_ptr<const RobotMap> map, std::shared_ptr<FeatureStore> features,
+        const AgentConfig& config);
 
   [[nodiscard]] RobotId id() const { return map_->id; }
   /// What to say when `peer` comes into range.
@@ -59,7 +60,8 @@ class Agent {
   using Replies = std::vector<Message>;
   struct Peer {
     std::map<std::uint32_t, ScanContext> places;
-    std::map<std::uint32_t, std::vector<LoopCandidate>> waiting;  ///< By the peer's keyframe whose cloud is awaited.
+    std::map<std::uint32_t, std::vector<LoopCandidate>>
+        waiting;  ///< By the peer's keyframe whose cloud is awaited.
   };
 
   [[nodiscard]] Hello hello() const;

@@ -35,9 +35,11 @@ OdometryChain chain_of(const RobotGraph& graph) {
   return {std::move(poses), steps};
 }
 
-/// Runs PCM on the loops of one pair (indices into `loops`), marks the ones it keeps and fills in the clique sizes.
-void keep_consistent(const FleetGraph& fleet, const BackEndConfig& config, const std::vector<std::size_t>& of_pair,
-                     std::vector<LoopOutcome>& loops, PairOutcome& pair) {
+/// Runs PCM on the loops of one pair (indices into `loops`), marks the ones it keeps and fills in the clique
+/// sizes.
+void keep_consistent(const FleetGraph& fleet, const BackEndConfig& config,
+                     const std::vector<std::size_t>& of_pair, std::vector<LoopOutcome>& loops,
+                     PairOutcome& pair) {
   std::vector<PcmLoop> measured;
   for (const std::size_t l : of_pair) {
     const LoopClosure& loop = loops[l].loop;
@@ -51,8 +53,8 @@ void keep_consistent(const FleetGraph& fleet, const BackEndConfig& config, const
   pair.clique_exact = result.optimal;
 }
 
-/// Where the odometry frame of robot b lies in that of robot a, by the average over loops: chordal mean of the
-/// rotations, mean of the positions that they give to b's keyframes.
+/// Where the odometry frame of robot b lies in that of robot a, by the average over loops: chordal mean of
+/// the rotations, mean of the positions that they give to b's keyframes.
 Pose mean_frame(const FleetGraph& fleet, const std::vector<const LoopClosure*>& loops) {
   Matrix3 sum = Matrix3::Zero();
   Vector3 seen_in_a = Vector3::Zero();
@@ -72,7 +74,8 @@ Pose mean_frame(const FleetGraph& fleet, const std::vector<const LoopClosure*>& 
   return {R, (seen_in_a - R * seen_in_b) / static_cast<double>(loops.size())};
 }
 
-std::map<RobotPair, std::vector<const LoopClosure*>> loops_by_pair(const std::vector<const LoopOutcome*>& outcomes) {
+std::map<RobotPair, std::vector<const LoopClosure*>> loops_by_pair(
+    const std::vector<const LoopOutcome*>& outcomes) {
   std::map<RobotPair, std::vector<const LoopClosure*>> by_pair;
   for (const LoopOutcome* outcome : outcomes) {
     by_pair[{outcome->loop.from.robot, outcome->loop.to.robot}].push_back(&outcome->loop);
@@ -119,20 +122,23 @@ PoseGraph build_graph(const FleetGraph& fleet, const std::vector<const LoopOutco
       graph.nodes.push_back({graph_key({robot, k}), frames.at(robot) * own.nodes[k].T_odom_base});
       if (k == 0) continue;
       const std::size_t node = graph.nodes.size() - 1;
-      graph.edges.push_back({node - 1, node, own.nodes[k - 1].T_odom_base.inverse() * own.nodes[k].T_odom_base,
+      graph.edges.push_back({node - 1, node,
+                             own.nodes[k - 1].T_odom_base.inverse() * own.nodes[k].T_odom_base,
                              own.nodes[k].step_covariance.inverse(), EdgeKind::odometry});
     }
   }
   for (const LoopOutcome* outcome : outcomes) {
     const LoopClosure& loop = outcome->loop;
-    graph.edges.push_back({offset.at(loop.from.robot) + loop.from.index, offset.at(loop.to.robot) + loop.to.index,
-                           loop.T_from_to, loop_information(config), EdgeKind::loop});
+    graph.edges.push_back({offset.at(loop.from.robot) + loop.from.index,
+                           offset.at(loop.to.robot) + loop.to.index, loop.T_from_to, loop_information(config),
+                           EdgeKind::loop});
   }
   return graph;
 }
 
 /// Robots that loops in use link, each group in ascending order, groups by their smallest id.
-std::vector<std::vector<RobotId>> linked_robots(const FleetGraph& fleet, const std::vector<LoopOutcome>& loops) {
+std::vector<std::vector<RobotId>> linked_robots(const FleetGraph& fleet,
+                                                const std::vector<LoopOutcome>& loops) {
   std::map<RobotId, RobotId> root;
   for (const auto& [robot, graph] : fleet.robots) root[robot] = robot;
   const auto find = [&](RobotId robot) {
@@ -168,14 +174,16 @@ std::string most_common_reason(const FleetGraph& fleet, const PairOutcome& pair)
   return most == counts.end() ? "" : most->first;
 }
 
-std::string refusal(const FleetGraph& fleet, const PairOutcome& pair, std::size_t num_tried, std::size_t num_used) {
+std::string refusal(const FleetGraph& fleet, const PairOutcome& pair, std::size_t num_tried,
+                    std::size_t num_used) {
   for (const RobotId robot : {pair.a, pair.b}) {
     if (fleet.robots.at(robot).nodes.empty()) {
       return format("the keyframe policy left no keyframe of {}", fleet.robots.at(robot).name);
     }
   }
   if (num_tried == 0) {
-    return format("no keyframe of {} resembled one of {}", fleet.robots.at(pair.a).name, fleet.robots.at(pair.b).name);
+    return format("no keyframe of {} resembled one of {}", fleet.robots.at(pair.a).name,
+                  fleet.robots.at(pair.b).name);
   }
   if (pair.num_loops == 0) {
     return format("none of {} candidates could be registered, mostly because: {}", num_tried,
@@ -241,8 +249,8 @@ void solve_group(const FleetGraph& fleet, const std::vector<RobotId>& robots, co
       loops.push_back(&outcome);
     }
   }
-  const PoseGraph graph =
-      build_graph(part_of(fleet, robots), std::vector<const LoopOutcome*>(loops.begin(), loops.end()), config);
+  const PoseGraph graph = build_graph(part_of(fleet, robots),
+                                      std::vector<const LoopOutcome*>(loops.begin(), loops.end()), config);
   const Solution<Pose> solved =
       config.gnc_on ? optimize_gnc(graph, config.gnc) : optimize(graph, config.gnc.optimizer);
   const std::size_t first_loop = graph.edges.size() - loops.size();
@@ -253,7 +261,8 @@ void solve_group(const FleetGraph& fleet, const std::vector<RobotId>& robots, co
   for (const RobotId robot : robots) {
     std::vector<Pose>& poses = solution.T_world_keyframe[robot];
     poses.clear();
-    for (std::size_t k = 0; k < fleet.robots.at(robot).nodes.size(); ++k) poses.push_back(solved.poses[node++]);
+    for (std::size_t k = 0; k < fleet.robots.at(robot).nodes.size(); ++k)
+      poses.push_back(solved.poses[node++]);
   }
   solution.components.push_back({robots.front(), robots, solved.status, solved.ok() ? "" : solved.reason,
                                  solved.iterations, solved.cost_final});
@@ -270,7 +279,8 @@ void anchor_component(const FleetGraph& fleet, const Component& component, Fleet
   }
 }
 
-PoseGraph optimized_graph(const FleetGraph& fleet, const FleetSolution& solution, const BackEndConfig& config) {
+PoseGraph optimized_graph(const FleetGraph& fleet, const FleetSolution& solution,
+                          const BackEndConfig& config) {
   std::vector<const LoopOutcome*> used;
   for (const LoopOutcome& outcome : solution.loops) {
     if (outcome.in_use()) used.push_back(&outcome);
@@ -314,7 +324,8 @@ FleetSolution solve(const FleetGraph& fleet, const BackEndConfig& config) {
   solution.initial = build_graph(fleet, accepted, config);
   solution.after_pcm = build_graph(fleet, consistent, config);
 
-  // First all robots that consistent loops link, solved together; what remains in use then says who shares a map.
+  // First all robots that consistent loops link, solved together; what remains in use then says who shares a
+  // map.
   for (LoopOutcome& outcome : solution.loops) outcome.weight = outcome.in_clique ? 1.0 : 0.0;
   for (const std::vector<RobotId>& group : linked_robots(fleet, solution.loops)) {
     solve_group(fleet, group, config, solution);

@@ -22,8 +22,8 @@ struct RobotGraph {
   std::vector<GraphNode> nodes;  ///< Index = keyframe index.
 };
 
-/// All that one agent knows: its own graph, the graphs and loops that messages brought. Ordered containers throughout,
-/// so that two agents that know the same compute the same, to the last bit.
+/// All that one agent knows: its own graph, the graphs and loops that messages brought. Ordered containers
+/// throughout, so that two agents that know the same compute the same, to the last bit.
 struct FleetGraph {
   std::map<RobotId, RobotGraph> robots;
   std::map<std::pair<KeyframeId, KeyframeId>, LoopClosure> loops;
@@ -32,8 +32,8 @@ struct FleetGraph {
 struct BackEndConfig {
   bool pcm_on = true;
   bool gnc_on = true;
-  int min_loops = 1;               ///< Loops in use between two robots before they count as merged.
-  double loop_translation = 0.1; ///< Fixed sigmas of a loop, as in Swarm-SLAM's back-end.
+  int min_loops = 1;              ///< Loops in use between two robots before they count as merged.
+  double loop_translation = 0.1;  ///< Fixed sigmas of a loop, as in Swarm-SLAM's back-end.
   double loop_rotation_deg = 0.6;
   PcmConfig pcm;
   GncConfig gnc;
@@ -43,8 +43,8 @@ Fields fields_of(BackEndConfig& config);
 /// What became of one accepted loop.
 struct LoopOutcome {
   LoopClosure loop;
-  bool in_clique = false;   ///< Kept by PCM (always true with PCM off).
-  double weight = 0.0;      ///< Final GNC weight; 0 where PCM dropped it.
+  bool in_clique = false;  ///< Kept by PCM (always true with PCM off).
+  double weight = 0.0;     ///< Final GNC weight; 0 where PCM dropped it.
   [[nodiscard]] bool in_use() const { return weight >= 0.5; }
 };
 
@@ -56,7 +56,7 @@ struct PairOutcome {
   std::size_t second_clique = 0;  ///< The largest one disjoint from it.
   bool clique_exact = true;
   bool merged = false;
-  std::string refused_reason;     ///< One sentence; "" when merged.
+  std::string refused_reason;  ///< One sentence; "" when merged.
 };
 
 /// Robots that share one frame: that of `anchor`'s odometry, the smallest id of them.

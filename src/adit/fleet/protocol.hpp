@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// What robots say to one another. Every message is bounded in size, can be encoded (transport/wire), may arrive twice
-/// and may be lost: state is synchronised by asking "what do you have" and sending the rest.
+/// What robots say to one another. Every message is bounded in size, can be encoded (transport/wire), may
+/// arrive twice and may be lost: state is synchronised by asking "what do you have" and sending the rest.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ inline constexpr std::size_t kCloudsPerMessage = 16;
 inline constexpr std::size_t kNodesPerMessage = 512;
 inline constexpr std::size_t kLoopsPerMessage = 256;
 
-/// A keyframe as the graph needs it. `step_covariance` is of the relative pose from the keyframe before (zero for the
-/// first).
+/// A keyframe as the graph needs it. `step_covariance` is of the relative pose from the keyframe before (zero
+/// for the first).
 struct GraphNode {
   Stamp stamp;
   Pose T_odom_base;

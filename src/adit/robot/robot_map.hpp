@@ -12,18 +12,21 @@
 
 namespace adit {
 
-/// How far the odometry between two keyframes may be off: a random walk, so that variances grow with the distance
-/// driven and add up along the chain whatever the spacing of the keyframes.
+/// How far the odometry between two keyframes may be off: a random walk, so that variances grow with the
+/// distance driven and add up along the chain whatever the spacing of the keyframes.
 struct OdometryNoise {
   double translation = 0.05;   ///< Sigma of each axis after one metre.
-  double rotation_deg = 0.15;    ///< Sigma about each axis after one metre.
+  double rotation_deg = 0.15;  ///< Sigma about each axis after one metre.
 };
 inline Fields fields_of(OdometryNoise& c) {
-  return {{"translation", &c.translation, "m/sqrt(m)", 1e-4, 1.0, "odometry noise, translation after one metre"},
-          {"rotation_deg", &c.rotation_deg, "deg/sqrt(m)", 1e-4, 10.0, "odometry noise, rotation after one metre"}};
+  return {
+      {"translation", &c.translation, "m/sqrt(m)", 1e-4, 1.0, "odometry noise, translation after one metre"},
+      {"rotation_deg", &c.rotation_deg, "deg/sqrt(m)", 1e-4, 10.0,
+       "odometry noise, rotation after one metre"}};
 }
 
-/// Covariance of the relative pose over `distance_m` metres of odometry (right perturbation). Never below that of 1 cm.
+/// Covariance of the relative pose over `distance_m` metres of odometry (right perturbation). Never below
+/// that of 1 cm.
 [[nodiscard]] Matrix6 odometry_covariance(const OdometryNoise& noise, double distance_m);
 
 /// One robot's own map: its keyframes in the order driven and the odometry that joins them. All vectors but
@@ -41,7 +44,8 @@ struct RobotMap {
   int num_refused = 0;           ///< Scans with too few points, or that diverged.
 };
 
-/// Which keyframes take part in what: the paper's two policies, and its filter applied to the loop search alone.
+/// Which keyframes take part in what: the paper's two policies, and its filter applied to the loop search
+/// alone.
 enum class KeyframeSelection {
   all,                 ///< Every keyframe in the graph and in the loop search.
   tunnel_filter,       ///< Tunnel-like keyframes leave graph and search, as in the paper.
@@ -50,8 +54,8 @@ enum class KeyframeSelection {
 [[nodiscard]] std::string_view to_string(KeyframeSelection selection);
 [[nodiscard]] Result<KeyframeSelection> keyframe_selection(std::string_view name);
 
-/// The map under that policy. Where keyframes leave, the others are numbered anew and covariances are composed over
-/// the gaps. A map whose keyframes all leave is returned empty.
+/// The map under that policy. Where keyframes leave, the others are numbered anew and covariances are
+/// composed over the gaps. A map whose keyframes all leave is returned empty.
 [[nodiscard]] RobotMap select_keyframes(const RobotMap& map, KeyframeSelection selection);
 
 }  // namespace adit

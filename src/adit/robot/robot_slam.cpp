@@ -28,7 +28,8 @@ Fields fields_of(RobotSlamConfig& c) {
   return fields;
 }
 
-RobotSlam::RobotSlam(RobotId id, const std::string& name, const RobotSlamConfig& config, const Pose& T_base_lidar)
+RobotSlam::RobotSlam(RobotId id, const std::string& name, const RobotSlamConfig& config,
+                     const Pose& T_base_lidar)
     : config_(checked(config)), odometry_(config.odometry, T_base_lidar), keyframe_policy_(config.keyframes) {
   map_.id = id;
   map_.name = name;
@@ -38,7 +39,8 @@ RobotStep RobotSlam::process(const Scan& scan, const std::optional<WheelDelta>& 
   const OdometryStep step = odometry_.register_scan(scan, wheel);
   map_.odometry.push_back({step.stamp, step.T_odom_base});
   map_.num_degenerate += step.status == StepStatus::degenerate ? 1 : 0;
-  map_.num_refused += step.status == StepStatus::too_few_points || step.status == StepStatus::diverged ? 1 : 0;
+  map_.num_refused +=
+      step.status == StepStatus::too_few_points || step.status == StepStatus::diverged ? 1 : 0;
   if (!keyframe_policy_.accepts(step)) return {step};
   add_keyframe(step);
   return {step, map_.keyframes.back().id};
@@ -76,8 +78,10 @@ Result<std::optional<WheelDelta>> wheel_before(const Recording& recording, std::
 Result<RobotMap> map_recording(const Recording& recording, RobotId id, const RobotSlamConfig& config,
                                const ScanObserver& observer) {
   if (config.odometry.method == "kinematic-icp" && recording.wheel.empty()) {
-    return fail(format("{}: kinematic-icp needs wheel odometry and the recording has none; use "
-                       "--set robot.odometry.method=kiss-icp", recording.name));
+    return fail(
+        format("{}: kinematic-icp needs wheel odometry and the recording has none; use "
+               "--set robot.odometry.method=kiss-icp",
+               recording.name));
   }
   RobotSlam slam(id, recording.name, config, recording.T_base_lidar);
   for (std::size_t i = 0; i < recording.num_scans(); ++i) {

@@ -26,8 +26,8 @@ struct RobotStep {
   std::optional<KeyframeId> keyframe = {};  ///< Set when this scan became one.
 };
 
-/// SLAM of one robot on its own: scan -> odometry -> keyframe with its descriptor. Loops with other robots are found
-/// by fleet/.
+/// SLAM of one robot on its own: scan -> odometry -> keyframe with its descriptor. Loops with other robots
+/// are found by fleet/.
 class RobotSlam {
  public:
   /// Throws ContractViolation when `config` is out of its documented ranges.
@@ -47,15 +47,17 @@ class RobotSlam {
   RobotMap map_;
 };
 
-/// The wheel motion from scan `index` - 1 to `index`; none for the first scan and for recordings without wheels.
+/// The wheel motion from scan `index` - 1 to `index`; none for the first scan and for recordings without
+/// wheels.
 [[nodiscard]] Result<std::optional<WheelDelta>> wheel_before(const Recording& recording, std::size_t index);
 
 /// Called after each scan with the number done; returns false to stop early.
 using ScanObserver = std::function<bool(std::size_t num_done)>;
 
-/// The whole recording through RobotSlam. Fails when a scan cannot be read, when kinematic-icp is asked for and there
-/// is no wheel odometry, or when the observer stops it.
-[[nodiscard]] Result<RobotMap> map_recording(const Recording& recording, RobotId id, const RobotSlamConfig& config,
+/// The whole recording through RobotSlam. Fails when a scan cannot be read, when kinematic-icp is asked for
+/// and there is no wheel odometry, or when the observer stops it.
+[[nodiscard]] Result<RobotMap> map_recording(const Recording& recording, RobotId id,
+                                             const RobotSlamConfig& config,
                                              const ScanObserver& observer = {});
 
 }  // namespace adit

@@ -22,7 +22,8 @@ inline Fields fields_of(LoopbackConfig& c) {
           {"seed", &c.seed, "", 0.0, 1.8e19, "seed of the losses"}};
 }
 
-/// Carries messages between agents of one process. Each is encoded and decoded, so that nothing but bytes passes.
+/// Carries messages between agents of one process. Each is encoded and decoded, so that nothing but bytes
+/// passes.
 class LoopbackBus {
  public:
   explicit LoopbackBus(const LoopbackConfig& config = {}) : config_(config) {}
@@ -30,8 +31,8 @@ class LoopbackBus {
   /// The agent must outlive the bus.
   void join(Agent& agent) { agents_[agent.id()] = &agent; }
 
-  /// The two come into range: delivers until both have nothing more to say. A message that cannot be decoded, or that
-  /// an agent fails on, is dropped and counted; nobody else is affected.
+  /// The two come into range: delivers until both have nothing more to say. A message that cannot be decoded,
+  /// or that an agent fails on, is dropped and counted; nobody else is affected.
   Result<> meet(RobotId a, RobotId b);
 
   [[nodiscard]] std::uint64_t bytes_sent(RobotId robot) const;

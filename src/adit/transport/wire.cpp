@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "adit/core/format.hpp"
@@ -13,7 +14,8 @@
 namespace adit {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the wire is little-endian, as all machines that adit runs on");
+static_assert(std::endian::native == std::endian::little,
+              "the wire is little-endian, as all machines that adit runs on");
 
 constexpr float kPointStep = 0.005F;  // metres
 constexpr float kPointReach = kPointStep * 32767.0F;
@@ -292,8 +294,11 @@ Result<Message> decode(std::span<const std::byte> bytes) {
   const std::size_t kind = in.scalar<std::uint8_t>();
   std::optional<Body> body = body_of(in, kind);
   if (!body) return fail(format("message of unknown kind {}", kind));
-  if (!in.ok()) return fail(format("message of kind {} is cut or damaged near byte {} of {}", kind, in.at(), bytes.size()));
-  if (!in.at_end()) return fail(format("message of kind {} has {} bytes too many", kind, bytes.size() - in.at()));
+  if (!in.ok())
+    return fail(
+        format("message of kind {} is cut or damaged near byte {} of {}", kind, in.at(), bytes.size()));
+  if (!in.at_end())
+    return fail(format("message of kind {} has {} bytes too many", kind, bytes.size() - in.at()));
   message.body = std::move(*body);
   return message;
 }

@@ -11,8 +11,9 @@
 
 namespace adit {
 
-/// The bytes of a message: little-endian, a version byte first. Numbers travel exactly, but for cloud points (16-bit
-/// steps of 5 mm, so at most 163 m away; farther ones are left out) and descriptor cells (a byte each).
+/// The bytes of a message: little-endian, a version byte first. Numbers travel exactly, but for cloud points
+/// (16-bit steps of 5 mm, so at most 163 m away; farther ones are left out) and descriptor cells (a byte
+/// each).
 [[nodiscard]] std::vector<std::byte> encode(const Message& message);
 
 /// Reads what `encode` wrote; cut, foreign or damaged bytes are an error that names the place, never a crash.
