@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "adit/core/result.hpp"
+#include "adit/simulation/raycaster.hpp"
+#include "adit/simulation/route.hpp"
+
+namespace adit {
+
+/// Height of the surface at (p.x, p.y) that is nearest to p.z, from `kFloorAbove` above p to `kFloorBelow`
+/// below it; none when there is no surface. The nearest counts and not the first from above, since worlds
+/// have several levels and ceilings lower than `kFloorAbove`.
+inline constexpr double kFloorAbove = 1.5;
+inline constexpr double kFloorBelow = 3.0;
+[[nodiscard]] std::optional<double> floor_height(const Raycaster& raycaster, const Vector3& p);
+
+/// The route's waypoints put on the floor, with further points on the floor between those more than a metre
+/// apart. Fails, naming robot, waypoint and position, on fewer than two distinct waypoints, a number that is
+/// not finite, a waypoint without floor, and a wall between two waypoints (looked for 0.5 m above the floor).
+[[nodiscard]] Result<std::vector<Vector3>> floor_line(const Raycaster& raycaster, const Route& route);
+
+}  // namespace adit

@@ -1,0 +1,248 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/simulation/trajectory.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "adit/core/format.hpp"
+#include "adit/simulation/floor_line.hpp"
+
+namespace adit {
+namespace {
+
+constexpr int kSamplesPerCorner = 64;
+constexpr double kHighestStep = 0.3;  // what a wheel can stand on, from the floor midway between the wheels
+
+// One sample of the way, dense enough (centimetres) to be interpolated linearly.
+struct WayPoint {
+  Vector3 position = Vector3::Zero();
+  double yaw = 0.0;  // continuous: not wrapped
+  double curvature = 0.0;
+  double slope_ahead = 0.0;  // rise of the floor along x and along y of the base frame
+  double slope_left = 0.0;
+  double distance = 0.0;  // along the way
+  double speed = 0.0;
+  double time = 0.0;
+};
+using Way = std::vector<WayPoint>;
+
+double polyline_length(const std::vector<Vector3>& line) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < line.size(); ++i) length += (line[i] - line[i - 1]).norm();
+  return length;
+}
+
+// Points on the polyline at equal distances of about `spacing`, both ends included, four or more.
+std::vector<Vector3> resampled(const std::vector<Vector3>& line, double spacing) {
+  const double length = polyline_length(line);
+  const double parts = std::max(3.0, std::round(length / spacing));
+  std::vector<Vector3> points{line.front()};
+  double passed = 0.0;
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const double piece = (line[i] - line[i - 1]).norm();
+    while (static_cast<double>(points.size()) < parts) {
+      const double beyond = length * static_cast<double>(points.size()) / parts - passed;
+      if (beyond > piece) break;
+      points.emplace_back(line[i - 1] + (beyond / piece) * (line[i] - line[i - 1]));
+    }
+    passed += piece;
+  }
+  points.push_back(line.back());
+  return points;
+}
+
+struct Bend {
+  Vector3 position;
+  Vector3 first;  // derivatives by u
+  Vector3 second;
+};
+
+// Uniform cubic B-spline between the middle two of four control points, u in [0, 1]. It rounds corners, its
+// curvature is continuous, and it stays inside the hull of the points, so it does not swing out into walls.
+Bend b_spline(const std::array<Vector3, 4>& c, double u) {
+  const double w = 1.0 - u;
+  const double u2 = u * u;
+  Bend bend;
+  bend.position = (w * w * w * c[0] + (3.0 * u2 * u - 6.0 * u2 + 4.0) * c[1] +
+                   (-3.0 * u2 * u + 3.0 * u2 + 3.0 * u + 1.0) * c[2] + u2 * u * c[3]) /
+                  6.0;
+  bend.first =
+      0.5 * (-w * w * c[0] + (3.0 * u2 - 4.0 * u) * c[1] + (-3.0 * u2 + 2.0 * u + 1.0) * c[2] + u2 * c[3]);
+  bend.second = w * c[0] + (3.0 * u - 2.0) * c[1] + (1.0 - 3.0 * u) * c[2] + u * c[3];
+  return bend;
+}
+
+WayPoint way_point(const Bend& bend) {
+  WayPoint point;
+  point.position = bend.position;
+  point.yaw = std::atan2(bend.first.y(), bend.first.x());
+  const double speed = std::max(bend.first.head<2>().norm(), 1e-9);
+  point.curvature =
+      (bend.first.x() * bend.second.y() - bend.first.y() * bend.second.x()) / (speed * speed * speed);
+  return point;
+}
+
+Way smoothed(const std::vector<Vector3>& line, double corner_length) {
+  std::vector<Vector3> control = resampled(line, corner_length);
+  // Mirrored end points: the curve then starts and ends on the line's ends, straight.
+  const std::size_t n = control.size();
+  control.insert(control.begin(), 2.0 * control[0] - control[1]);
+  control.push_back(2.0 * control[n] - control[n - 1]);
+  Way way;
+  for (std::size_t i = 1; i + 2 < control.size(); ++i) {
+    const std::array<Vector3, 4> four{control[i - 1], control[i], control[i + 1], control[i + 2]};
+    for (int k = 0; k < kSamplesPerCorner; ++k)
+      way.push_back(way_point(b_spline(four, double(k) / kSamplesPerCorner)));
+    if (i + 3 == control.size()) way.push_back(way_point(b_spline(four, 1.0)));
+  }
+  return way;
+}
+
+Result<> unwrap_yaw(Way& way, const std::string& robot) {
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    const double turn = wrap_angle(way[i].yaw - way[i - 1].yaw);
+    if (std::abs(turn) > std::numbers::pi / 4.0) {
+      const Vector3& p = way[i].position;
+      return fail(
+          format("{}: the route turns back on the spot at ({:.2f}, {:.2f}, {:.2f}); give it a curve to drive",
+                 robot, p.x(), p.y(), p.z()));
+    }
+    way[i].yaw = way[i - 1].yaw + turn;
+  }
+  return {};
+}
+
+// The heights under the four wheels give the plane that the robot stands on.
+void stand_on_floor(const Raycaster& raycaster, const DriveConfig& config, WayPoint& point) {
+  point.position.z() = floor_height(raycaster, point.position).value_or(point.position.z());
+  const Eigen::Vector2d ahead =
+      0.5 * config.wheelbase * Eigen::Vector2d(std::cos(point.yaw), std::sin(point.yaw));
+  const Eigen::Vector2d left =
+      0.5 * config.track * Eigen::Vector2d(-std::sin(point.yaw), std::cos(point.yaw));
+  const auto height = [&](double along, double across) {
+    Vector3 wheel = point.position;
+    wheel.head<2>() += along * ahead + across * left;
+    const double z = floor_height(raycaster, wheel).value_or(wheel.z());
+    return std::abs(z - wheel.z()) <= kHighestStep ? z : wheel.z();
+  };
+  const double front_left = height(1.0, 1.0);
+  const double front_right = height(1.0, -1.0);
+  const double rear_left = height(-1.0, 1.0);
+  const double rear_right = height(-1.0, -1.0);
+  point.slope_ahead = 0.5 * (front_left + front_right - rear_left - rear_right) / config.wheelbase;
+  point.slope_left = 0.5 * (front_left + rear_left - front_right - rear_right) / config.track;
+  point.position.z() = 0.25 * (front_left + front_right + rear_left + rear_right);
+}
+
+std::vector<double> moving_average(const std::vector<double>& values, std::size_t half_width) {
+  std::vector<double> sums{0.0};
+  for (const double value : values) sums.push_back(sums.back() + value);
+  std::vector<double> means;
+  means.reserve(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    // Symmetric up to the ends, where the window shrinks: a slope then keeps its value.
+    const std::size_t half = std::min({half_width, i, values.size() - 1 - i});
+    means.push_back((sums[i + half + 1] - sums[i - half]) / static_cast<double>(2 * half + 1));
+  }
+  return means;
+}
+
+// Tyres and springs: over about a wheelbase, twice, so that speeds stay continuous.
+template <class Member>
+void spring(Way& way, std::size_t half_width, Member member) {
+  std::vector<double> values;
+  values.reserve(way.size());
+  for (WayPoint& point : way) values.push_back(member(point));
+  values = moving_average(moving_average(values, half_width), half_width);
+  for (std::size_t i = 0; i < way.size(); ++i) member(way[i]) = values[i];
+}
+
+void follow_floor(const Raycaster& raycaster, const DriveConfig& config, Way& way) {
+  for (WayPoint& point : way) stand_on_floor(raycaster, config, point);
+  const double sample_length = config.corner_length / kSamplesPerCorner;
+  const auto half_width = static_cast<std::size_t>(std::ceil(0.25 * config.wheelbase / sample_length));
+  spring(way, half_width, [](WayPoint& p) -> double& { return p.position.z(); });
+  spring(way, half_width, [](WayPoint& p) -> double& { return p.slope_ahead; });
+  spring(way, half_width, [](WayPoint& p) -> double& { return p.slope_left; });
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    way[i].distance = way[i - 1].distance + (way[i].position - way[i - 1].position).norm();
+  }
+}
+
+// The fastest drive within the limits (forward and backward pass over v^2 = v0^2 + 2 a s), then all speeds
+// times one factor, which keeps the shape and makes the mean exact.
+void set_speeds(const DriveConfig& config, double mean_speed, Way& way) {
+  const double two_a = 2.0 * config.acceleration;
+  const auto limit = [&](WayPoint& point, const WayPoint& neighbour) {
+    const double gap = std::abs(point.distance - neighbour.distance);
+    point.speed = std::min(point.speed, std::sqrt(neighbour.speed * neighbour.speed + two_a * gap));
+  };
+  for (WayPoint& point : way) {
+    point.speed = std::min(
+        mean_speed, std::sqrt(config.lateral_acceleration / std::max(std::abs(point.curvature), 1e-9)));
+  }
+  way.front().speed = way.back().speed = 0.0;
+  for (std::size_t i = 1; i < way.size(); ++i) limit(way[i], way[i - 1]);
+  for (std::size_t i = way.size() - 1; i-- > 0;) limit(way[i], way[i + 1]);
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    way[i].time =
+        way[i - 1].time + 2.0 * (way[i].distance - way[i - 1].distance) / (way[i].speed + way[i - 1].speed);
+  }
+  const double factor = mean_speed * way.back().time / way.back().distance;
+  for (WayPoint& point : way) {
+    point.speed *= factor;
+    point.time /= factor;
+  }
+}
+
+Pose T_world_base(const WayPoint& a, const WayPoint& b, double share) {
+  const auto mix = [&](double from, double to) { return from + share * (to - from); };
+  const double yaw = mix(a.yaw, b.yaw);
+  const Vector3 ahead(std::cos(yaw), std::sin(yaw), mix(a.slope_ahead, b.slope_ahead));
+  const Vector3 left(-std::sin(yaw), std::cos(yaw), mix(a.slope_left, b.slope_left));
+  Matrix3 R;
+  R.col(0) = ahead.normalized();
+  R.col(2) = ahead.cross(left).normalized();
+  R.col(1) = R.col(2).cross(R.col(0));
+  return {R, a.position + share * (b.position - a.position)};
+}
+
+Pose pose_after(const Way& way, double driving_time) {
+  const double time = std::clamp(driving_time, 0.0, way.back().time);
+  const auto after = std::ranges::lower_bound(way.begin() + 1, way.end() - 1, time, {}, &WayPoint::time);
+  const WayPoint& a = *(after - 1);
+  const WayPoint& b = *after;
+  const double t = time - a.time;
+  const double acceleration = (b.speed - a.speed) / (b.time - a.time);
+  const double share = (a.speed + 0.5 * acceleration * t) * t / (b.distance - a.distance);
+  return T_world_base(a, b, std::clamp(share, 0.0, 1.0));
+}
+
+Trajectory sampled(const Way& way, const DriveConfig& config, Stamp start) {
+  Trajectory trajectory;
+  const double duration = config.stand_time + way.back().time;
+  const auto last = static_cast<std::int64_t>(std::ceil(duration * config.sample_rate_hz));
+  for (std::int64_t i = 0; i <= last; ++i) {
+    const double time = static_cast<double>(i) / config.sample_rate_hz;
+    trajectory.push_back({start + from_seconds(time), pose_after(way, time - config.stand_time)});
+  }
+  return trajectory;
+}
+
+}  // namespace
+
+Result<Trajectory> drive(const Raycaster& raycaster, const Route& route, const DriveConfig& config,
+                         Stamp start) {
+  const Result<std::vector<Vector3>> line = floor_line(raycaster, route);
+  if (!line) return tl::unexpected(line.error());
+  Way way = smoothed(*line, config.corner_length);
+  if (const Result<> turns = unwrap_yaw(way, route.name); !turns) return tl::unexpected(turns.error());
+  follow_floor(raycaster, config, way);
+  set_speeds(config, route.speed_mps, way);
+  return sampled(way, config, start);
+}
+
+}  // namespace adit
