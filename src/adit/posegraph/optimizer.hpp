@@ -17,7 +17,7 @@ struct OptimizerConfig {
       "auto";  ///< none: the graph's own poses; chordal; auto: the one of lower cost.
   int max_iterations = 100;
   double relative_tolerance = 1e-6;  ///< Stop when a step lowers the cost by less than this share of it.
-  double initial_damping = 1e-8;     ///< First lambda of LM, relative to the diagonal of the normal matrix.
+  double initial_damping = 0.0;      ///< First lambda of LM, relative to the diagonal of the normal matrix.
 };
 inline Fields fields_of(OptimizerConfig& c) {
   return {

@@ -52,8 +52,10 @@ struct Components {
   std::vector<std::size_t> of_node;  ///< Component of each node.
   std::vector<std::size_t> anchors;  ///< Node index of each component's anchor: its smallest key.
 };
+/// `edge_weights` (empty: all 1): edges of weight 0 link nothing.
 template <class P>
-[[nodiscard]] Components connected_components(const BasicPoseGraph<P>& graph);
+[[nodiscard]] Components connected_components(const BasicPoseGraph<P>& graph,
+                                              const std::vector<double>& edge_weights = {});
 
 /// Poses by composing edges outwards from the nodes whose pose is known, along as few loop edges as can be,
 /// then as few edges as can be. A component with no known pose starts with its anchor at the identity. Known
