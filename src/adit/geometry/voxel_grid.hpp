@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "adit/core/check.hpp"
 #include "adit/core/point_cloud.hpp"
-#include "adit/core/rng.hpp"
 
 namespace adit {
 
@@ -73,45 +73,52 @@ class VoxelTable {
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] std::optional<std::uint32_t> find(VoxelKey key) const {
-    for (std::size_t i = home_of(key);; i = (i + 1) & mask_) {
-      if (slots_[i].key == key) return slots_[i].number;
-      if (slots_[i].key == kEmpty) return {};
-    }
+    const Slot& slot = slots_[position_of(key)];
+    if (slot.key == kEmpty) return {};
+    return slot.number;
   }
   /// The number that `key` already has; otherwise gives it `number`, and the answer says nothing.
   std::optional<std::uint32_t> find_or_insert(VoxelKey key, std::uint32_t number) {
-    for (std::size_t i = home_of(key);; i = (i + 1) & mask_) {
-      if (slots_[i].key == key) return slots_[i].number;
-      if (slots_[i].key == kEmpty) {
-        slots_[i] = {key, number};
-        if (2 * ++size_ > mask_) grow();
-        return {};
-      }
-    }
+    Slot& slot = slots_[position_of(key)];
+    if (slot.key == key) return slot.number;
+    slot = {key, number};
+    if (2 * ++size_ > slots_.size()) grow();
+    return {};
   }
   /// False when there is no such key.
   bool erase(VoxelKey key);
 
  private:
+  static constexpr VoxelKey kEmpty{~std::uint64_t{0}};  // bit 63 is never set in a key
   struct Slot {
     VoxelKey key = kEmpty;
     std::uint32_t number = 0;
   };
-  static constexpr VoxelKey kEmpty{~std::uint64_t{0}};  // bit 63 is never set in a key
 
+  // Fibonacci hashing: the top bits of a multiplication by 2^64 / golden ratio.
   [[nodiscard]] std::size_t home_of(VoxelKey key) const {
-    return static_cast<std::size_t>(mix64(key.value)) & mask_;
+    return static_cast<std::size_t>((key.value * 0x9e3779b97f4a7c15ULL) >> shift_);
+  }
+  // Where `key` is, or the empty slot where it would go.
+  [[nodiscard]] std::size_t position_of(VoxelKey key) const {
+    std::size_t i = home_of(key);
+    while (slots_[i].key != key && slots_[i].key != kEmpty) i = (i + 1) & (slots_.size() - 1);
+    return i;
   }
   void grow();
 
-  std::vector<Slot> slots_;
-  std::size_t mask_ = 0;
+  std::vector<Slot> slots_;  ///< Their number is a power of two.
+  unsigned shift_ = 0;
   std::size_t size_ = 0;
 };
 
 /// The first point of each voxel, in the order of the cloud, with its intensity and time. NaN points are
 /// dropped.
 [[nodiscard]] PointCloud voxel_downsample(const PointCloud& cloud, double voxel_size);
+
+/// The same for bare points.
+[[nodiscard]] std::vector<Eigen::Vector3f> voxel_downsample(std::span<const Eigen::Vector3f> points,
+                                                            double voxel_size);
 
 /// The mean point (intensity, time) of each voxel, in the order in which voxels first occur. NaN points are
 /// dropped.

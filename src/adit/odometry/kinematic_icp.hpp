@@ -51,13 +51,17 @@ class KinematicIcp {
   [[nodiscard]] const LocalMap& map() const { return map_; }
 
  private:
+  [[nodiscard]] bool at_rest(const Pose& T_prediction) const;
+  [[nodiscard]] OdometryStep resting(const Pose& T_prediction) const;
+  [[nodiscard]] OdometryStep moving(const Pose& T_prediction);
+  [[nodiscard]] OdometryStep registered(const ThinnedScan& scan, const Pose& T_prediction);
+
   KinematicIcpConfig config_;
   Pose T_base_lidar_;
   LocalMap map_;
   DeviationStatistics deviations_;
   Pose T_odom_base_;
-  Pose T_odom_registered_;  ///< T_odom_base of the last scan that entered the map.
-  std::optional<OdometryStep> last_registered_;
+  std::optional<OdometryStep> last_registered_;  ///< Of the last moving scan, if that entered the map.
   bool started_ = false;
   PointCloud cloud_;
 };

@@ -46,6 +46,8 @@ class KissIcp {
   [[nodiscard]] double sigma() const { return threshold_.sigma(); }
 
  private:
+  [[nodiscard]] OdometryStep registered(const ThinnedScan& scan, const Pose& T_prediction);
+
   KissIcpConfig config_;
   Pose T_base_lidar_;
   LocalMap map_;

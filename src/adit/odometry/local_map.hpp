@@ -24,14 +24,15 @@ class LocalMap {
   /// `voxel_size` and `max_points_per_voxel` positive.
   LocalMap(double voxel_size, int max_points_per_voxel);
 
+  [[nodiscard]] double voxel_size() const { return static_cast<double>(grid_.voxel_size()); }
   [[nodiscard]] bool empty() const { return table_.size() == 0; }
   [[nodiscard]] std::size_t num_voxels() const { return table_.size(); }
   [[nodiscard]] std::size_t num_points() const;
   [[nodiscard]] std::vector<Eigen::Vector3f> points() const;
 
-  /// Adds the points (map frame) that their voxels still have room for. Points that are not finite are left
+  /// Adds those points that their voxels still have room for. Points that are not finite are left
   /// out.
-  void add(std::span<const Eigen::Vector3f> points);
+  void add(std::span<const Eigen::Vector3f> points_base, const Pose& T_map_base);
   /// Removes each voxel whose first point is farther than `max_distance` from `centre`.
   void remove_beyond(const Eigen::Vector3f& centre, double max_distance);
 
@@ -44,7 +45,7 @@ class LocalMap {
  private:
   struct Voxel {
     VoxelKey key;
-    int num_points = 0;  ///< 0 marks a block that is free for the next new voxel.
+    std::uint32_t num_points = 0;  ///< 0 marks a block that is free for the next new voxel.
   };
 
   [[nodiscard]] const float* block(std::size_t voxel) const {
@@ -52,10 +53,10 @@ class LocalMap {
   }
   [[nodiscard]] float* block(std::size_t voxel) { return coordinates_.data() + voxel * 3 * stride_; }
   [[nodiscard]] std::uint32_t voxel_for(VoxelKey key);
-  void add(const Eigen::Vector3f& point);
+  void add_point(const Eigen::Vector3f& point);
 
   VoxelGrid grid_;
-  int max_points_per_voxel_;
+  std::uint32_t max_points_per_voxel_;
   float min_squared_spacing_;
   std::size_t
       stride_;  ///< Floats a coordinate and block: max_points_per_voxel rounded up to whole vectors of four.
@@ -73,9 +74,8 @@ void LocalMap::for_each_within(const Eigen::Vector3f& centre, float radius, cons
     const auto voxel = table_.find(key->shifted(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
     if (!voxel) continue;
     const float* x = block(*voxel);
-    for (int k = 0; k < voxels_[*voxel].num_points; ++k) {
-      const Eigen::Vector3f p(x[k], x[stride_ + static_cast<std::size_t>(k)],
-                              x[2 * stride_ + static_cast<std::size_t>(k)]);
+    for (std::size_t k = 0; k < voxels_[*voxel].num_points; ++k) {
+      const Eigen::Vector3f p(x[k], x[stride_ + k], x[2 * stride_ + k]);
       if ((p - centre).squaredNorm() < radius * radius) visit(p);
     }
   }

@@ -39,6 +39,7 @@ class Odometry {
 
  private:
   std::variant<KissIcp, KinematicIcp> method_;
+  bool started_ = false;
 };
 
 }  // namespace adit

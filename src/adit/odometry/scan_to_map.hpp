@@ -5,6 +5,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "adit/core/config.hpp"
 #include "adit/core/records.hpp"
@@ -41,14 +42,8 @@ inline Fields fields_of(ScanToMapConfig& c) {
       {"max_correction", &c.max_correction, "m", 0.01, 1000.0,
        "a larger one of the prediction counts as diverged"},
       {"degeneracy_threshold", &c.degeneracy_threshold, "", 0.0, 0.33,
-       "share of the normals' information (1/3 = even) below which a direction counts as open"}};
+       "share of the information (1/3 = even) below which a direction counts as open"}};
 }
-
-/// One source point and its nearest map point.
-struct Correspondence {
-  Vector3 source;    ///< p, base frame.
-  Vector3 residual;  ///< R^T (T p - q), base frame: a right perturbation then has the Jacobian [I, -hat(p)].
-};
 
 /// Normal equations of a Gauss-Newton step in N unknowns, and the unweighted sum of squared residuals.
 template <int N>
@@ -83,18 +78,65 @@ struct NormalEquations {
 /// for every turn, 0 included.
 [[nodiscard]] Pose unicycle_motion(double distance, double turn);
 
-/// How well the scene fixes the pose. Point-to-point residuals hide open directions (any two samplings of a
-/// smooth wall have residuals along it), so this looks at the normals of the map around the correspondences:
-/// point-to-plane information with the residuals' variance along the normals, its open directions (share
-/// below `degeneracy_threshold`) set to zero.
+/// Where iterating ended. With too few correspondences or after divergence the pose is the prediction.
+struct Alignment {
+  Pose T_map_base;
+  StepStatus status = StepStatus::ok;
+  int num_correspondences = 0;
+  int iterations = 0;
+};
+
+/// Gauss-Newton on `linearize_rigid` from the prediction; `sigma` is the kernel's scale and correspondences
+/// reach to 3 sigma.
+[[nodiscard]] Alignment align_rigid(std::span<const Eigen::Vector3f> source, const LocalMap& map,
+                                    const Pose& T_prediction, double sigma, const ScanToMapConfig& config);
+
+/// Gauss-Newton on `linearize_unicycle` from the prediction. The forward step is damped by beta = 1 / (mean
+/// squared residual at the prediction), so the better the wheels already fit the scene, the more they are
+/// trusted.
+[[nodiscard]] Alignment align_unicycle(std::span<const Eigen::Vector3f> source, const LocalMap& map,
+                                       const Pose& T_prediction, double max_distance,
+                                       const ScanToMapConfig& config);
+
+/// How well the scene fixes the pose. Point-to-point residuals hide open directions (two samplings of one
+/// smooth wall always leave residuals along it), so this looks at the normals of the map around the
+/// correspondences: point-to-plane information with the variance of the residuals along the normals, and
+/// nothing along open directions.
 struct Observability {
   Matrix6 information = Matrix6::Zero();  ///< Of T_map_base, right perturbation.
-  double weakest =
-      0.0;  ///< Smallest eigenvalue of the normalised information (its trace is 2: 1 each for t and R).
-  bool degenerate = true;
+  /// Smallest eigenvalue of the mean information a correspondence, with rotations about each body axis
+  /// measured by the displacement at the scene's root-mean-square distance from it: 0 is open, 1/3 as good as
+  /// can be.
+  double weakest = 0.0;
+  bool degenerate = true;  ///< `weakest` is below `degeneracy_threshold`.
 };
 [[nodiscard]] Observability observability(std::span<const Eigen::Vector3f> source, const LocalMap& map,
                                           const Pose& T_map_base, double max_distance,
                                           double degeneracy_threshold);
+
+/// A scan thinned twice (KISS-ICP, section III-B), base frame.
+struct ThinnedScan {
+  std::vector<Eigen::Vector3f> map_points;  ///< One a cube of half a voxel: what the map takes.
+  std::vector<Eigen::Vector3f> source;      ///< Of those one a cube of 1.5 voxels: what is registered.
+};
+[[nodiscard]] ThinnedScan thinned(std::span<const Eigen::Vector3f> points_base, double voxel_size);
+
+/// The step of a scan that finds the map empty: it starts the map unless it has too few points for that.
+[[nodiscard]] OdometryStep first_step(const ThinnedScan& scan, const Pose& T_prediction,
+                                      const ScanToMapConfig& config);
+
+/// The step of an aligned scan: diagnosis and information added to a registered pose.
+[[nodiscard]] OdometryStep step_of(const Alignment& alignment, std::span<const Eigen::Vector3f> source,
+                                   const LocalMap& map, double max_distance, const ScanToMapConfig& config);
+
+/// Whether the scan of such a step may enter the map: it was registered, or it starts the map.
+[[nodiscard]] inline bool enters_map(StepStatus status) {
+  return status == StepStatus::ok || status == StepStatus::degenerate || status == StepStatus::no_map;
+}
+
+/// Adds the scan where the step puts it, if it may enter, and forgets what is out of range of the new pose: a
+/// robot that has left its map behind finds it empty and starts a new one where the prediction is.
+void update_map(LocalMap& map, const ThinnedScan& scan, const OdometryStep& step,
+                const ScanToMapConfig& config);
 
 }  // namespace adit

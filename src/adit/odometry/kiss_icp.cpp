@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/odometry/kiss_icp.hpp"
+
+#include "adit/odometry/preprocess.hpp"
+
+namespace adit {
+
+KissIcp::KissIcp(const KissIcpConfig& config, const Pose& T_base_lidar)
+    : config_(config),
+      T_base_lidar_(T_base_lidar),
+      map_(config.voxel_size, config.max_points_per_voxel),
+      threshold_(config.initial_threshold, config.min_motion, config.max_range) {}
+
+OdometryStep KissIcp::register_scan(const Scan& scan) {
+  ADIT_CHECK(!stamp_ || *stamp_ < scan.stamp, "the stamps of scans ascend");
+  const Pose T_prediction = motion_ ? T_odom_base_ * motion_->T_start_end : T_odom_base_;
+  cloud_ = preprocess(scan.cloud, {config_.min_range, config_.max_range}, T_base_lidar_,
+                      config_.deskew ? motion_ : std::nullopt);
+  const ThinnedScan thin = thinned(cloud_.points, config_.voxel_size);
+  OdometryStep step = map_.empty() ? first_step(thin, T_prediction, config_) : registered(thin, T_prediction);
+  step.stamp = scan.stamp;
+  update_map(map_, thin, step, config_);
+  if (stamp_) motion_ = {T_odom_base_.inverse() * step.T_odom_base, scan.stamp - *stamp_};
+  stamp_ = scan.stamp;
+  T_odom_base_ = step.T_odom_base;
+  return step;
+}
+
+OdometryStep KissIcp::registered(const ThinnedScan& scan, const Pose& T_prediction) {
+  const double sigma = threshold_.sigma();
+  const Alignment alignment = align_rigid(scan.source, map_, T_prediction, sigma, config_);
+  if (alignment.status == StepStatus::ok)
+    threshold_.add(T_prediction.inverse() * alignment.T_map_base);
+  else
+    threshold_.failed();
+  return step_of(alignment, scan.source, map_, 3.0 * sigma, config_);
+}
+
+}  // namespace adit

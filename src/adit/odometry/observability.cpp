@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <vector>
+
+#include "adit/odometry/scan_to_map.hpp"
+
+namespace adit {
+namespace {
+
+// A direction is judged by some hundreds of normals as well as by thousands.
+constexpr std::size_t kMaxSamples = 512;
+// Below six points a plane fits anything.
+constexpr int kMinPlanePoints = 6;
+// A patch whose second extent is less than a fifth of its first is a line (one scan ring): its normal is
+// chance.
+constexpr double kMinPatchRatio = 0.04;
+// No sensor and no map of 0.2 m spacing is better than a centimetre.
+constexpr double kMinVariance = 1e-4;
+
+// One sampled correspondence: d(residual along the normal) / d(right perturbation), and that residual.
+struct PlaneRow {
+  Vector6 jacobian;
+  double residual = 0.0;
+};
+
+std::optional<Vector3> normal_at(const LocalMap& map, const Eigen::Vector3f& point) {
+  const auto radius = static_cast<float>(map.voxel_size());
+  int count = 0;
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+  map.for_each_within(point, radius, [&](const Eigen::Vector3f& q) {
+    const Eigen::Vector3f d = q - point;
+    sum += d;
+    squares += d * d.transpose();
+    ++count;
+  });
+  if (count < kMinPlanePoints) return {};
+  const Vector3 mean = sum.cast<double>() / count;
+  Eigen::SelfAdjointEigenSolver<Matrix3> eigen;
+  eigen.computeDirect(squares.cast<double>() / count - mean * mean.transpose());
+  if (eigen.eigenvalues()[1] < kMinPatchRatio * eigen.eigenvalues()[2]) return {};
+  return eigen.eigenvectors().col(0);
+}
+
+std::vector<PlaneRow> plane_rows(std::span<const Eigen::Vector3f> source, const LocalMap& map,
+                                 const Pose& T_map_base, float max_distance) {
+  const Matrix3 R = T_map_base.rotation_matrix();
+  const std::size_t stride = source.size() / kMaxSamples + 1;
+  std::vector<PlaneRow> rows;
+  for (std::size_t i = 0; i < source.size(); i += stride) {
+    const Vector3 p = source[i].cast<double>();
+    const Vector3 at = R * p + T_map_base.translation();
+    const auto neighbour = map.nearest(at.cast<float>(), max_distance);
+    if (!neighbour) continue;
+    const auto normal = normal_at(map, neighbour->point);
+    if (!normal) continue;
+    const Vector3 n = R.transpose() * *normal;
+    rows.push_back(
+        {(Vector6() << n, p.cross(n)).finished(), normal->dot(at - neighbour->point.cast<double>())});
+  }
+  return rows;
+}
+
+// Root-mean-square distance of the points from each of the three axes; at least a metre, for a scene on the
+// axis.
+Vector3 lever_arms(std::span<const Eigen::Vector3f> source) {
+  Vector3 squares = Vector3::Zero();
+  for (const Eigen::Vector3f& p : source) squares += p.cast<double>().array().square().matrix();
+  squares /= static_cast<double>(std::max<std::size_t>(1, source.size()));
+  return (squares.sum() - squares.array()).max(1.0).sqrt();
+}
+
+}  // namespace
+
+Observability observability(std::span<const Eigen::Vector3f> source, const LocalMap& map,
+                            const Pose& T_map_base, double max_distance, double degeneracy_threshold) {
+  const std::vector<PlaneRow> rows = plane_rows(source, map, T_map_base, static_cast<float>(max_distance));
+  Observability out;
+  if (rows.size() < kMinPlanePoints) return out;
+  Vector6 scale = Vector6::Ones();
+  scale.tail<3>() = lever_arms(source);
+  Matrix6 mean = Matrix6::Zero();
+  double variance = 0.0;
+  for (const PlaneRow& row : rows) {
+    const Vector6 j = row.jacobian.cwiseQuotient(scale);
+    mean += j * j.transpose();
+    variance += row.residual * row.residual;
+  }
+  const auto count = static_cast<double>(rows.size());
+  mean /= count;
+  variance = std::max(variance / count, kMinVariance);
+
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(mean);
+  out.weakest = std::max(0.0, eigen.eigenvalues()[0]);
+  out.degenerate = out.weakest < degeneracy_threshold;
+  // The samples speak for as many correspondences as the stride left out.
+  const double weight = static_cast<double>(source.size() / kMaxSamples + 1) * count / variance;
+  const Vector6 kept =
+      (eigen.eigenvalues().array() < degeneracy_threshold).select(0.0, weight * eigen.eigenvalues());
+  const Matrix6 V = scale.asDiagonal() * eigen.eigenvectors();
+  out.information = V * kept.asDiagonal() * V.transpose();
+  return out;
+}
+
+}  // namespace adit
