@@ -46,8 +46,11 @@ class KdTree {
     std::uint32_t end = 0;
   };
   void build(std::uint32_t begin, std::uint32_t end, const std::vector<Eigen::Vector3f>& points);
-  template <class Visit>
-  void search(const Eigen::Vector3f& query, Visit& visit) const;
+  template <class Visitor>
+  void visit(std::uint32_t node, const Eigen::Vector3f& query, const Eigen::Vector3f& outside,
+             Visitor& visitor) const;
+  template <class Visitor>
+  void search(const Eigen::Vector3f& query, Visitor& visitor) const;
 
   std::vector<Node> nodes_;
   std::vector<Eigen::Vector3f> points_;  ///< In the order of the leaves.

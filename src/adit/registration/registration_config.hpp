@@ -28,7 +28,7 @@ struct RegistrationConfig {
 
   std::string pruning = "k_core";
   double graph_noise_voxels = 1.0;
-  double clique_time_limit_ms = 50.0;
+  int clique_max_search_nodes = 20000;
 
   double solver_noise_voxels = 0.75;
   double max_noise_bound = 1.0;
@@ -38,6 +38,7 @@ struct RegistrationConfig {
 
   bool refine = true;
   double refine_distance_voxels = 2.0;
+  double refine_kernel_voxels = 0.5;
   int refine_max_iterations = 30;
 
   int min_inliers = 20;

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Point-to-plane refinement of a coarse pose (Chen and Medioni, 1992) with a robust kernel, and what its
+/// Hessian says.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "adit/core/pose.hpp"
+#include "adit/geometry/kd_tree.hpp"
+#include "adit/registration/features.hpp"
+#include "adit/registration/registration_config.hpp"
+
+namespace adit {
+
+/// The signed distance of a point from a plane of the other cloud, and how it changes with the pose.
+struct PlaneResidual {
+  double value = 0.0;  ///< n_a . (T_a_b p_b - p_a), metres.
+  Eigen::Matrix<double, 1, 6> jacobian =
+      Eigen::Matrix<double, 1, 6>::Zero();  ///< With respect to xi in T_a_b * exp(xi).
+};
+[[nodiscard]] PlaneResidual plane_residual(const Pose& T_a_b, const Vector3& p_a, const Vector3& n_a,
+                                           const Vector3& p_b);
+
+/// A point of b with its nearest point of a.
+struct PointPair {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  bool operator==(const PointPair&) const = default;
+};
+
+/// The nearest point of a for every `stride`-th point of b, where there is one within `max_distance` metres.
+[[nodiscard]] std::vector<PointPair> associate(const KdTree& tree_a, const Features& b, const Pose& T_a_b,
+                                               double max_distance, std::size_t stride = 1);
+
+/// The pose that minimises the robust (Geman-McClure) sum of squared plane residuals near `T_a_b`, by
+/// Gauss-Newton. Damped, so that along a direction that the surfaces leave open the pose stays where the
+/// guess put it.
+[[nodiscard]] Pose refine_point_to_plane(const Features& a, const KdTree& tree_a, const Features& b,
+                                         Pose T_a_b, const RegistrationConfig& config);
+
+}  // namespace adit

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/registration/verification.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "adit/core/format.hpp"
+#include "adit/registration/icp_refine.hpp"
+
+namespace adit {
+namespace {
+
+/// Sums over point pairs, all weights 1.
+struct PairSums {
+  Matrix6 cross_hessian = Matrix6::Zero();
+  double squared_residuals = 0.0;
+  double num_pairs = 0.0;
+};
+
+PairSums sum_over_pairs(const Features& a, const Features& b, const std::vector<PointPair>& pairs,
+                        const Pose& T_a_b, double max_residual) {
+  PairSums sums;
+  for (const auto [i, j] : pairs) {
+    const Vector3 p_b = b.points[j].cast<double>();
+    const PlaneResidual r =
+        plane_residual(T_a_b, a.points[i].cast<double>(), a.normals[i].cast<double>(), p_b);
+    if (std::abs(r.value) > max_residual) continue;
+    Vector3 n_b = b.normals[j].cast<double>();
+    if (r.jacobian.head<3>().dot(n_b) < 0.0) n_b = -n_b;  // each was turned to its own sensor
+    Eigen::Matrix<double, 1, 6> jacobian_b;
+    jacobian_b << n_b.transpose(), p_b.cross(n_b).transpose();
+    sums.cross_hessian += r.jacobian.transpose() * jacobian_b;
+    sums.squared_residuals += r.value * r.value;
+    sums.num_pairs += 1.0;
+  }
+  sums.cross_hessian = (0.5 * (sums.cross_hessian + sums.cross_hessian.transpose())).eval();
+  return sums;
+}
+
+/// The nearest positive semi-definite matrix, with metres and radians made comparable by the diagonal first.
+Matrix6 without_negative_part(const Matrix6& H) {
+  const double lever = std::sqrt(std::max(H.diagonal().tail<3>().mean(), 1e-12) /
+                                 std::max(H.diagonal().head<3>().mean(), 1e-12));
+  Vector6 scale = Vector6::Ones();
+  scale.tail<3>().setConstant(1.0 / lever);
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scale.asDiagonal() * H * scale.asDiagonal());
+  const Matrix6 root = scale.cwiseInverse().asDiagonal() * solver.eigenvectors() *
+                       solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  return root * root.transpose();
+}
+
+double share(std::size_t part, std::size_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+std::string holding(const Registration& r) {
+  constexpr double kWeak = 0.01;
+  if (r.weak_axis >= kWeak) return {};
+  const Vector3& d = r.weak_direction;
+  return format("; free to slide along ({:.2f}, {:.2f}, {:.2f})", d.x(), d.y(), d.z());
+}
+
+}  // namespace
+
+Evidence gather_evidence(const Features& a, const KdTree& tree_a, const Features& b, const KdTree& tree_b,
+                         const Pose& T_a_b, const RegistrationConfig& config) {
+  const double overlap_distance = config.overlap_distance_voxels * config.voxel_size;
+  const double min_sigma = 0.03 * config.voxel_size;  // two copies of one cloud are not infinitely certain
+  const std::vector<PointPair> pairs = associate(tree_a, b, T_a_b, overlap_distance);
+  const std::size_t num_back = associate(tree_b, a, T_a_b.inverse(), overlap_distance).size();
+  Evidence out{.overlap = std::min(share(pairs.size(), b.size()), share(num_back, a.size()))};
+  const PairSums sums = sum_over_pairs(a, b, pairs, T_a_b, config.refine_kernel_voxels * config.voxel_size);
+  if (sums.num_pairs < 1.0) return out;
+
+  const double num_sharing = std::numbers::pi * config.normal_radius_voxels * config.normal_radius_voxels;
+  const double variance = std::max(sums.squared_residuals / sums.num_pairs, min_sigma * min_sigma);
+  out.information = without_negative_part(sums.cross_hessian) / (variance * num_sharing);
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(sums.cross_hessian.topLeftCorner<3, 3>());
+  const double trace = solver.eigenvalues().cwiseMax(0.0).sum();
+  if (trace > 0.0) out.weak_axis = std::max(solver.eigenvalues()[0], 0.0) / trace;
+  out.weak_direction = T_a_b.rotation() * solver.eigenvectors().col(0);
+  return out;
+}
+
+Registration judged(Registration r, const RegistrationConfig& config) {
+  const auto conclude = [&](LoopVerdict verdict, std::string reason) {
+    r.verdict = verdict;
+    r.reason = std::move(reason);
+    return r;
+  };
+  if (r.num_inliers < config.min_inliers) {
+    return conclude(LoopVerdict::rejected, format("{} inliers of {} correspondences, {} needed",
+                                                  r.num_inliers, r.num_correspondences, config.min_inliers));
+  }
+  const std::string agreement = format("{} inliers, overlap {:.2f}", r.num_inliers, r.overlap);
+  if (r.overlap < config.min_overlap) {
+    return conclude(LoopVerdict::rejected, format("{}, {:.2f} needed", agreement, config.min_overlap));
+  }
+  return conclude(LoopVerdict::accepted, agreement + holding(r));
+}
+
+}  // namespace adit

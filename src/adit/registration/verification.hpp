@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What two registered clouds say about their own registration.
+#pragma once
+
+#include <string>
+
+#include "adit/core/pose.hpp"
+#include "adit/geometry/kd_tree.hpp"
+#include "adit/registration/features.hpp"
+#include "adit/registration/registration.hpp"
+#include "adit/registration/registration_config.hpp"
+
+namespace adit {
+
+struct Evidence {
+  double overlap = 0.0;
+  Matrix6 information = Matrix6::Zero();
+  double weak_axis = 0.0;
+  Vector3 weak_direction = Vector3::Zero();
+};
+
+/// Overlap in both directions, and the information of T_a_b from its point pairs. Each pair holds the
+/// surface's normal twice, as cloud a and as cloud b saw it, and the noise of the two is independent: the
+/// products n_a n_b^T that stand in the Hessian instead of n_a n_a^T have no noise floor. A smooth tube then
+/// really has no information along its axis, where the plain Hessian of noisy normals pretends some (with
+/// sigma 6 degrees, 1 % of that across). Scaled by the variance of the residuals, and divided by the number
+/// of points that share one normal's neighbourhood, since their errors are not independent.
+[[nodiscard]] Evidence gather_evidence(const Features& a, const KdTree& tree_a, const Features& b,
+                                       const KdTree& tree_b, const Pose& T_a_b,
+                                       const RegistrationConfig& config);
+
+/// Sets `verdict` and `reason` from the numbers in `registration`.
+[[nodiscard]] Registration judged(Registration registration, const RegistrationConfig& config);
+
+}  // namespace adit
