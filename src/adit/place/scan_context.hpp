@@ -54,11 +54,10 @@ struct ScanContext {
 };
 
 /// The descriptor of a cloud in the base frame (x forward, z up, z = 0 on the floor). Points that are not
-/// finite, farther than `max_radius_m` or exactly above the origin's axis keep out of other cells' way: the
-/// first two are left out, the last falls into ring 0, sector 0. A cloud without points gives a context that
-/// is `empty()`. The sector index is exact for every point that is not within rounding of a border. Throws
-/// ContractViolation when `config` is out of its ranges. Source: Kim and Kim, "Scan Context", IROS 2018,
-/// section III-A.
+/// finite, lie farther out than `max_radius_m` or below -`height_offset_m` are left out. Sectors count from
+/// the x axis towards y; within rounding of a border a point falls to either side. A cloud without points
+/// gives a context that is `empty()`. Throws ContractViolation when `config` is out of its ranges.
+/// Source: Kim and Kim, "Scan Context", IROS 2018, section III-A.
 [[nodiscard]] ScanContext describe(const PointCloud& cloud_base, const ScanContextConfig& config);
 
 /// From heights sector by sector (as `unit_columns` is laid out), 0 for empty cells. Throws ContractViolation
