@@ -5,8 +5,9 @@
 #include <span>
 #include <string>
 
+#include "adit/evaluation/study_result.hpp"
 #include "adit/evaluation/tables.hpp"
-#include "adit/report/plots.hpp"
+#include "adit/report/figures.hpp"
 
 namespace adit {
 

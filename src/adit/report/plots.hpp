@@ -3,7 +3,6 @@
 /// The figures of a study, each a self-contained SVG document: no script, no network, no font of its own.
 #pragma once
 
-#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,13 +10,6 @@
 #include "adit/evaluation/study_result.hpp"
 
 namespace adit {
-
-struct Figure {
-  std::string name;     ///< Safe as a file name: "routes", "graph_robot_0_robot_1_all_initial".
-  std::string title;    ///< One line.
-  std::string caption;  ///< A sentence or two; says what the colours mean.
-  std::string svg;
-};
 
 /// A named path in the colour of its robot (its index in the fleet).
 struct Route {
@@ -58,10 +50,5 @@ struct RobotCloud {
   std::span<const Eigen::Vector3f> points;
 };
 [[nodiscard]] std::string plot_merged_map(std::span<const RobotCloud> clouds);
-
-/// Every figure that the study has data for, in the order of the paper: routes, odometry boxes, the pose
-/// graphs of each pair, error-coloured trajectories of each pair, the merged map and the joint run's
-/// trajectories.
-[[nodiscard]] std::vector<Figure> study_figures(const StudyResult& study);
 
 }  // namespace adit

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "adit/evaluation/tables.hpp"
 
@@ -16,9 +15,5 @@ namespace adit {
 [[nodiscard]] std::string markdown_of(const Table& table);
 /// A <figure> with <figcaption>; everything escaped.
 [[nodiscard]] std::string html_of(const Table& table);
-
-/// "&", "<", ">", and both quotes as entities, control characters that XML forbids dropped: safe as text and
-/// in attributes, of HTML and of SVG.
-[[nodiscard]] std::string escaped(std::string_view text);
 
 }  // namespace adit

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "adit/evaluation/study_result.hpp"
+
+namespace adit {
+
+struct Figure {
+  std::string name;  ///< Safe as a file name: "routes", "graph_robot_0_robot_1_all_initial".
+  std::string
+      section;  ///< Robots of the pair that it belongs to, "robot_0 and robot_1"; empty: of the whole study.
+  std::string title;    ///< One line.
+  std::string caption;  ///< A sentence or two; says what the colours mean.
+  std::string svg;
+};
+
+/// Every figure that the study has data for, in the order of the paper: routes, odometry boxes, the pose
+/// graphs of each pair, error-coloured trajectories of each pair, the merged map and the joint run's
+/// trajectories.
+[[nodiscard]] std::vector<Figure> study_figures(const StudyResult& study);
+
+/// The section that figures of two robots belong to.
+[[nodiscard]] std::string pair_section(const std::string& first, const std::string& second);
+
+}  // namespace adit

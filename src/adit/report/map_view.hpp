@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The frame of all figures seen from above: equal scale on both axes, north up, a scale bar, walls as a grey
+/// raster.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+
+#include "adit/core/pose.hpp"
+#include "adit/evaluation/plan.hpp"
+#include "adit/report/svg.hpp"
+
+namespace adit {
+
+inline constexpr double kFigureWidth = 800.0;
+
+/// The smallest box around everything that a figure shows; `extend` skips what is not finite.
+class MapExtent {
+ public:
+  void extend(std::span<const Vector3> path);
+  void extend(std::span<const Eigen::Vector3f> points);
+  void extend(const Plan& plan);
+  /// With a margin of 3 %, and at least 2 m on a side; around the origin when nothing was shown.
+  [[nodiscard]] Eigen::AlignedBox2d box() const;
+
+ private:
+  Eigen::AlignedBox2d box_;
+};
+
+/// Maps world metres to pixels: the world's box fills the figure's width unless it would become higher than
+/// 640 pixels.
+class MapView {
+ public:
+  /// `top` is the room for legend and labels above the map, in pixels.
+  MapView(const Eigen::AlignedBox2d& world, double top);
+
+  [[nodiscard]] Point2 at(const Vector3& p) const { return at(Point2(p.head<2>())); }
+  [[nodiscard]] Point2 at(const Point2& p) const;
+  [[nodiscard]] std::vector<Point2> at(std::span<const Vector3> path) const;
+  [[nodiscard]] double pixels_per_metre() const { return scale_; }
+  [[nodiscard]] double bottom() const { return bottom_; }  ///< Where the map ends, in pixels.
+
+ private:
+  Eigen::AlignedBox2d world_;
+  double scale_ = 1.0;
+  double left_ = 0.0;
+  double bottom_ = 0.0;
+};
+
+/// A bar of round length with its metres, below the map at the left.
+void draw_scale_bar(SvgCanvas& canvas, const MapView& view);
+
+/// The plan as a raster of one colour, its density the opacity; at most two raster cells a pixel.
+void draw_plan(SvgCanvas& canvas, const MapView& view, const Plan& plan, Rgba color);
+
+}  // namespace adit

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/report/metrics_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+
+namespace adit {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(std::optional<double> value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json ate_field(const std::optional<AteResult>& ate, double AteResult::*field) {
+  return ate ? number((*ate).*field) : Json(nullptr);
+}
+
+Json odometry_json(const OdometryResult& odometry) {
+  return {{"ate_max_m", ate_field(odometry.ate, &AteResult::max_m)},
+          {"ate_rmse_m", ate_field(odometry.ate, &AteResult::rmse_m)},
+          {"ate_median_m", ate_field(odometry.ate, &AteResult::median_m)},
+          {"ms_per_scan_median", number(odometry.ms_per_scan_median)}};
+}
+
+Json robot_json(const RobotResult& robot) {
+  Json methods = Json::object();
+  for (const OdometryResult& odometry : robot.odometry) methods[odometry.method] = odometry_json(odometry);
+  return {{"name", robot.name},
+          {"path_length_m", number(robot.path_length_m)},
+          {"duration_s", number(robot.duration_s)},
+          {"speed_mean_mps", number(robot.speed_mean_mps())},
+          {"scans", robot.scans},
+          {"keyframes", robot.keyframes},
+          {"odometry", methods}};
+}
+
+Json ate_list(std::span<const MergedRobot> robots, double AteResult::*field) {
+  Json list = Json::array();
+  for (const MergedRobot& robot : robots) list.push_back(ate_field(robot.ate, field));
+  return list;
+}
+
+Json ratio_list(std::span<const MergedRobot> robots) {
+  Json list = Json::array();
+  for (const MergedRobot& robot : robots) list.push_back(number(robot.ate_max_over_path_pct()));
+  return list;
+}
+
+Json pair_json(const PairResult& pair) {
+  return {{"robots", Json::array({pair.robots[0].name, pair.robots[1].name})},
+          {"keyframes", pair.keyframes},
+          {"pcm", pair.pcm},
+          {"loops_before_pcm", pair.loops_before_pcm.total},
+          {"wrong_place_before_pcm", pair.loops_before_pcm.wrong_place},
+          {"wrong_registration_before_pcm", pair.loops_before_pcm.wrong_registration},
+          {"loops_after_pcm", pair.loops_after_pcm.total},
+          {"wrong_place_after_pcm", pair.loops_after_pcm.wrong_place},
+          {"wrong_registration_after_pcm", pair.loops_after_pcm.wrong_registration},
+          {"wrong_loops_in_solution", pair.wrong_loops_in_solution},
+          {"merged", pair.merged},
+          {"refused_reason", pair.refused_reason},
+          {"success", pair.success()},
+          {"ate_max_m", ate_list(pair.robots, &AteResult::max_m)},
+          {"ate_rmse_m", ate_list(pair.robots, &AteResult::rmse_m)},
+          {"ate_max_over_path_pct", ratio_list(pair.robots)}};
+}
+
+Json joint_json(const JointResult& joint) {
+  return {{"keyframes", joint.keyframes},
+          {"components", joint.components},
+          {"ate_max_m", ate_list(joint.robots, &AteResult::max_m)},
+          {"ate_rmse_m", ate_list(joint.robots, &AteResult::rmse_m)},
+          {"ate_max_over_path_pct", ratio_list(joint.robots)},
+          {"loops", joint.loops.total},
+          {"wrong_place", joint.loops.wrong_place},
+          {"wrong_registration", joint.loops.wrong_registration},
+          {"wrong_loops_in_solution", joint.wrong_loops_in_solution},
+          {"refusals", joint.refusals},
+          {"bytes_sent_per_robot", joint.bytes_sent_per_robot}};
+}
+
+}  // namespace
+
+std::string metrics_json(const StudyResult& study) {
+  Json robots = Json::array();
+  for (const RobotResult& robot : study.robots) robots.push_back(robot_json(robot));
+  Json pairs = Json::array();
+  for (const PairResult& pair : study.pairs) pairs.push_back(pair_json(pair));
+  const Json metrics = {{"version", 1},
+                        {"adit_version", study.version},
+                        {"world", study.world},
+                        {"lidar", study.lidar},
+                        {"seed", study.seed},
+                        {"wall_s", number(study.wall_s)},
+                        {"peak_rss_mb", number(study.peak_rss_mb)},
+                        {"robots", robots},
+                        {"pairs", pairs},
+                        {"joint", study.joint ? joint_json(*study.joint) : Json(nullptr)}};
+  // Names may hold any bytes; what is no UTF-8 is replaced rather than thrown about.
+  return metrics.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace adit
