@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/compression.hpp"
+
+#include <lz4frame.h>
+#include <zstd.h>
+
+#include <memory>
+
+#include "adit/core/check.hpp"
+#include "adit/core/format.hpp"
+
+namespace adit {
+namespace {
+
+constexpr std::size_t kLargest = std::size_t{1} << 30U;
+
+Result<std::string> decompress_zstd(std::string_view bytes, std::size_t size) {
+  // The frame says its size as well; a claim that differs is damage, found before memory is taken.
+  const unsigned long long stated = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
+  if (stated == ZSTD_CONTENTSIZE_ERROR) return fail("no zstd frame");
+  if (stated != ZSTD_CONTENTSIZE_UNKNOWN && stated > size)
+    return fail(format("holds {} bytes, not {}", stated, size));
+  std::string out(size, '\0');
+  const std::size_t got = ZSTD_decompress(out.data(), out.size(), bytes.data(), bytes.size());
+  if (ZSTD_isError(got) != 0) return fail(format("damaged zstd data: {}", ZSTD_getErrorName(got)));
+  if (got != size) return fail(format("zstd data expand to {} bytes, not {}", got, size));
+  return out;
+}
+
+Result<std::string> decompress_lz4(std::string_view bytes, std::size_t size) {
+  LZ4F_dctx* context = nullptr;
+  ADIT_CHECK(LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) == 0, "out of memory");
+  const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> owner(
+      context, &LZ4F_freeDecompressionContext);
+  std::string out(size, '\0');
+  std::size_t done = 0;
+  for (std::size_t hint = 1; hint != 0;) {
+    std::size_t produced = out.size() - done;
+    std::size_t consumed = bytes.size();
+    hint = LZ4F_decompress(context, out.data() + done, &produced, bytes.data(), &consumed, nullptr);
+    if (LZ4F_isError(hint) != 0) return fail(format("damaged lz4 data: {}", LZ4F_getErrorName(hint)));
+    if (hint != 0 && produced == 0 && consumed == 0)
+      return fail(format("lz4 data end early or exceed {} bytes", size));
+    done += produced;
+    bytes.remove_prefix(consumed);
+  }
+  if (done != size) return fail(format("lz4 data expand to {} bytes, not {}", done, size));
+  return out;
+}
+
+}  // namespace
+
+std::string compress_zstd(std::string_view bytes) {
+  std::string out(ZSTD_compressBound(bytes.size()), '\0');
+  const std::size_t size = ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), 1);
+  ADIT_CHECK(ZSTD_isError(size) == 0, "zstd fails only when its buffer is too small");
+  out.resize(size);
+  return out;
+}
+
+Result<std::string> decompress(std::string_view bytes, std::string_view compression, std::size_t size) {
+  if (size > kLargest) return fail(format("{} uncompressed bytes are announced; 1 GiB is the most", size));
+  if (compression == "zstd") return decompress_zstd(bytes, size);
+  if (compression == "lz4") return decompress_lz4(bytes, size);
+  if (!compression.empty())
+    return fail(format("compression '{}' is unknown; lz4 and zstd are known", compression));
+  if (bytes.size() != size) return fail(format("{} bytes, not the {} announced", bytes.size(), size));
+  return std::string(bytes);
+}
+
+}  // namespace adit

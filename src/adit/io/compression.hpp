@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The compressions of MCAP chunks: "" (none), "lz4" (LZ4 frames) and "zstd".
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "adit/core/result.hpp"
+
+namespace adit {
+
+/// zstd at its fastest ordinary level: point clouds are mostly noise, and higher ones gain little.
+[[nodiscard]] std::string compress_zstd(std::string_view bytes);
+
+/// Exactly `size` bytes, or an error; `size` above 1 GiB is refused as damage.
+Result<std::string> decompress(std::string_view bytes, std::string_view compression, std::size_t size);
+
+}  // namespace adit

@@ -1,0 +1,339 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/mcap_reader.hpp"
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+#include "adit/core/format.hpp"
+#include "adit/io/compression.hpp"
+#include "adit/io/crc32.hpp"
+
+namespace adit::mcap {
+namespace {
+
+tl::unexpected<Error> fail_at(std::uint64_t offset, std::string_view message) {
+  return fail(format("byte {}: {}", offset, message));
+}
+
+template <class Record>
+Result<Record> decode_at(std::uint64_t offset, std::string_view content, std::string_view name) {
+  std::optional<Record> record = decode<Record>(content);
+  if (!record) return fail_at(offset, format("damaged {} record", name));
+  return std::move(*record);
+}
+
+/// One record of the file, read whole.
+struct FileRecord {
+  Opcode opcode = Opcode::header;
+  std::string content;
+};
+
+Result<FileRecord> read_record(const ByteSource& source, std::uint64_t offset) {
+  const Result<std::string> head = source.read(offset, kRecordHead);
+  if (!head) return tl::unexpected(head.error());
+  std::uint64_t length = 0;
+  for (std::size_t i = 8; i >= 1; --i) length = (length << 8U) | static_cast<std::uint8_t>((*head)[i]);
+  return source.read(offset + kRecordHead, length).map([&](std::string content) {
+    return FileRecord{static_cast<Opcode>((*head)[0]), std::move(content)};
+  });
+}
+
+Result<std::string> expand(const Chunk& chunk, std::uint64_t offset) {
+  Result<std::string> records = decompress(chunk.records, chunk.compression, chunk.uncompressed_size);
+  if (!records) return fail(format("chunk at byte {}", offset), records.error());
+  if (chunk.uncompressed_crc != 0 && crc32(*records) != chunk.uncompressed_crc) {
+    return fail(format("chunk at byte {}: its checksum does not fit; the file is damaged", offset));
+  }
+  return records;
+}
+
+Result<std::string> read_chunk(const ByteSource& source, std::uint64_t offset) {
+  const Result<FileRecord> record = read_record(source, offset);
+  if (!record) return tl::unexpected(record.error());
+  if (record->opcode != Opcode::chunk) return fail_at(offset, "a chunk is announced, but there is none");
+  return decode_at<Chunk>(offset, record->content, "chunk").and_then([&](const Chunk& chunk) {
+    return expand(chunk, offset);
+  });
+}
+
+/// Schemas and channels, wherever they stand.
+Result<> take_definition(Contents& contents, Opcode opcode, std::uint64_t offset, std::string_view content) {
+  if (opcode == Opcode::schema) {
+    return decode_at<Schema>(offset, content, "schema").map([&](Schema schema) {
+      contents.schemas.insert_or_assign(schema.id, std::move(schema));
+    });
+  }
+  if (opcode == Opcode::channel) {
+    return decode_at<Channel>(offset, content, "channel").map([&](Channel channel) {
+      contents.channels.insert_or_assign(channel.id, std::move(channel));
+    });
+  }
+  return {};
+}
+
+/// Notes every message of an expanded chunk.
+Result<> index_records(Contents& contents, std::string_view records, std::size_t chunk) {
+  RecordCursor cursor(records);
+  while (const std::optional<RecordView> record = cursor.next()) {
+    if (Result<> taken = take_definition(contents, record->opcode, record->offset, record->content); !taken)
+      return taken;
+    if (record->opcode != Opcode::message) continue;
+    const Result<Message> message = decode_at<Message>(record->offset, record->content, "message");
+    if (!message) return tl::unexpected(message.error());
+    contents.messages.push_back({message->channel_id, message->log_time, chunk, record->offset});
+  }
+  if (cursor.offset() == records.size()) return {};
+  return fail_at(cursor.offset(), "a record of the chunk reaches past its end");
+}
+
+Result<> scan_chunk(Contents& contents, std::uint64_t offset, std::string_view content) {
+  const Result<Chunk> chunk = decode_at<Chunk>(offset, content, "chunk");
+  if (!chunk) return tl::unexpected(chunk.error());
+  const Result<std::string> records = expand(*chunk, offset);
+  if (!records) return tl::unexpected(records.error());
+  contents.chunks.push_back({chunk->start,
+                             chunk->end,
+                             offset,
+                             kRecordHead + content.size(),
+                             {},
+                             0,
+                             chunk->compression,
+                             chunk->records.size(),
+                             chunk->uncompressed_size});
+  const Result<> indexed = index_records(contents, *records, contents.chunks.size() - 1);
+  if (!indexed) return fail(format("chunk at byte {}", offset), indexed.error());
+  return {};
+}
+
+Result<> scan_record(Contents& contents, std::uint64_t offset, const FileRecord& record) {
+  switch (record.opcode) {
+    case Opcode::header:
+      return decode_at<Header>(offset, record.content, "header").map([&](Header header) {
+        contents.header = std::move(header);
+      });
+    case Opcode::message:
+      return decode_at<Message>(offset, record.content, "message").map([&](const Message& message) {
+        contents.messages.push_back({message.channel_id, message.log_time, std::nullopt, offset});
+      });
+    case Opcode::metadata:
+      return decode_at<Metadata>(offset, record.content, "metadata").map([&](Metadata metadata) {
+        contents.metadata.push_back(std::move(metadata));
+      });
+    case Opcode::chunk:
+      return scan_chunk(contents, offset, record.content);
+    default:
+      return take_definition(contents, record.opcode, offset, record.content);
+  }
+}
+
+/// Goes through the data section from its start. What was read before an error stays in `contents`.
+Result<> scan_data(const ByteSource& source, Contents& contents) {
+  for (std::uint64_t offset = kMagic.size();;) {
+    const Result<FileRecord> record = read_record(source, offset);
+    if (!record) return tl::unexpected(record.error());
+    if (record->opcode == Opcode::data_end || record->opcode == Opcode::footer) return {};
+    if (Result<> scanned = scan_record(contents, offset, *record); !scanned) return scanned;
+    offset += kRecordHead + record->content.size();
+  }
+}
+
+Result<> check_start(const ByteSource& source) {
+  const Result<std::string> magic = source.read(0, std::min<std::uint64_t>(source.size, kMagic.size()));
+  if (!magic) return tl::unexpected(magic.error());
+  if (*magic != kMagic)
+    return fail("byte 0: does not start as an MCAP file does; it is none, or only its first bytes");
+  return {};
+}
+
+/// The file ends early: says where, and how much is there.
+tl::unexpected<Error> truncated(const ByteSource& source) {
+  Contents contents;
+  const Result<> scanned = scan_data(source, contents);
+  return fail(
+      format("byte {}: the file is truncated (no footer; the recorder was interrupted?); {} messages are "
+             "readable before that{}; record it again or recover it with 'mcap recover'",
+             source.size, contents.messages.size(), scanned ? "" : " (" + scanned.error().message + ")"));
+}
+
+Result<Footer> read_footer(const ByteSource& source) {
+  constexpr std::uint64_t kTail = kFooterSize + kMagic.size();
+  if (source.size < kMagic.size() + kTail) return truncated(source);
+  const std::uint64_t offset = source.size - kTail;
+  const Result<std::string> tail = source.read(offset, kTail);
+  if (!tail) return tl::unexpected(tail.error());
+  if (!tail->ends_with(kMagic)) return truncated(source);
+  RecordCursor cursor(*tail);
+  const std::optional<RecordView> record = cursor.next();
+  if (!record || record->opcode != Opcode::footer)
+    return fail_at(offset, "no footer in front of the closing magic");
+  return decode_at<Footer>(offset, record->content, "footer");
+}
+
+/// The bytes of the summary, checked.
+Result<std::string> read_summary(const ByteSource& source, const Footer& footer) {
+  const std::uint64_t end = source.size - kMagic.size();  // of the footer
+  if (footer.summary_start > end - kFooterSize) {
+    return fail_at(end - kFooterSize,
+                   format("the footer puts the summary at byte {}, behind itself", footer.summary_start));
+  }
+  Result<std::string> summary = source.read(footer.summary_start, end - footer.summary_start);
+  if (!summary) return summary;
+  const std::string_view covered =
+      std::string_view(*summary).substr(0, summary->size() - sizeof(footer.summary_crc));
+  if (footer.summary_crc != 0 && crc32(covered) != footer.summary_crc) {
+    return fail_at(footer.summary_start, "the checksum of the summary does not fit; the file is damaged");
+  }
+  summary->resize(summary->size() - kFooterSize);
+  return summary;
+}
+
+Result<> read_metadata(const ByteSource& source, Contents& contents, const MetadataIndex& index) {
+  const Result<FileRecord> record = read_record(source, index.offset);
+  if (!record) return tl::unexpected(record.error());
+  if (record->opcode != Opcode::metadata)
+    return fail_at(index.offset, "metadata are announced, but there are none");
+  return scan_record(contents, index.offset, *record);
+}
+
+/// The messages of one chunk, from the index records behind it.
+Result<> read_message_index(const ByteSource& source, Contents& contents, std::size_t chunk) {
+  const ChunkIndex index = contents.chunks[chunk];
+  if (index.message_index_length == 0) {
+    return read_chunk(source, index.chunk_start).and_then([&](const std::string& records) {
+      return index_records(contents, records, chunk);
+    });
+  }
+  const std::uint64_t start = index.chunk_start + index.chunk_length;
+  const Result<std::string> bytes = source.read(start, index.message_index_length);
+  if (!bytes) return tl::unexpected(bytes.error());
+  RecordCursor cursor(*bytes);
+  while (const std::optional<RecordView> record = cursor.next()) {
+    if (record->opcode != Opcode::message_index) return fail_at(start + record->offset, "no message index");
+    const auto entries = decode_at<MessageIndex>(start + record->offset, record->content, "message index");
+    if (!entries) return tl::unexpected(entries.error());
+    for (const auto& [time, offset] : entries->entries) {
+      contents.messages.push_back({entries->channel_id, {static_cast<std::int64_t>(time)}, chunk, offset});
+    }
+  }
+  if (cursor.offset() == bytes->size()) return {};
+  return fail_at(start + cursor.offset(), "a message index reaches past its end");
+}
+
+Result<> take_summary_record(const ByteSource& source, Contents& contents, std::uint64_t offset,
+                             const RecordView& record) {
+  if (record.opcode == Opcode::chunk_index) {
+    return decode_at<ChunkIndex>(offset, record.content, "chunk index").map([&](ChunkIndex index) {
+      contents.chunks.push_back(std::move(index));
+    });
+  }
+  if (record.opcode == Opcode::metadata_index) {
+    return decode_at<MetadataIndex>(offset, record.content, "metadata index")
+        .and_then([&](const MetadataIndex& index) { return read_metadata(source, contents, index); });
+  }
+  return take_definition(contents, record.opcode, offset, record.content);
+}
+
+Result<Contents> contents_from_summary(const ByteSource& source, const Footer& footer) {
+  const Result<std::string> summary = read_summary(source, footer);
+  if (!summary) return tl::unexpected(summary.error());
+  Contents contents;
+  RecordCursor cursor(*summary);
+  while (const std::optional<RecordView> record = cursor.next()) {
+    const std::uint64_t offset = footer.summary_start + record->offset;
+    if (Result<> taken = take_summary_record(source, contents, offset, *record); !taken) {
+      return tl::unexpected(taken.error());
+    }
+  }
+  if (cursor.offset() != summary->size()) {
+    return fail_at(footer.summary_start + cursor.offset(), "a record of the summary reaches past its end");
+  }
+  for (std::size_t i = 0; i < contents.chunks.size(); ++i) {
+    if (Result<> read = read_message_index(source, contents, i); !read) return tl::unexpected(read.error());
+  }
+  const Result<FileRecord> header = read_record(source, kMagic.size());
+  if (!header) return tl::unexpected(header.error());
+  return scan_record(contents, kMagic.size(), *header).map([&] { return std::move(contents); });
+}
+
+/// A summary may leave out all that it likes; without channels and chunks it is no index.
+bool is_complete(const Contents& contents) {
+  return !contents.chunks.empty() && std::ranges::all_of(contents.messages, [&](const MessageRef& message) {
+    return contents.channels.contains(message.channel_id);
+  });
+}
+
+Result<> check_channels(const Contents& contents) {
+  for (const MessageRef& message : contents.messages) {
+    if (contents.channels.contains(message.channel_id)) continue;
+    return fail(format("a message refers to channel {}, which is not defined", message.channel_id));
+  }
+  return {};
+}
+
+Result<Contents> read_contents(const ByteSource& source, const Footer& footer) {
+  if (footer.summary_start != 0) {
+    Result<Contents> contents = contents_from_summary(source, footer);
+    if (!contents || is_complete(*contents)) return contents;
+  }
+  Contents contents;
+  return scan_data(source, contents).and_then([&] { return check_channels(contents); }).map([&] {
+    return std::move(contents);
+  });
+}
+
+}  // namespace
+
+struct Reader::Cache {
+  std::mutex mutex;
+  std::size_t chunk = 0;
+  std::shared_ptr<const std::string> records;
+};
+
+Result<Reader> Reader::open(ByteSource source) {
+  if (Result<> start = check_start(source); !start) return tl::unexpected(start.error());
+  const Result<Footer> footer = read_footer(source);
+  if (!footer) return tl::unexpected(footer.error());
+  return read_contents(source, *footer).map([&](Contents contents) {
+    std::ranges::stable_sort(contents.messages, {}, &MessageRef::log_time);
+    return Reader(std::move(source), std::move(contents));
+  });
+}
+
+Reader::Reader(ByteSource source, Contents contents)
+    : source_(std::move(source)), contents_(std::move(contents)), cache_(std::make_shared<Cache>()) {}
+
+Result<Message> Reader::read(const MessageRef& ref) const {
+  if (!ref.chunk) {
+    return read_record(source_, ref.offset).and_then([&](const FileRecord& record) {
+      return decode_at<Message>(ref.offset, record.content, "message");
+    });
+  }
+  const auto records = chunk_records(*ref.chunk);
+  if (!records) return tl::unexpected(records.error());
+  const std::string_view bytes = **records;
+  RecordCursor cursor(bytes.substr(std::min<std::uint64_t>(ref.offset, bytes.size())));
+  const std::optional<RecordView> record = cursor.next();
+  const std::uint64_t chunk_start = contents_.chunks[*ref.chunk].chunk_start;
+  if (!record || record->opcode != Opcode::message) {
+    return fail(format("chunk at byte {}: no message at its offset {}", chunk_start, ref.offset));
+  }
+  return decode_at<Message>(chunk_start, record->content, "message");
+}
+
+Result<std::shared_ptr<const std::string>> Reader::chunk_records(std::size_t chunk) const {
+  {
+    const std::scoped_lock lock(cache_->mutex);
+    if (cache_->records && cache_->chunk == chunk) return cache_->records;
+  }
+  return read_chunk(source_, contents_.chunks[chunk].chunk_start).map([&](std::string records) {
+    auto shared = std::make_shared<const std::string>(std::move(records));
+    const std::scoped_lock lock(cache_->mutex);
+    cache_->chunk = chunk;
+    cache_->records = shared;
+    return shared;
+  });
+}
+
+}  // namespace adit::mcap

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Reads MCAP files: indexed ones by their summary, others by going through them once.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "adit/core/result.hpp"
+#include "adit/io/byte_source.hpp"
+#include "adit/io/mcap_records.hpp"
+
+namespace adit::mcap {
+
+/// Where a message lies: in a chunk (offset in its uncompressed records) or in the file itself.
+struct MessageRef {
+  std::uint16_t channel_id = 0;
+  Stamp log_time;
+  std::optional<std::size_t> chunk;  ///< Index into the reader's chunks.
+  std::uint64_t offset = 0;
+};
+
+/// What a file holds, without the messages themselves.
+struct Contents {
+  Header header;
+  std::map<std::uint16_t, Schema> schemas;
+  std::map<std::uint16_t, Channel> channels;
+  std::vector<Metadata> metadata;
+  std::vector<ChunkIndex> chunks;
+  std::vector<MessageRef> messages;  ///< By log time; equal times in file order.
+};
+
+class Reader {
+ public:
+  /// Opens a complete file. Errors name the byte offset: no MCAP file, damaged summary, checksums that
+  /// differ. A file that ends early (no footer) is refused with the number of messages in front of the cut.
+  static Result<Reader> open(ByteSource source);
+
+  [[nodiscard]] const Contents& contents() const { return contents_; }
+  /// May be called from any thread. The chunk read last is kept, so reading in order expands each chunk once.
+  [[nodiscard]] Result<Message> read(const MessageRef& ref) const;
+
+ private:
+  struct Cache;
+  Reader(ByteSource source, Contents contents);
+  [[nodiscard]] Result<std::shared_ptr<const std::string>> chunk_records(std::size_t chunk) const;
+
+  ByteSource source_;
+  Contents contents_;
+  std::shared_ptr<Cache> cache_;
+};
+
+}  // namespace adit::mcap

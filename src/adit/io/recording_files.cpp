@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/recording_files.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "adit/core/format.hpp"
+#include "adit/io/mcap.hpp"
+#include "adit/io/scan_folder.hpp"
+#include "adit/io/text.hpp"
+
+namespace adit {
+namespace {
+
+std::optional<ScanSelection> parse_selection(const std::string& text) {
+  if (text == "even") return ScanSelection{0, 2};
+  if (text == "odd") return ScanSelection{1, 2};
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) return std::nullopt;
+  const std::optional<std::size_t> first = parse_size(text.substr(0, colon));
+  const std::optional<std::size_t> step = parse_size(text.substr(colon + 1));
+  if (!first || !step || *step == 0) return std::nullopt;
+  return ScanSelection{*first, *step};
+}
+
+Result<Recording> open_part(const std::filesystem::path& folder, const std::string& part) {
+  const std::optional<ScanSelection> selection = parse_selection(part);
+  if (!selection) {
+    return fail(
+        format("{}@{}: '{}' is no selection; @even, @odd and @FIRST:STEP are", folder.string(), part, part));
+  }
+  return read_scan_folder(folder, *selection).map([&](Recording recording) {
+    recording.name += "_" + part;
+    std::ranges::replace(recording.name, ':', '_');
+    return recording;
+  });
+}
+
+}  // namespace
+
+Result<Recording> open_recording(const std::string& input) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(input, ignored)) return read_scan_folder(input);
+  if (lower_case(std::filesystem::path(input).extension().string()) == ".mcap") return read_recording(input);
+  const std::size_t at = input.rfind('@');
+  if (at != std::string::npos && std::filesystem::is_directory(input.substr(0, at), ignored)) {
+    return open_part(input.substr(0, at), input.substr(at + 1));
+  }
+  if (std::filesystem::exists(input, ignored)) {
+    return fail(input + ": is no recording; an .mcap file or a folder of clouds is");
+  }
+  return fail(input + ": no such file or folder; a recording is an .mcap file or a folder of clouds");
+}
+
+}  // namespace adit

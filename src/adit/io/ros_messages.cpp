@@ -1,0 +1,270 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/ros_messages.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "adit/core/format.hpp"
+#include "adit/io/cdr.hpp"
+#include "adit/io/packed_cloud.hpp"
+
+namespace adit::ros {
+namespace {
+
+constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+
+struct Definition {
+  std::string_view type;
+  std::string_view fields;
+};
+constexpr Definition kTime{"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"};
+constexpr Definition kHeader{"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"};
+constexpr Definition kPointField{
+    "sensor_msgs/PointField",
+    "uint8 INT8=1\nuint8 UINT8=2\nuint8 INT16=3\nuint8 UINT16=4\nuint8 INT32=5\nuint8 UINT32=6\n"
+    "uint8 FLOAT32=7\nuint8 FLOAT64=8\nstring name\nuint32 offset\nuint8 datatype\nuint32 count\n"};
+constexpr Definition kPoint{"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"};
+constexpr Definition kVector3{"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"};
+constexpr Definition kQuaternion{"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"};
+constexpr Definition kPose{"geometry_msgs/Pose",
+                           "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"};
+constexpr Definition kTwist{"geometry_msgs/Twist",
+                            "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"};
+constexpr Definition kPoseWithCovariance{"geometry_msgs/PoseWithCovariance",
+                                         "geometry_msgs/Pose pose\nfloat64[36] covariance\n"};
+constexpr Definition kTwistWithCovariance{"geometry_msgs/TwistWithCovariance",
+                                          "geometry_msgs/Twist twist\nfloat64[36] covariance\n"};
+constexpr Definition kTransform{"geometry_msgs/Transform",
+                                "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"};
+constexpr Definition kTransformStamped{
+    "geometry_msgs/TransformStamped",
+    "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"};
+
+std::string join(std::string_view root, std::initializer_list<Definition> parts) {
+  std::string text(root);
+  for (const Definition& part : parts) text += format("{:=>80}\nMSG: {}\n{}", "", part.type, part.fields);
+  return text;
+}
+
+void write_header(CdrWriter& writer, Stamp stamp, std::string_view frame) {
+  ADIT_CHECK(fits_ros(stamp), "a ROS stamp has 32 bits of seconds, from 0");
+  writer.number(static_cast<std::int32_t>(stamp.ns / kNanosecondsPerSecond));
+  writer.number(static_cast<std::uint32_t>(stamp.ns % kNanosecondsPerSecond));
+  writer.text(frame);
+}
+
+Stamp read_stamp(CdrReader& reader) {
+  const std::int64_t seconds = reader.number<std::int32_t>();
+  const std::int64_t nanoseconds = reader.number<std::uint32_t>();
+  return {seconds * kNanosecondsPerSecond + nanoseconds};
+}
+
+void write_pose(CdrWriter& writer, const Pose& pose) {
+  const Vector3& t = pose.translation();
+  const Eigen::Quaterniond& q = pose.rotation();
+  for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) writer.number(value);
+}
+
+Result<Pose> read_pose(CdrReader& reader) {
+  Vector3 t;
+  for (double& value : t) value = reader.number<double>();
+  Eigen::Quaterniond q;
+  for (double& value : q.coeffs()) value = reader.number<double>();  // stored as x y z w, in the file too
+  if (!reader.ok()) return fail(format("byte {}: the message ends inside a pose", reader.offset()));
+  if (!t.allFinite() || !(std::abs(q.norm() - 1.0) < 0.01)) {
+    return fail(
+        format("byte {}: position or quaternion of the pose are no numbers of a pose", reader.offset()));
+  }
+  if (std::abs(q.norm() - 1.0) > 1e-12) q.normalize();
+  return Pose(q, t);
+}
+
+/// sensor_msgs/PointField's numbers.
+std::optional<ScalarType> scalar_type(std::uint8_t datatype) {
+  static constexpr ScalarType kTypes[] = {ScalarType::int8,    ScalarType::uint8,  ScalarType::int16,
+                                          ScalarType::uint16,  ScalarType::int32,  ScalarType::uint32,
+                                          ScalarType::float32, ScalarType::float64};
+  if (datatype < 1 || datatype > 8) return std::nullopt;
+  return kTypes[datatype - 1];
+}
+
+struct CloudField {
+  std::string name;
+  std::uint32_t offset = 0;
+  std::uint8_t datatype = 0;
+};
+
+std::vector<CloudField> fields_of(const PointCloud& cloud) {
+  std::vector<CloudField> fields = {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}};
+  if (!cloud.intensities.empty()) fields.push_back({"intensity", 12, 7});
+  if (cloud.has_times()) fields.push_back({"t", cloud.intensities.empty() ? 12U : 16U, 5});
+  return fields;
+}
+
+std::vector<CloudField> read_fields(CdrReader& reader) {
+  std::vector<CloudField> fields;
+  const auto count = reader.number<std::uint32_t>();
+  for (std::uint32_t i = 0; i < count && reader.ok(); ++i) {
+    CloudField field;
+    field.name = reader.text();
+    field.offset = reader.number<std::uint32_t>();
+    field.datatype = reader.number<std::uint8_t>();
+    static_cast<void>(reader.number<std::uint32_t>());  // elements a field; the first one is taken
+    fields.push_back(std::move(field));
+  }
+  return fields;
+}
+
+/// Rows of an image-like cloud may be padded at their ends; without padding the cloud is one long row.
+Result<std::string> dense_rows(std::string_view data, std::uint32_t height, std::uint64_t row,
+                               std::uint64_t row_step) {
+  if (row_step < row || (height > 0 && data.size() / height < row_step)) {
+    return fail(
+        format("{} bytes for {} rows of {} bytes; the message is damaged", data.size(), height, row_step));
+  }
+  std::string dense;
+  for (std::uint64_t i = 0; i < height; ++i) dense.append(data.substr(i * row_step, row));
+  return dense;
+}
+
+}  // namespace
+
+std::string definition_of(std::string_view type) {
+  if (type == kPointCloud2) {
+    return join(
+        "std_msgs/Header header\nuint32 height\nuint32 width\nsensor_msgs/PointField[] fields\nbool "
+        "is_bigendian\n"
+        "uint32 point_step\nuint32 row_step\nuint8[] data\nbool is_dense\n",
+        {kHeader, kTime, kPointField});
+  }
+  if (type == kOdometry) {
+    return join(
+        "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
+        "geometry_msgs/TwistWithCovariance twist\n",
+        {kHeader, kTime, kPoseWithCovariance, kPose, kPoint, kQuaternion, kTwistWithCovariance, kTwist,
+         kVector3});
+  }
+  ADIT_CHECK(type == kTransforms, "no definition of this type");
+  return join("geometry_msgs/TransformStamped[] transforms\n",
+              {kTransformStamped, kHeader, kTime, kTransform, kVector3, kQuaternion});
+}
+
+std::string encode_cloud(const Scan& scan, std::string_view frame) {
+  const PointCloud& cloud = scan.cloud;
+  const std::vector<CloudField> fields = fields_of(cloud);
+  const std::string rows = packed_rows(cloud);
+  CdrWriter writer;
+  write_header(writer, scan.stamp, frame);
+  writer.number(std::uint32_t{1}).number(static_cast<std::uint32_t>(cloud.size()));
+  writer.number(static_cast<std::uint32_t>(fields.size()));
+  for (const CloudField& field : fields) {
+    writer.text(field.name).number(field.offset).number(field.datatype).number(std::uint32_t{1});
+  }
+  writer.number(std::uint8_t{0});
+  writer.number(static_cast<std::uint32_t>(4 * fields.size()))
+      .number(static_cast<std::uint32_t>(rows.size()));
+  writer.blob(rows).number(std::uint8_t{1});
+  return writer.take();
+}
+
+Result<CloudMessage> decode_cloud(std::string_view message) {
+  CdrReader reader(message);
+  CloudMessage out;
+  out.scan.stamp = read_stamp(reader);
+  out.frame = reader.text();
+  const auto height = reader.number<std::uint32_t>();
+  const auto width = reader.number<std::uint32_t>();
+  const std::vector<CloudField> fields = read_fields(reader);
+  const bool is_big_endian = reader.number<std::uint8_t>() != 0;
+  const auto point_step = reader.number<std::uint32_t>();
+  const auto row_step = reader.number<std::uint32_t>();
+  const std::string_view data = reader.blob();
+  if (!reader.ok()) return fail(format("byte {}: the PointCloud2 message ends early", reader.offset()));
+  const std::uint64_t row = std::uint64_t{width} * point_step;
+  PackedCloud packed;
+  std::string dense;
+  if (height > 1 && row_step != row) {
+    Result<std::string> rows = dense_rows(data, height, row, row_step);
+    if (!rows) return tl::unexpected(rows.error());
+    dense = std::move(*rows);
+  }
+  packed.bytes = dense.empty() ? data : std::string_view(dense);
+  packed.num_points = std::size_t{width} * height;
+  packed.order = is_big_endian ? std::endian::big : std::endian::little;
+  packed.stamp = out.scan.stamp;
+  for (const CloudField& field : fields) {
+    if (const auto type = scalar_type(field.datatype))
+      assign_field(packed, field.name, {*type, field.offset, point_step});
+  }
+  if (point_step == 0 && packed.num_points > 1)
+    return fail("the points of the PointCloud2 message have zero bytes");
+  return unpack(packed).map([&](CloudFile file) {
+    out.scan.cloud = std::move(file.cloud);
+    return std::move(out);
+  });
+}
+
+std::string encode_odometry(const TransformMessage& odometry) {
+  CdrWriter writer;
+  write_header(writer, odometry.pose.stamp, odometry.frame);
+  writer.text(odometry.child);
+  write_pose(writer, odometry.pose.T_world_body);
+  // Neither covariance nor twist is known: zeros, as ROS has it.
+  for (int i = 0; i < 36 + 6 + 36; ++i) writer.number(0.0);
+  return writer.take();
+}
+
+Result<TransformMessage> decode_odometry(std::string_view message) {
+  CdrReader reader(message);
+  TransformMessage out;
+  out.pose.stamp = read_stamp(reader);
+  out.frame = reader.text();
+  out.child = reader.text();
+  return read_pose(reader).map([&](const Pose& pose) {
+    out.pose.T_world_body = pose;
+    return std::move(out);
+  });
+}
+
+std::string encode_transforms(const std::vector<TransformMessage>& transforms) {
+  CdrWriter writer;
+  writer.number(static_cast<std::uint32_t>(transforms.size()));
+  for (const TransformMessage& transform : transforms) {
+    write_header(writer, transform.pose.stamp, transform.frame);
+    writer.text(transform.child);
+    write_pose(writer, transform.pose.T_world_body);
+  }
+  return writer.take();
+}
+
+Result<std::vector<TransformMessage>> decode_transforms(std::string_view message) {
+  CdrReader reader(message);
+  std::vector<TransformMessage> transforms;
+  const auto count = reader.number<std::uint32_t>();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    TransformMessage transform;
+    transform.pose.stamp = read_stamp(reader);
+    transform.frame = reader.text();
+    transform.child = reader.text();
+    const Result<Pose> pose = read_pose(reader);
+    if (!pose) return tl::unexpected(pose.error());
+    transform.pose.T_world_body = *pose;
+    transforms.push_back(std::move(transform));
+  }
+  if (!reader.ok()) return fail("the TFMessage ends early");
+  return transforms;
+}
+
+Result<Stamp> decode_stamp(std::string_view message) {
+  CdrReader reader(message);
+  const Stamp stamp = read_stamp(reader);
+  if (!reader.ok()) return fail("the message is too short for a header");
+  return stamp;
+}
+
+bool fits_ros(Stamp stamp) {
+  return stamp.ns >= 0 && stamp.ns / kNanosecondsPerSecond <= std::numeric_limits<std::int32_t>::max();
+}
+
+}  // namespace adit::ros

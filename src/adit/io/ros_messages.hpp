@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The four ROS 2 messages that recordings are made of, in CDR, with their definitions for MCAP's `ros2msg`
+/// schemas.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adit/core/records.hpp"
+#include "adit/core/result.hpp"
+
+namespace adit::ros {
+
+inline constexpr std::string_view kPointCloud2 = "sensor_msgs/msg/PointCloud2";
+inline constexpr std::string_view kOdometry = "nav_msgs/msg/Odometry";
+inline constexpr std::string_view kTransforms = "tf2_msgs/msg/TFMessage";
+
+/// The full text of a message type and all types in it; the type must be one of the above.
+[[nodiscard]] std::string definition_of(std::string_view type);
+
+/// A cloud in the frame named.
+struct CloudMessage {
+  std::string frame;
+  Scan scan;
+};
+/// The stamp's seconds must fit 32 bits: see `fits_ros`.
+[[nodiscard]] std::string encode_cloud(const Scan& scan, std::string_view frame);
+/// Takes the fields that pcd.hpp lists, of any type and byte order. Points that are not finite are left out.
+Result<CloudMessage> decode_cloud(std::string_view message);
+
+/// T_frame_child at a time.
+struct TransformMessage {
+  std::string frame;
+  std::string child;
+  StampedPose pose;
+};
+[[nodiscard]] std::string encode_odometry(const TransformMessage& odometry);
+Result<TransformMessage> decode_odometry(std::string_view message);
+[[nodiscard]] std::string encode_transforms(const std::vector<TransformMessage>& transforms);
+Result<std::vector<TransformMessage>> decode_transforms(std::string_view message);
+
+/// The stamp that nearly every message starts with.
+Result<Stamp> decode_stamp(std::string_view message);
+/// ROS keeps seconds in 32 bits, up to 2038; MCAP none before 0.
+[[nodiscard]] bool fits_ros(Stamp stamp);
+
+}  // namespace adit::ros
