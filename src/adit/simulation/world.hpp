@@ -33,7 +33,7 @@ struct WorldConfig {
   double furniture_spacing_factor = 1.0;
   double passage_spacing_factor = 1.0;
   double curvature_factor = 1.0;
-  double cell_size = 0.25;
+  double facet_factor = 1.0;
 };
 
 /// "zab": two road and two rail tubes with irregular cross passages, after Zentrum am Berg. "mine": rough
@@ -46,13 +46,12 @@ inline Fields fields_of(WorldConfig& c) {
       {"seed", &c.seed, "", 0, 9e15, "another seed, another network of the same kind"},
       {"relief_factor", &c.relief_factor, "", 0.0, 10.0, "scales the relief of the walls"},
       {"furniture_spacing_factor", &c.furniture_spacing_factor, "", 0.3, 100.0,
-       "scales the distance between niches, cabinets, pipes' ends and parked machines"},
-      {"passage_spacing_factor", &c.passage_spacing_factor, "", 0.7, 1.3,
-       "scales the distance between cross passages"},
+       "scales the distance between niches, cabinets and parked machines"},
+      {"passage_spacing_factor", &c.passage_spacing_factor, "", 0.5, 10.0,
+       "scales the distance between the cross passages of zab that no route needs"},
       {"curvature_factor", &c.curvature_factor, "", 0.0, 3.0,
        "scales the curvature of the tunnels; 0: straight"},
-      {"cell_size", &c.cell_size, "m", 0.1, 0.5,
-       "edge of the grid that junctions and rough walls are meshed on"},
+      {"facet_factor", &c.facet_factor, "", 0.4, 4.0, "scales the longest edge of a wall's triangles"},
   };
 }
 

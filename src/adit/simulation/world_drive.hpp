@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Level lines and the ways that robots drive along them.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "adit/simulation/route.hpp"
+#include "adit/simulation/world_solids.hpp"
+
+namespace adit {
+
+[[nodiscard]] double length_of(std::span<const Vector3> line);
+/// The line moved to its left, all of it by the same distance.
+[[nodiscard]] Polyline offset_line(std::span<const Vector3> line, double left);
+[[nodiscard]] Polyline reversed_line(Polyline line);
+/// The line with its first and last segments `by` metres longer.
+[[nodiscard]] Polyline extended(Polyline line, double by);
+/// The point and the unit direction `distance` along the line; beyond an end, those of that end.
+struct LinePoint {
+  Vector3 position;
+  Vector3 direction;
+};
+[[nodiscard]] LinePoint point_at(std::span<const Vector3> line, double distance);
+/// From `begin` to `end` along the line, both clamped to it; begin < end.
+[[nodiscard]] Polyline part_of(std::span<const Vector3> line, double begin, double end);
+
+/// What one robot does: `legs` are lines that cross (or touch) one after another, each followed from its
+/// crossing with the one before to that with the one after; the last one to where `length` is used up.
+struct Drive {
+  std::string name;
+  double speed_mps = 1.87;
+  double length = 400.0;
+  double start = 5.0;   ///< Metres from the beginning of the first leg.
+  double corner = 3.2;  ///< Metres before and after a crossing over which the robot turns.
+  std::vector<Polyline> legs;
+};
+
+/// Rounds the corners and puts a waypoint about every metre. Throws ContractViolation when two legs do not
+/// meet or the legs are too short for the length: both are faults of a preset, not of its input.
+[[nodiscard]] Route route_of(const Drive& drive);
+
+}  // namespace adit

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/simulation/world_plan.hpp"
+
+namespace adit {
+namespace {
+
+constexpr double kSunk =
+    -0.05;  ///< Metres: obstacles stand in the floor, so that no facet lies in its plane.
+
+void add_block(WorldPlan& plan, const Vector3& from, const Vector3& to, const Profile& profile) {
+  plan.obstacles.push_back(turned_out(box_between(from, to, profile)));
+}
+
+}  // namespace
+
+void add_tunnel(WorldPlan& plan, const Profile& profile, const Polyline& line) {
+  plan.spaces.push_back(sweep(profile, line, Ends::open));
+  plan.tunnel_length += length_of(line);
+}
+
+void add_closed_tunnel(WorldPlan& plan, const Profile& profile, const Polyline& line) {
+  plan.spaces.push_back(sweep(profile, line, Ends::closed));
+  plan.tunnel_length += length_of(line);
+}
+
+void add_niche(WorldPlan& plan, const WallSite& site) {
+  constexpr double kDepth = 0.9;
+  plan.spaces.push_back(box_between(site.at(site.half_width - 1.0), site.at(site.half_width + kDepth),
+                                    box_profile(1.8, 0.12, 2.1)));
+}
+
+void add_cabinet(WorldPlan& plan, const WallSite& site) {
+  add_block(plan, site.at(site.half_width - 0.45), site.at(site.half_width + 0.2),
+            box_profile(1.1, kSunk, 1.9));
+}
+
+void add_machine(WorldPlan& plan, const WallSite& site, double lateral) {
+  add_block(plan, site.at(lateral, -2.8), site.at(lateral, 2.0), box_profile(2.0, kSunk, 1.5));
+  add_block(plan, site.at(lateral, -1.0), site.at(lateral, 0.7), box_profile(1.7, 1.4, 3.0));
+  add_block(plan, site.at(lateral, 1.9), site.at(lateral, 3.0), box_profile(2.3, kSunk, 0.9));
+}
+
+}  // namespace adit

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What a preset decides, before anything is meshed. Internal to the world.
+#pragma once
+
+#include <vector>
+
+#include "adit/core/rng.hpp"
+#include "adit/simulation/world.hpp"
+#include "adit/simulation/world_drive.hpp"
+#include "adit/simulation/world_relief.hpp"
+#include "adit/simulation/world_solids.hpp"
+
+namespace adit {
+
+struct WorldPlan {
+  std::vector<Solid>
+      spaces;  ///< Tunnels before what opens into them, so that floors keep the tunnel's facets.
+  std::vector<Solid> obstacles;  ///< Matter, faces looking outwards.
+  Relief relief;
+  double max_edge = 1.0;
+  bool flat_floor = true;
+  std::vector<Drive> drives;
+  double tunnel_length = 0.0;
+};
+
+[[nodiscard]] WorldPlan plan_zab(const WorldConfig& config);
+[[nodiscard]] WorldPlan plan_mine(const WorldConfig& config);
+[[nodiscard]] WorldPlan plan_metro(const WorldConfig& config);
+
+/// Adds a tunnel along `line`, open at both ends, and its length.
+void add_tunnel(WorldPlan& plan, const Profile& profile, const Polyline& line);
+/// The same with walls at both ends; where an end lies inside another tunnel there is no wall.
+void add_closed_tunnel(WorldPlan& plan, const Profile& profile, const Polyline& line);
+
+/// A place beside a tunnel: `distance` along its line, on its left (+1) or right (-1).
+struct WallSite {
+  LinePoint foot;     ///< On the line.
+  double side = 1.0;  ///< +1 or -1.
+  double half_width = 5.0;
+
+  [[nodiscard]] Vector3 left() const { return Vector3::UnitZ().cross(foot.direction); }
+  /// `lateral` metres from the line towards the site's side, `along` metres on.
+  [[nodiscard]] Vector3 at(double lateral, double along = 0.0) const {
+    return foot.position + left() * (side * lateral) + foot.direction * along;
+  }
+};
+void add_niche(WorldPlan& plan, const WallSite& site);
+void add_cabinet(WorldPlan& plan, const WallSite& site);
+/// A wheel loader parked along the tunnel, its middle `lateral` metres from the line.
+void add_machine(WorldPlan& plan, const WallSite& site, double lateral);
+
+}  // namespace adit

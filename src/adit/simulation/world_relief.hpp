@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "adit/core/pose.hpp"
+
+namespace adit {
+
+/// One scale of a smooth random displacement, metres.
+struct ReliefOctave {
+  double wavelength = 2.0;
+  double amplitude = 0.01;
+};
+
+/// Turns smooth walls into shotcrete or rock by displacing space itself: neighbouring surfaces stay joined.
+/// An octave's amplitude stays well below its wavelength, so that nothing folds over.
+struct Relief {
+  std::uint64_t seed = 1;
+  std::vector<ReliefOctave> octaves;
+  double floor_share =
+      0.0;  ///< How much of the vertical displacement the floor (z = 0) takes part in, 0 to 1.
+  double ramp_amplitude = 0.0;  ///< Metres, of the long waves by which all floors rise and sink.
+  double ramp_wavelength = 320.0;
+};
+
+/// Where a point of the smooth world really lies.
+[[nodiscard]] Vector3 displaced(const Relief& relief, const Vector3& p);
+
+/// Where a point of the smooth floor (its z ignored) really lies: only its height changes.
+[[nodiscard]] Vector3 on_floor(const Relief& relief, const Vector3& p);
+
+}  // namespace adit

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The building blocks of tunnel worlds: a convex profile swept along a level line. A solid is free space (a
+/// tunnel, a passage, a niche) or matter (a cabinet, a platform), by the use that is made of it.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+#include "adit/core/pose.hpp"
+
+namespace adit {
+
+/// A convex cross-section, counter-clockwise, as (metres to the left of the line, metres above it).
+using Profile = std::vector<Eigen::Vector2d>;
+using Polyline = std::vector<Vector3>;
+
+/// Flat floor, upright walls and a half-ellipse above them.
+struct Arch {
+  double width = 10.0;
+  double height = 7.0;
+  double spring_height = 2.0;  ///< Where the walls end and the vault begins.
+  int num_facets = 40;         ///< Of the vault. 40 keep a vault of 5 m radius within 4 mm.
+};
+[[nodiscard]] Profile arch_profile(const Arch& arch);
+[[nodiscard]] Profile box_profile(double width, double bottom, double top);
+/// The profile moved to the left of its line.
+[[nodiscard]] Profile shifted(Profile profile, double left);
+
+struct Plane {
+  Vector3 normal;  ///< Unit length, pointing out of the piece.
+  double offset = 0.0;
+  [[nodiscard]] double distance(const Vector3& p) const { return normal.dot(p) - offset; }
+};
+
+/// The intersection of half-spaces. The first `num_walls` planes carry surface; the others are the joints to
+/// the neighbouring pieces of the same solid.
+struct ConvexPiece {
+  std::vector<Plane> planes;
+  std::size_t num_walls = 0;
+  Eigen::AlignedBox3d box;
+};
+
+/// A convex polygon of the surface; the corners run counter-clockwise as seen from the side `normal` points
+/// to.
+struct Face {
+  std::vector<Vector3> corners;
+  Vector3 normal;
+};
+
+/// `faces` look into the pieces.
+struct Solid {
+  std::vector<ConvexPiece> pieces;
+  std::vector<Face> faces;
+  Eigen::AlignedBox3d box;
+};
+
+enum class Ends { open, closed };
+
+/// Sweeps `profile` along a level polyline of at least two points. Neighbouring segments meet in their mitre
+/// plane, so that every facet is planar. The line's bends must be wider than the profile.
+[[nodiscard]] Solid sweep(const Profile& profile, std::span<const Vector3> line, Ends ends);
+
+/// Closed sweep of a rectangle along the straight line from `from` to `to`.
+[[nodiscard]] Solid box_between(const Vector3& from, const Vector3& to, const Profile& profile);
+
+/// Matter: the same solid with its faces looking outwards.
+[[nodiscard]] Solid turned_out(Solid solid);
+
+/// The larger this is, the farther inside: a lower bound on the distance from `point` to the walls of the
+/// union of `spaces` (joints between pieces do not count); negative outside of all.
+[[nodiscard]] double depth_inside(std::span<const Solid> spaces, const Vector3& point);
+/// A lower bound on the distance from `point` to the nearest of `obstacles`; negative inside one.
+[[nodiscard]] double distance_to(std::span<const Solid> obstacles, const Vector3& point);
+
+}  // namespace adit

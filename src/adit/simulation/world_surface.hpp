@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// From solids to one mesh. Faces are cut exactly against the other solids instead of sampling a field on a
+/// grid: concrete stays planar to rounding, and no grid leaves a texture that a scan matcher could hold on
+/// to.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "adit/geometry/triangle_mesh.hpp"
+#include "adit/simulation/world_solids.hpp"
+
+namespace adit {
+
+/// The boundary of the union: every face without the parts inside another solid. Where faces of two solids
+/// lie in one plane, the one of the earlier solid stays.
+[[nodiscard]] std::vector<Face> boundary_of_union(std::span<const Solid> solids);
+
+/// What the surface becomes after it is meshed.
+struct Surfacing {
+  double max_edge =
+      1.0;  ///< Longer edges are halved; edges within the plane z = 0 too unless the floor is flat.
+  bool flat_floor = true;
+  std::function<Vector3(const Vector3&)> displaced;  ///< Where a point of the smooth surface really lies.
+};
+
+/// Merges equal corners, closes T-junctions, refines and displaces. Edges of the union end up in exactly two
+/// triangles wherever the faces close.
+[[nodiscard]] TriangleMesh surface_mesh(std::span<const Face> faces, const Surfacing& surfacing);
+
+}  // namespace adit
