@@ -8,33 +8,17 @@
 #include <limits>
 
 #include "adit/core/check.hpp"
+#include "adit/geometry/voxel_grid.hpp"
 
 namespace adit {
 namespace {
 
-constexpr float kMaxCell = 1.0e6F;
-constexpr std::uint64_t kNoCell = std::numeric_limits<std::uint64_t>::max();
-
-/// Cell coordinates in 21 bits each, x highest: keys in ascending order run along z first.
-std::uint64_t cell_key(std::int64_t x, std::int64_t y, std::int64_t z) {
-  constexpr std::int64_t kOffset = std::int64_t{1} << 20U;
-  return (static_cast<std::uint64_t>(x + kOffset) << 42U) | (static_cast<std::uint64_t>(y + kOffset) << 21U) |
-         static_cast<std::uint64_t>(z + kOffset);
-}
-
-std::uint64_t cell_of(const Eigen::Vector3f& point, float cell_size) {
-  const Eigen::Array3f cell = (point / cell_size).array().floor();
-  if (!(cell.abs() < kMaxCell).all()) return kNoCell;
-  return cell_key(static_cast<std::int64_t>(cell.x()), static_cast<std::int64_t>(cell.y()),
-                  static_cast<std::int64_t>(cell.z()));
-}
+constexpr VoxelKey kNoCell{std::numeric_limits<std::uint64_t>::max()};
 
 struct Entry {
-  std::uint64_t cell;
+  VoxelKey cell;
   std::uint32_t index;
-  bool operator<(const Entry& other) const {
-    return cell != other.cell ? cell < other.cell : index < other.index;
-  }
+  auto operator<=>(const Entry&) const = default;
 };
 
 struct Range {
@@ -47,9 +31,10 @@ struct Range {
 class SortedCells {
  public:
   SortedCells(const std::vector<Eigen::Vector3f>& points, float cell_size) : position_(points.size(), 0) {
+    const VoxelGrid grid(cell_size * 1.0001F);  // rounding must not put a neighbour two cells away
     entries_.reserve(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-      entries_.push_back({cell_of(points[i], cell_size), static_cast<std::uint32_t>(i)});
+      entries_.push_back({grid.key_of(points[i]).value_or(kNoCell), static_cast<std::uint32_t>(i)});
     }
     std::sort(entries_.begin(), entries_.end());
     sorted_.reserve(points.size());
@@ -63,7 +48,7 @@ class SortedCells {
   /// side only.
   void append_later_neighbors(std::uint32_t i, float radius, std::vector<Neighbor>& out) {
     const std::uint32_t position = position_[i];
-    const std::uint64_t cell = entries_[position].cell;
+    const VoxelKey cell = entries_[position].cell;
     if (cell == kNoCell) return;
     if (cell != current_cell_) enter_cell(cell);
     const Eigen::Vector3f point = sorted_[position];
@@ -76,20 +61,18 @@ class SortedCells {
   }
 
  private:
-  std::uint32_t first_at_least(std::uint64_t cell) const {
+  std::uint32_t first_at_least(VoxelKey cell) const {
     const auto it = std::lower_bound(entries_.begin(), entries_.end(), Entry{cell, 0});
     return static_cast<std::uint32_t>(it - entries_.begin());
   }
 
-  /// Three neighbours along z are one contiguous range; the columns with smaller (x, y) hold earlier points
+  /// Three neighbours along x are one contiguous range; the rows with smaller (z, y) hold earlier points
   /// only.
-  void enter_cell(std::uint64_t cell) {
-    constexpr std::uint64_t kStepX = std::uint64_t{1} << 42U;
-    constexpr std::uint64_t kStepY = std::uint64_t{1} << 21U;
-    const std::array<std::uint64_t, 5> columns = {cell, cell + kStepY, cell + kStepX - kStepY, cell + kStepX,
-                                                  cell + kStepX + kStepY};
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      ranges_[c] = {first_at_least(columns[c] - 1), first_at_least(columns[c] + 2)};
+  void enter_cell(VoxelKey cell) {
+    const std::array<VoxelKey, 5> rows = {cell, cell.shifted(0, 1, 0), cell.shifted(0, -1, 1),
+                                          cell.shifted(0, 0, 1), cell.shifted(0, 1, 1)};
+    for (std::size_t c = 0; c < rows.size(); ++c) {
+      ranges_[c] = {first_at_least(rows[c].shifted(-1, 0, 0)), first_at_least(rows[c].shifted(2, 0, 0))};
     }
     current_cell_ = cell;
   }
@@ -98,7 +81,7 @@ class SortedCells {
   std::vector<Eigen::Vector3f> sorted_;
   std::vector<std::uint32_t> position_;  ///< Of each point in the sorted order.
   std::array<Range, 5> ranges_;
-  std::uint64_t current_cell_ = kNoCell;
+  VoxelKey current_cell_ = kNoCell;
 };
 
 }  // namespace

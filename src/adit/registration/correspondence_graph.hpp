@@ -46,6 +46,4 @@ class ConsistencyGraph {
 /// an empty graph.
 [[nodiscard]] std::vector<std::uint32_t> max_core(const ConsistencyGraph& graph);
 
-                                                       std::uint64_t max_search_nodes);
-
 }  // namespace adit

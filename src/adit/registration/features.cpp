@@ -4,8 +4,8 @@
 
 #include "adit/geometry/normals.hpp"
 #include "adit/geometry/radius_search.hpp"
+#include "adit/geometry/voxel_grid.hpp"
 #include "adit/registration/fpfh.hpp"
-#include "adit/registration/voxel_means.hpp"
 
 namespace adit {
 
@@ -14,7 +14,7 @@ Features compute_features(const PointCloud& cloud, const RegistrationConfig& con
   const auto voxel = static_cast<float>(config.voxel_size);
   const float feature_radius = voxel * static_cast<float>(config.feature_radius_voxels);
   const float normal_radius = voxel * static_cast<float>(config.normal_radius_voxels);
-  const std::vector<Eigen::Vector3f> points = voxel_means(cloud.points, voxel);
+  const std::vector<Eigen::Vector3f> points = voxel_centroids(cloud, config.voxel_size).points;
   const NeighborPairs pairs = find_pairs_within(points, feature_radius);
   std::vector<SurfacePoint> surface = estimate_surface(points, pairs, normal_radius);
   for (SurfacePoint& s : surface)

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/geometry/kd_tree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "adit/core/rng.hpp"
+
+namespace adit {
+namespace {
+
+using Points = std::vector<Eigen::Vector3f>;
+
+/// Rounded coordinates, so that many points coincide and many distances are equal.
+Points lattice_points(std::uint64_t seed, std::size_t n) {
+  Rng rng(seed);
+  Points points;
+  for (std::size_t i = 0; i < n; ++i) {
+    points.emplace_back(static_cast<float>(rng.below(12)), static_cast<float>(rng.below(12)),
+                        static_cast<float>(rng.below(4)));
+  }
+  return points;
+}
+
+Points scattered_points(std::uint64_t seed, std::size_t n) {
+  Rng rng(seed);
+  Points points;
+  for (std::size_t i = 0; i < n; ++i) {
+    points.emplace_back(static_cast<float>(100.0 * rng.normal()), static_cast<float>(rng.normal()),
+                        static_cast<float>(rng.uniform(-1.0, 1.0)));
+  }
+  return points;
+}
+
+std::vector<Neighbor> sorted_by_brute_force(const Points& points, const Eigen::Vector3f& query) {
+  std::vector<Neighbor> all;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3f d = points[i] - query;
+    if (points[i].allFinite()) all.push_back({i, d.x() * d.x() + d.y() * d.y() + d.z() * d.z()});
+  }
+  std::sort(all.begin(), all.end(), [](const Neighbor& a, const Neighbor& b) {
+    return std::tie(a.squared_distance, a.index) < std::tie(b.squared_distance, b.index);
+  });
+  return all;
+}
+
+void expect_same_as_brute_force(const Points& points, const Points& queries) {
+  const KdTree tree(points);
+  for (const Eigen::Vector3f& query : queries) {
+    std::vector<Neighbor> expected = sorted_by_brute_force(points, query);
+    const auto nearest = tree.nearest(query);
+    ASSERT_EQ(nearest.has_value(), !expected.empty());
+    if (nearest) {
+      EXPECT_EQ(*nearest, expected.front());
+    }
+    const float radius = 2.0F;
+    const auto within = tree.within(query, radius);
+    const auto last = std::find_if(expected.begin(), expected.end(),
+                                   [&](const Neighbor& n) { return n.squared_distance > radius * radius; });
+    EXPECT_EQ(within, std::vector<Neighbor>(expected.begin(), last));
+    expected.resize(std::min<std::size_t>(expected.size(), 7));
+    EXPECT_EQ(tree.k_nearest(query, 7), expected);
+  }
+}
+
+TEST(KdTree, AgreesWithBruteForceOnTies) {
+  expect_same_as_brute_force(lattice_points(1, 700), lattice_points(2, 100));
+}
+
+TEST(KdTree, AgreesWithBruteForceOnStretchedClouds) {
+  expect_same_as_brute_force(scattered_points(3, 900), scattered_points(4, 100));
+}
+
+TEST(KdTree, HandlesDegenerateClouds) {
+  expect_same_as_brute_force({}, lattice_points(5, 3));
+  expect_same_as_brute_force({{1.0F, 2.0F, 3.0F}}, lattice_points(6, 3));
+  expect_same_as_brute_force(Points(200, {1.0F, 1.0F, 1.0F}), lattice_points(7, 20));
+  Points line;
+  for (int i = 0; i < 100; ++i) line.emplace_back(0.0F, static_cast<float>(i), 0.0F);
+  expect_same_as_brute_force(line, lattice_points(8, 20));
+}
+
+TEST(KdTree, NeverFindsPointsThatAreNotFinite) {
+  Points points = lattice_points(9, 100);
+  points[3].x() = std::nanf("");
+  points[50].z() = std::numeric_limits<float>::infinity();
+  expect_same_as_brute_force(points, lattice_points(10, 20));
+  const KdTree tree(points);
+  EXPECT_EQ(tree.size(), 98U);
+  EXPECT_FALSE(tree.nearest({std::nanf(""), 0.0F, 0.0F}).has_value());
+  EXPECT_TRUE(tree.within({std::nanf(""), 0.0F, 0.0F}, 10.0F).empty());
+}
+
+TEST(KdTree, NearestKeepsToTheLargestDistance) {
+  const KdTree tree(Points{{0.0F, 0.0F, 0.0F}, {5.0F, 0.0F, 0.0F}});
+  EXPECT_FALSE(tree.nearest({2.0F, 0.0F, 0.0F}, 1.9F).has_value());
+  EXPECT_EQ(tree.nearest({2.0F, 0.0F, 0.0F}, 2.0F)->index, 0U);  // inclusive
+  EXPECT_TRUE(tree.k_nearest({2.0F, 0.0F, 0.0F}, 0).empty());
+}
+
+}  // namespace
+}  // namespace adit
