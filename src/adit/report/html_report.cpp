@@ -137,7 +137,7 @@ std::string refusals(const StudyResult& study) {
   }
   if (study.joint) {
     for (const std::string& reason : study.joint->refusals)
-      list += "<li>Jointly: " + escaped(reason) + "</li>\n";
+      list += format("<li>Jointly: {}</li>\n", escaped(reason));
   }
   if (list.empty()) return "";
   return "<h2 id=\"refusals\">What was not merged, and why</h2>\n<p>No merge is an honest answer; a wrong "
@@ -165,7 +165,7 @@ std::string navigation(const std::vector<std::string>& sections) {
 
 std::string configuration(const StudyResult& study) {
   std::string html = "<h2 id=\"configuration\">Configuration</h2>\n";
-  if (!study.command.empty()) html += "<p>Made by:</p>\n<pre>" + escaped(study.command) + "</pre>\n";
+  if (!study.command.empty()) html += format("<p>Made by:</p>\n<pre>{}</pre>\n", escaped(study.command));
   if (!study.configuration.empty()) {
     html += "<details><summary>All settings</summary>\n<pre>" + escaped(study.configuration) +
             "</pre>\n</details>\n";

@@ -20,7 +20,7 @@ std::string number(double value) {
   return format("{:g}", tenths == 0.0 ? 0.0 : std::clamp(tenths / 10.0, -99999.0, 99999.0));
 }
 
-std::string pair(const Point2& p) { return number(p.x()) + " " + number(p.y()); }
+std::string pair(const Point2& p) { return format("{} {}", number(p.x()), number(p.y())); }
 
 std::string stroke_attributes(const Stroke& stroke) {
   std::string text = format(R"( stroke="{}" stroke-width="{}")", hex(stroke.color), number(stroke.width));
@@ -90,7 +90,7 @@ void SvgCanvas::line(const Point2& a, const Point2& b, const Stroke& stroke) {
 void SvgCanvas::polyline(std::span<const Point2> points, const Stroke& stroke) {
   if (points.size() < 2) return;
   std::string path;
-  for (const Point2& p : simplified(points, 0.1)) path += (path.empty() ? "M" : "L") + pair(p);
+  for (const Point2& p : simplified(points, 0.1)) path += format("{}{}", path.empty() ? 'M' : 'L', pair(p));
   body_ += format("<path fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\" d=\"{}\"{}/>\n",
                   path, stroke_attributes(stroke));
 }
@@ -98,7 +98,7 @@ void SvgCanvas::polyline(std::span<const Point2> points, const Stroke& stroke) {
 void SvgCanvas::segments(std::span<const std::pair<Point2, Point2>> lines, const Stroke& stroke) {
   if (lines.empty()) return;
   std::string path;
-  for (const auto& [a, b] : lines) path += "M" + pair(a) + "L" + pair(b);
+  for (const auto& [a, b] : lines) path += format("M{}L{}", pair(a), pair(b));
   body_ += format("<path stroke-linecap=\"round\" d=\"{}\"{}/>\n", path, stroke_attributes(stroke));
 }
 

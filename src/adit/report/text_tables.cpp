@@ -29,7 +29,7 @@ std::string aligned(const Row& row, const std::vector<std::size_t>& widths) {
   std::string line;
   for (std::size_t i = 0; i < row.size(); ++i) {
     const std::string space = padding(widths[i], row[i]);
-    line += i == 0 ? row[i] + space : "  " + space + row[i];
+    line += i == 0 ? row[i] + space : format("  {}{}", space, row[i]);
   }
   while (line.ends_with(' ')) line.pop_back();
   return line + "\n";
@@ -93,10 +93,7 @@ std::string markdown_escaped(const std::string& text) {
 
 std::string markdown_row(const Row& row) {
   std::string line = "|";
-  for (const std::string& cell : row) {
-    // A lone dash at the start of a cell is safe inside a table.
-    line += " " + markdown_escaped(cell) + " |";
-  }
+  for (const std::string& cell : row) line += format(" {} |", markdown_escaped(cell));
   return line + "\n";
 }
 
@@ -132,11 +129,11 @@ std::string text_of(const Table& table) {
 
 std::string markdown_of(const Table& table) {
   check(table);
-  std::string text = "**" + markdown_escaped(table.title) + "**\n\n" + markdown_row(flat_header(table)) + "|";
+  std::string text = format("**{}**\n\n{}|", markdown_escaped(table.title), markdown_row(flat_header(table)));
   for (std::size_t i = 0; i < table.header.size(); ++i) text += i == 0 ? " :-- |" : " --: |";
   text += "\n";
   for (const Row& row : table.rows) text += markdown_row(row);
-  return text + "\n*" + markdown_escaped(table.caption) + "*\n";
+  return text + format("\n*{}*\n", markdown_escaped(table.caption));
 }
 
 std::string html_of(const Table& table) {
@@ -145,7 +142,7 @@ std::string html_of(const Table& table) {
       "<figure class=\"table\">\n<figcaption><b>{}.</b> {}</figcaption>\n<div "
       "class=\"scroll\"><table>\n<thead>\n{}<tr>",
       escaped(table.title), escaped(table.caption), html_group_row(table));
-  for (const std::string& cell : table.header) html += "<th scope=\"col\">" + escaped(cell) + "</th>";
+  for (const std::string& cell : table.header) html += format("<th scope=\"col\">{}</th>", escaped(cell));
   html += "</tr>\n</thead>\n<tbody>\n";
   for (const Row& row : table.rows) {
     html += "<tr>";
