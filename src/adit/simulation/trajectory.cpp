@@ -150,7 +150,7 @@ std::vector<double> moving_average(const std::vector<double>& values, std::size_
   return means;
 }
 
-// Tyres and springs: over about a wheelbase, twice, so that speeds stay continuous.
+// Tyres and springs: a mean over a wheelbase, twice, so that speeds stay continuous.
 template <class Member>
 void spring(Way& way, std::size_t half_width, Member member) {
   std::vector<double> values;
@@ -163,7 +163,7 @@ void spring(Way& way, std::size_t half_width, Member member) {
 void follow_floor(const Raycaster& raycaster, const DriveConfig& config, Way& way) {
   for (WayPoint& point : way) stand_on_floor(raycaster, config, point);
   const double sample_length = config.corner_length / kSamplesPerCorner;
-  const auto half_width = static_cast<std::size_t>(std::ceil(0.25 * config.wheelbase / sample_length));
+  const auto half_width = static_cast<std::size_t>(std::ceil(0.5 * config.wheelbase / sample_length));
   spring(way, half_width, [](WayPoint& p) -> double& { return p.position.z(); });
   spring(way, half_width, [](WayPoint& p) -> double& { return p.slope_ahead; });
   spring(way, half_width, [](WayPoint& p) -> double& { return p.slope_left; });

@@ -21,9 +21,9 @@ struct WheelConfig {
   double effective_track = 0.9;
   double tick = 0.0005;
   double scale_sigma = 0.005;
-  double yaw_drift_deg = 0.7;
+  double yaw_drift_deg = 0.5;
   double yaw_walk_deg = 0.5;
-  double turn_scale_sigma = 0.02;
+  double turn_scale_sigma = 0.01;
   double slip_sigma = 0.02;
   double slip_time = 1.0;
 };

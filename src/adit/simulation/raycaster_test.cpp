@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/simulation/raycaster.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "adit/core/parallel.hpp"
+#include "support/meshes.hpp"
+
+namespace adit {
+namespace {
+
+TriangleMesh random_soup(int num_triangles) {
+  Rng rng(11);
+  TriangleMesh mesh;
+  for (int i = 0; i < num_triangles; ++i) {
+    const Vector3 middle = test::random_vector(rng, 10.0);
+    for (int corner = 0; corner < 3; ++corner) {
+      mesh.vertices.push_back((middle + test::random_vector(rng, 2.0)).cast<float>());
+    }
+    mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+  }
+  return mesh;
+}
+
+std::vector<Ray> random_rays(int num_rays) {
+  Rng rng(12);
+  std::vector<Ray> rays;
+  for (int i = 0; i < num_rays; ++i) {
+    Vector3 direction = test::random_vector(rng, 1.0);
+    if (i % 5 == 0) direction = Vector3::Unit(i % 3) * (i % 2 == 0 ? 1.0 : -1.0);  // along an axis
+    rays.push_back({test::random_vector(rng, 12.0).cast<float>(), direction.normalized().cast<float>()});
+  }
+  return rays;
+}
+
+struct OracleHit {
+  double distance = std::numeric_limits<double>::infinity();
+  bool near_edge = false;  // some triangle is met so near its rim that rounding decides
+};
+
+// Moeller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997, over all triangles.
+OracleHit brute_force(const TriangleMesh& mesh, const Ray& ray) {
+  const Vector3 origin = ray.origin.cast<double>();
+  const Vector3 direction = ray.direction.cast<double>();
+  OracleHit best;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    const auto corner = [&](int i) {
+      return Vector3(mesh.vertices[static_cast<std::size_t>(t[i])].cast<double>());
+    };
+    const Vector3 ab = corner(1) - corner(0);
+    const Vector3 ac = corner(2) - corner(0);
+    const Vector3 p = direction.cross(ac);
+    const double determinant = ab.dot(p);
+    if (std::abs(determinant) < 1e-12) continue;
+    const Vector3 s = origin - corner(0);
+    const double u = s.dot(p) / determinant;
+    const Vector3 q = s.cross(ab);
+    const double v = direction.dot(q) / determinant;
+    const double distance = ac.dot(q) / determinant;
+    const double rim = std::min({u, v, 1.0 - u - v});
+    if (std::abs(rim) < 1e-4 && distance > -1e-3) best.near_edge = true;
+    if (rim >= 0.0 && distance > 0.0) best.distance = std::min(best.distance, distance);
+  }
+  return best;
+}
+
+TEST(Raycaster, agrees_with_brute_force_on_a_triangle_soup) {
+  const TriangleMesh mesh = random_soup(300);
+  const Raycaster raycaster = Raycaster::build(mesh).value();
+  int hits = 0;
+  int misses = 0;
+  for (const Ray& ray : random_rays(3000)) {
+    const OracleHit expected = brute_force(mesh, ray);
+    if (expected.near_edge) continue;
+    const RayHit got = raycaster.cast(ray, 1000.0F);
+    ASSERT_EQ(got.hit(), std::isfinite(expected.distance));
+    got.hit() ? ++hits : ++misses;
+    if (got.hit()) {
+      EXPECT_NEAR(got.distance, expected.distance, 1e-4 * (1.0 + expected.distance));
+      EXPECT_NEAR(got.normal.norm(), 1.0F, 1e-6F);
+    }
+  }
+  EXPECT_GT(hits, 500);
+  EXPECT_GT(misses, 200);
+}
+
+TEST(Raycaster, many_rays_at_once_are_the_same_as_one_by_one) {
+  const Raycaster raycaster = Raycaster::build(random_soup(300)).value();
+  for (const int num_rays : {0, 1, 127, 128, 129, 1000}) {
+    const std::vector<Ray> rays = random_rays(num_rays);
+    const std::vector<RayHit> together = raycaster.cast(rays, 50.0F);
+    ASSERT_EQ(together.size(), rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const RayHit alone = raycaster.cast(rays[i], 50.0F);
+      EXPECT_EQ(together[i].distance, alone.distance);
+      EXPECT_EQ(together[i].normal, alone.normal);
+    }
+  }
+}
+
+TEST(Raycaster, any_thread_may_cast) {
+  const Raycaster raycaster = Raycaster::build(random_soup(300)).value();
+  const std::vector<Ray> rays = random_rays(5000);
+  std::vector<float> parallel(rays.size());
+  parallel_for_each(
+      rays.size(), [&](std::size_t i) { parallel[i] = raycaster.cast(rays[i], 50.0F).distance; }, 100);
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    EXPECT_EQ(parallel[i], raycaster.cast(rays[i], 50.0F).distance);
+}
+
+TEST(Raycaster, sees_both_sides_and_stops_at_the_given_distance) {
+  TriangleMesh mesh;
+  test::add_quad(mesh, {5, -1, -1}, {5, 1, -1}, {5, 1, 1}, {5, -1, 1});
+  const Raycaster raycaster = Raycaster::build(mesh).value();
+  const Ray ahead{{0, 0.1F, 0.2F}, Eigen::Vector3f::UnitX()};
+  const Ray from_behind{{10, 0.1F, 0.2F}, -Eigen::Vector3f::UnitX()};
+  EXPECT_FLOAT_EQ(raycaster.cast(ahead, 200.0F).distance, 5.0F);
+  EXPECT_FLOAT_EQ(raycaster.cast(from_behind, 200.0F).distance, 5.0F);
+  EXPECT_EQ(raycaster.cast(ahead, 200.0F).normal, raycaster.cast(from_behind, 200.0F).normal);
+  EXPECT_FALSE(raycaster.cast(ahead, 4.9F).hit());
+  EXPECT_FALSE(raycaster.cast({{0, 0, 0}, -Eigen::Vector3f::UnitX()}, 200.0F).hit());
+}
+
+TEST(Raycaster, a_ray_within_the_plane_of_a_triangle_meets_nothing) {
+  TriangleMesh mesh;
+  test::add_quad(mesh, {1, -1, 0}, {2, -1, 0}, {2, 1, 0}, {1, 1, 0});
+  const Raycaster raycaster = Raycaster::build(mesh).value();
+  EXPECT_FALSE(raycaster.cast({{0, 0, 0}, Eigen::Vector3f::UnitX()}, 10.0F).hit());
+  EXPECT_FALSE(raycaster.cast({{0, 0, 0.01F}, Eigen::Vector3f::UnitX()}, 10.0F).hit());
+}
+
+TEST(Raycaster, triangles_without_area_are_never_met) {
+  TriangleMesh mesh = test::room({-2, -2, -2}, {2, 2, 2});
+  mesh.triangles.emplace_back(0, 0, 1);
+  mesh.triangles.emplace_back(3, 3, 3);
+  const Raycaster raycaster = Raycaster::build(mesh).value();
+  for (const Ray& ray : random_rays(1000)) {
+    const RayHit hit = raycaster.cast(Ray{Eigen::Vector3f::Zero(), ray.direction}, 100.0F);
+    ASSERT_TRUE(hit.hit());
+    EXPECT_NEAR((hit.distance * ray.direction).cwiseAbs().maxCoeff(), 2.0F, 1e-5F);
+    EXPECT_NEAR(hit.normal.norm(), 1.0F, 1e-6F);
+  }
+}
+
+TEST(Raycaster, far_from_the_origin_distances_keep_a_tenth_of_a_millimetre) {
+  const Vector3 far(800.0, -600.0, 50.0);
+  const Raycaster raycaster =
+      Raycaster::build(test::room(far - Vector3(4, 4, 2), far + Vector3(4, 4, 2))).value();
+  const RayHit hit = raycaster.cast({far.cast<float>(), Eigen::Vector3f::UnitY()}, 100.0F);
+  EXPECT_NEAR(hit.distance, 4.0F, 1e-4F);
+}
+
+TEST(Raycaster, refuses_what_is_no_mesh) {
+  EXPECT_FALSE(Raycaster::build({}).has_value());
+  TriangleMesh mesh = test::room({0, 0, 0}, {1, 1, 1});
+  mesh.vertices[2].y() = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(Raycaster::build(mesh).has_value());
+  mesh = test::room({0, 0, 0}, {1, 1, 1});
+  mesh.triangles[1].x() = 24;
+  EXPECT_FALSE(Raycaster::build(mesh).has_value());
+}
+
+}  // namespace
+}  // namespace adit
