@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/simulation/scenario.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "adit/core/parallel.hpp"
+#include "support/meshes.hpp"
+
+namespace adit {
+namespace {
+
+const Vector3 kLow(-2.0, -5.0, 0.0);
+const Vector3 kHigh(30.0, 5.0, 4.0);
+
+World hall() {
+  World world;
+  world.name = "hall";
+  world.mesh = test::room(kLow, kHigh);
+  world.routes = {{"robot_0", 1.8, {{0, -2, 0}, {20, -2, 0}}},
+                  {"robot_1", 1.9, {{25, 2, 0}, {10, 3, 0}, {2, 2, 0}}}};
+  return world;
+}
+
+ScenarioConfig quick() {
+  ScenarioConfig c;
+  c.lidar.beams = 8;
+  c.lidar.columns = 128;
+  return c;
+}
+
+std::vector<Recording> simulated(const World& world, const ScenarioConfig& config) {
+  return simulate(world, config).value();
+}
+
+TEST(Scenario, makes_one_recording_a_route) {
+  const std::vector<Recording> recordings = simulated(hall(), quick());
+  ASSERT_EQ(recordings.size(), 2U);
+  for (std::size_t robot = 0; robot < 2; ++robot) {
+    const Recording& r = recordings[robot];
+    EXPECT_EQ(r.name, hall().routes[robot].name);
+    EXPECT_EQ(r.lidar, "os2-128");
+    EXPECT_DOUBLE_EQ(r.T_base_lidar.translation().z(), 0.9);
+    EXPECT_GT(r.num_scans(), 80U);
+    EXPECT_TRUE(std::ranges::is_sorted(r.scan_stamps));
+    const Scan scan = r.read_scan(r.num_scans() - 1).value();
+    EXPECT_EQ(scan.stamp, r.scan_stamps.back());
+    EXPECT_GT(scan.cloud.size(), 500U);
+  }
+}
+
+TEST(Scenario, wheels_and_truth_cover_every_sweep) {
+  for (const double rate_hz : {10.0, 7.0, 20.0}) {
+    ScenarioConfig config = quick();
+    config.lidar.rate_hz = rate_hz;
+    for (const Recording& r : simulated(hall(), config)) {
+      const Duration sweep = sweep_time(config.lidar);
+      EXPECT_GT(r.scan_stamps.front() - sweep, r.wheel.front().stamp);
+      EXPECT_GE(r.wheel.back().stamp, r.scan_stamps.back());
+      for (std::size_t i = 1; i < r.truth.size(); ++i) ASSERT_GT(r.truth[i].stamp, r.truth[i - 1].stamp);
+      for (const Stamp stamp : r.scan_stamps) {
+        EXPECT_TRUE(std::ranges::binary_search(r.truth, stamp, {}, &StampedPose::stamp));
+        EXPECT_TRUE(wheel_delta(r.wheel, stamp - sweep, stamp).has_value());
+      }
+    }
+  }
+}
+
+TEST(Scenario, a_scan_deskewed_with_the_truth_lies_on_the_walls) {
+  ScenarioConfig config = quick();
+  config.lidar.noise_near = config.lidar.noise_far = 0.0;
+  const Recording r = simulated(hall(), config)[1];
+  for (const std::size_t i : {std::size_t{0}, std::size_t{40}, r.num_scans() - 1}) {
+    const Scan scan = r.read_scan(i).value();
+    for (std::size_t k = 0; k < scan.cloud.size(); ++k) {
+      const Stamp stamp = scan.stamp + Duration(scan.cloud.time_offsets_ns[k]);
+      const Vector3 p =
+          pose_at(r.truth, stamp).value() * (r.T_base_lidar * scan.cloud.points[k].cast<double>());
+      const double off = std::min((p - kLow).cwiseAbs().minCoeff(), (p - kHigh).cwiseAbs().minCoeff());
+      ASSERT_LT(off, 2e-3);  // the sweep moves on one geodesic, the truth on ten
+    }
+  }
+}
+
+TEST(Scenario, scans_are_the_same_in_any_order_on_any_thread) {
+  const Recording r = simulated(hall(), quick())[0];
+  std::vector<PointCloud> forwards;
+  for (std::size_t i = 0; i < 20; ++i) forwards.push_back(r.read_scan(i).value().cloud);
+  std::vector<PointCloud> parallel(20);
+  parallel_for_each(20, [&](std::size_t i) { parallel[19 - i] = r.read_scan(19 - i).value().cloud; });
+  for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(forwards[i].points, parallel[i].points);
+  EXPECT_NE(forwards[3].points, forwards[4].points);  // standing still, yet with new noise
+  EXPECT_EQ(simulated(hall(), quick())[0].read_scan(5)->cloud.points, forwards[5].points);
+}
+
+TEST(Scenario, the_seed_changes_noise_and_wheels_but_not_the_way) {
+  ScenarioConfig other = quick();
+  other.seed = 2;
+  const Recording a = simulated(hall(), quick())[0];
+  const Recording b = simulated(hall(), other)[0];
+  EXPECT_NE(a.read_scan(9)->cloud.points, b.read_scan(9)->cloud.points);
+  EXPECT_NE(a.wheel.back().T_world_body.translation(), b.wheel.back().T_world_body.translation());
+  EXPECT_EQ(a.truth.back().T_world_body.translation(), b.truth.back().T_world_body.translation());
+}
+
+TEST(Scenario, robots_err_each_in_its_own_way) {
+  World world = hall();
+  world.routes[1] = world.routes[0];
+  world.routes[1].name = "twin";
+  const std::vector<Recording> twins = simulated(world, quick());
+  EXPECT_NE(twins[0].wheel.back().T_world_body.translation(),
+            twins[1].wheel.back().T_world_body.translation());
+  EXPECT_NE(twins[0].read_scan(9)->cloud.points, twins[1].read_scan(9)->cloud.points);
+}
+
+TEST(Scenario, a_recording_outlives_the_world_it_came_from) {
+  Recording kept;
+  {
+    const World world = hall();
+    kept = simulated(world, quick())[0];
+  }
+  EXPECT_TRUE(kept.read_scan(0).has_value());
+  EXPECT_FALSE(kept.read_scan(kept.num_scans()).has_value());
+}
+
+std::string error_of(const World& world, const ScenarioConfig& config) {
+  const auto recordings = simulate(world, config);
+  return recordings ? "" : recordings.error().message;
+}
+
+TEST(Scenario, refuses_worlds_and_routes_that_cannot_be_driven) {
+  World no_mesh = hall();
+  no_mesh.mesh = {};
+  EXPECT_NE(error_of(no_mesh, quick()).find("hall"), std::string::npos);
+  World no_routes = hall();
+  no_routes.routes.clear();
+  EXPECT_NE(error_of(no_routes, quick()).find("no routes"), std::string::npos);
+  World same_names = hall();
+  same_names.routes[1].name = "robot_0";
+  EXPECT_NE(error_of(same_names, quick()).find("'robot_0'"), std::string::npos);
+  World outside = hall();
+  outside.routes[1].waypoints[1].x() = 50.0;
+  EXPECT_NE(error_of(outside, quick()).find("robot_1: waypoint 1"), std::string::npos);
+}
+
+TEST(Scenario, refuses_configurations_out_of_range) {
+  ScenarioConfig config = quick();
+  config.lidar.columns = 0;
+  EXPECT_NE(error_of(hall(), config).find("lidar.columns"), std::string::npos);
+  config = quick();
+  config.wheels.effective_track = -1.0;
+  EXPECT_NE(error_of(hall(), config).find("wheels.effective_track"), std::string::npos);
+  config = quick();
+  config.lidar.range_max = 0.3;
+  EXPECT_NE(error_of(hall(), config).find("range"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace adit

@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/simulation/wheel_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "adit/core/check.hpp"
+
+namespace adit {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+WheelConfig perfect() {
+  WheelConfig c;
+  c.tick = c.scale_sigma = c.yaw_drift_deg = c.yaw_walk_deg = c.turn_scale_sigma = c.slip_sigma = 0.0;
+  return c;
+}
+
+// A constant body twist (metres and radians a second) for some seconds, 100 poses a second.
+Trajectory steady(double speed, double turn_rate, double seconds) {
+  Trajectory truth;
+  const Pose start = Pose::planar(5.0, -3.0, 0.7, 2.0);
+  for (int i = 0; i <= std::lround(100.0 * seconds); ++i) {
+    const double t = 0.01 * i;
+    truth.push_back({Stamp{1'000'000'000} + from_seconds(t),
+                     start * Pose::exp((Vector6() << speed * t, 0, 0, 0, 0, turn_rate * t).finished())});
+  }
+  return truth;
+}
+
+Pose motion(const Trajectory& trajectory) {
+  return trajectory.front().T_world_body.inverse() * trajectory.back().T_world_body;
+}
+
+double difference(const Pose& a, const Pose& b) { return (a.inverse() * b).log().norm(); }
+
+TEST(WheelModel, without_errors_it_is_the_true_motion_in_the_plane) {
+  for (const double turn_rate : {0.0, 0.1, -1.5}) {
+    for (const double speed : {0.0, 1.87, -0.5}) {
+      const Trajectory truth = steady(speed, turn_rate, 12.34);
+      const Trajectory wheel = wheel_odometry(truth, perfect(), 1);
+      EXPECT_LT(difference(wheel.front().T_world_body, Pose()), 1e-12);
+      EXPECT_LT(difference(motion(wheel), motion(truth)), 1e-9) << speed << " " << turn_rate;
+    }
+  }
+}
+
+TEST(WheelModel, stamps_span_the_truth_at_the_given_rate) {
+  const Trajectory truth = steady(1.0, 0.0, 2.005);
+  const Trajectory wheel = wheel_odometry(truth, WheelConfig(), 1);
+  EXPECT_EQ(wheel.front().stamp, truth.front().stamp);
+  EXPECT_EQ(wheel.back().stamp, truth.back().stamp);
+  for (std::size_t i = 1; i < wheel.size(); ++i) {
+    EXPECT_GT(wheel[i].stamp, wheel[i - 1].stamp);
+    EXPECT_LE(wheel[i].stamp - wheel[i - 1].stamp, from_seconds(0.02));
+  }
+}
+
+TEST(WheelModel, standing_wheels_count_nothing) {
+  const Trajectory wheel = wheel_odometry(steady(0.0, 0.0, 5.0), WheelConfig(), 1);
+  for (const StampedPose& p : wheel) EXPECT_EQ(difference(p.T_world_body, Pose()), 0.0);
+}
+
+TEST(WheelModel, one_pose_of_truth_gives_one_pose) {
+  const Trajectory wheel = wheel_odometry({{Stamp{7}, Pose()}}, WheelConfig(), 1);
+  ASSERT_EQ(wheel.size(), 1U);
+  EXPECT_EQ(wheel.front().stamp, Stamp{7});
+  EXPECT_THROW(static_cast<void>(wheel_odometry({}, WheelConfig(), 1)), ContractViolation);
+}
+
+TEST(WheelModel, ticks_cost_less_than_a_tick_however_far_it_drives) {
+  WheelConfig c = perfect();
+  c.tick = 0.01;
+  const Trajectory truth = steady(1.87, 0.0, 60.0);
+  const Pose error = motion(wheel_odometry(truth, c, 1)).inverse() * motion(truth);
+  EXPECT_LT(error.translation().norm(), 0.01);
+  EXPECT_LT(error.angle(), 0.01 / c.effective_track);
+}
+
+TEST(WheelModel, climbing_counts_the_way_along_the_slope_and_stays_in_the_plane) {
+  Trajectory truth;
+  const Pose climbing(Eigen::Quaterniond(Eigen::AngleAxisd(-0.3, Vector3::UnitY())), Vector3::Zero());
+  for (int i = 0; i <= 1000; ++i) {
+    truth.push_back({Stamp{10'000'000LL * i}, climbing * Pose::translation_of(0.01 * i, 0, 0)});
+  }
+  const Pose driven = motion(wheel_odometry(truth, perfect(), 1));
+  EXPECT_LT((driven.translation() - Vector3(10.0, 0.0, 0.0)).norm(), 1e-9);
+}
+
+struct Spread {
+  double mean_end_error = 0.0;
+  double worst_yaw_deg = 0.0;
+  double sigma_yaw_deg = 0.0;
+  double sigma_length = 0.0;
+};
+
+// Over many robots that drive 400 m straight ahead.
+Spread spread_of(const WheelConfig& config) {
+  const Trajectory truth = steady(2.0, 0.0, 200.0);
+  constexpr int kRobots = 60;
+  Spread spread;
+  for (std::uint64_t seed = 0; seed < kRobots; ++seed) {
+    const Trajectory wheel = wheel_odometry(truth, config, seed);
+    const Pose error = motion(truth).inverse() * motion(wheel);
+    const double yaw = error.yaw() / kDegree;
+    const double length = path_length(wheel) / 400.0 - 1.0;
+    spread.mean_end_error += error.translation().norm() / kRobots;
+    spread.worst_yaw_deg = std::max(spread.worst_yaw_deg, std::abs(yaw));
+    spread.sigma_yaw_deg += yaw * yaw / kRobots;
+    spread.sigma_length += length * length / kRobots;
+  }
+  spread.sigma_yaw_deg = std::sqrt(spread.sigma_yaw_deg);
+  spread.sigma_length = std::sqrt(spread.sigma_length);
+  return spread;
+}
+
+TEST(WheelModel, drifts_by_one_or_two_percent_and_a_few_degrees) {
+  const Spread spread = spread_of(WheelConfig());
+  EXPECT_GT(spread.mean_end_error, 0.005 * 400.0);
+  EXPECT_LT(spread.mean_end_error, 0.025 * 400.0);
+  EXPECT_LT(spread.worst_yaw_deg, 4 * 3.0);
+}
+
+TEST(WheelModel, each_error_has_the_size_that_its_field_says) {
+  WheelConfig scale = perfect();
+  scale.scale_sigma = 0.01;
+  EXPECT_NEAR(spread_of(scale).sigma_length, 0.01, 0.003);
+  EXPECT_LT(spread_of(scale).sigma_yaw_deg, 1e-6);
+  WheelConfig drift = perfect();
+  drift.yaw_drift_deg = 1.0;
+  EXPECT_NEAR(spread_of(drift).sigma_yaw_deg, 4.0, 1.2);
+  WheelConfig walk = perfect();
+  walk.yaw_walk_deg = 1.0;
+  EXPECT_NEAR(spread_of(walk).sigma_yaw_deg, 2.0, 0.6);  // grows with the root of the distance
+  WheelConfig slip = perfect();
+  slip.slip_sigma = 0.05;
+  EXPECT_NEAR(spread_of(slip).sigma_length, 0.05 * std::sqrt(2.0 * slip.slip_time / 200.0), 0.0015);
+}
+
+TEST(WheelModel, turns_are_wrong_by_a_constant_share) {
+  WheelConfig c = perfect();
+  c.turn_scale_sigma = 0.02;
+  for (std::uint64_t seed = 1; seed < 4; ++seed) {
+    const double left = motion(wheel_odometry(steady(0.0, 0.5, 2.0), c, seed)).yaw();
+    const double right = motion(wheel_odometry(steady(1.0, -0.5, 2.0), c, seed)).yaw();
+    EXPECT_NEAR(left, -right, 1e-9);
+    EXPECT_GT(std::abs(left - 1.0), 1e-4);
+    EXPECT_LT(std::abs(left - 1.0), 0.08);
+  }
+}
+
+TEST(WheelModel, the_seed_decides) {
+  const Trajectory truth = steady(1.8, 0.05, 30.0);
+  const Pose first = motion(wheel_odometry(truth, WheelConfig(), 1));
+  EXPECT_EQ(difference(first, motion(wheel_odometry(truth, WheelConfig(), 1))), 0.0);
+  EXPECT_GT(difference(first, motion(wheel_odometry(truth, WheelConfig(), 2))), 1e-3);
+}
+
+}  // namespace
+}  // namespace adit
