@@ -83,7 +83,8 @@ Vector3 log(const Eigen::Quaterniond& q) {
 Matrix3 left_jacobian(const Vector3& phi) {
   const double t2 = phi.squaredNorm();
   const double t = std::sqrt(t2);
-  const double a = t < kSmallAngle ? 0.5 - t2 / 24.0 : (1.0 - std::cos(t)) / t2;
+  const double h = t < kSmallAngle ? 0.5 - t2 / 48.0 : std::sin(0.5 * t) / t;
+  const double a = 2.0 * h * h;  // (1 - cos t) / t^2 without its cancellation
   const double b = t < 1e-2 ? 1.0 / 6.0 - t2 / 120.0 + t2 * t2 / 5040.0 : (t - std::sin(t)) / (t2 * t);
   const Matrix3 P = hat(phi);
   return Matrix3::Identity() + a * P + b * P * P;
@@ -219,7 +220,8 @@ Pose2 Pose2::operator*(const Pose2& other) const {
 Pose2 Pose2::exp(const Tangent& xi) {
   const double th = xi.z();
   const double a = std::abs(th) < kSmallAngle ? 1.0 - th * th / 6.0 : std::sin(th) / th;
-  const double b = std::abs(th) < kSmallAngle ? 0.5 * th - th * th * th / 24.0 : (1.0 - std::cos(th)) / th;
+  const double h = std::abs(th) < kSmallAngle ? 0.5 - th * th / 48.0 : std::sin(0.5 * th) / th;
+  const double b = 2.0 * h * h * th;  // (1 - cos theta) / theta without its cancellation
   return {a * xi.x() - b * xi.y(), b * xi.x() + a * xi.y(), th};
 }
 
