@@ -4,5 +4,6 @@
 
 int main(int argc, char** argv) {
   adit::app::Program program;
+  add_register(program);
   return program.run(argc, argv);
 }
