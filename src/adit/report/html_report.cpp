@@ -29,7 +29,8 @@ dl { display: grid; grid-template-columns: repeat(auto-fit, minmax(150px, 1fr));
 dl div { background: var(--soft); border-radius: 8px; padding: .7rem .9rem; }
 dt { color: var(--muted); font-size: .85rem; } dd { margin: 0; font-weight: 600; overflow-wrap: anywhere; }
 figure { margin: 0; }
-figure.table { margin: 0 0 2rem; }
+.tables { display: flex; flex-wrap: wrap; gap: 0 3.5rem; }
+figure.table { margin: 0 0 2rem; max-width: 100%; } figure.table figcaption { max-width: 62ch; }
 figcaption { color: var(--muted); font-size: .92rem; margin: .45rem 0; max-width: 90ch; } figcaption b { color: var(--ink); }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; border-top: 2px solid var(--ink); border-bottom: 2px solid var(--ink); }
@@ -38,7 +39,7 @@ th:first-child, td:first-child { text-align: left; padding-left: .3rem; }
 thead tr:last-child th { border-bottom: 1px solid var(--ink); }
 th { font-weight: 600; } th.group { text-align: center; border-bottom: 1px solid var(--line); }
 tbody tr:nth-child(even) { background: var(--soft); }
-.good { color: var(--good); font-weight: 700; } .bad { color: var(--bad); font-weight: 700; }
+td.mark { text-align: center; } .good { color: var(--good); font-weight: 700; } .bad { color: var(--bad); font-weight: 700; }
 .grid { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 430px), 1fr)); gap: 1.4rem; align-items: start; }
 .wide { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 620px), 1fr)); gap: 1.8rem; align-items: start; }
 .picture { background: #ffffff; border: 1px solid var(--line); border-radius: 8px; padding: 6px; }
@@ -187,9 +188,10 @@ std::string html_report(const StudyResult& study, std::span<const Table> tables,
       "<h1>Multi-robot LiDAR SLAM in tunnels</h1>\n<p class=\"lead\">Odometry comparison, map merging of "
       "every robot "
       "pair, and all robots jointly.</p>\n";
-  html += facts(study) + navigation(sections) + summary(study) + "<h2 id=\"tables\">Tables</h2>\n";
+  html += facts(study) + navigation(sections) + summary(study) +
+          "<h2 id=\"tables\">Tables</h2>\n<div class=\"tables\">\n";
   for (const Table& table : tables) html += html_of(table);
-  html += "<h2 id=\"figures\">Figures</h2>\n" + pictures(figures, "", "wide") + refusals(study);
+  html += "</div>\n<h2 id=\"figures\">Figures</h2>\n" + pictures(figures, "", "wide") + refusals(study);
   for (std::size_t i = 0; i < sections.size(); ++i) {
     html += format("<h2 id=\"pair-{}\">{}</h2>\n{}", i, escaped(sections[i]),
                    pictures(figures, sections[i], "grid"));

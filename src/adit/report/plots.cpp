@@ -39,21 +39,29 @@ void draw_start(SvgCanvas& canvas, const Point2& at, Rgba color) {
   canvas.circle(at, 6.5, color, {kWhite, 2.0});
 }
 
-void draw_path(SvgCanvas& canvas, const MapView& view, std::span<const Vector3> path, Rgba color,
-               double width) {
-  const std::vector<Point2> points = view.at(path);
-  canvas.polyline(points, {kWhite, width + 2.0, 0.7});  // keeps crossing paths apart
-  canvas.polyline(points, {color, width});
+/// Robots that share a tunnel hide one another: the earlier ones are drawn wider, so that a rim of each stays
+/// visible.
+double path_width(std::size_t index, std::size_t count) {
+  return 3.0 + 2.0 * static_cast<double>(count - 1 - index);
 }
 
 using LoopLines = std::vector<std::pair<Point2, Point2>>;
 
-LoopLines lines_of(const GraphPicture& picture, const MapView& view, LoopClass loop_class) {
+/// Loops of one class, in a merged map mostly shorter than a pixel: those are drawn as dots, on top of the
+/// paths.
+void draw_loops(SvgCanvas& canvas, const MapView& view, const GraphPicture& picture, LoopClass loop_class) {
   LoopLines lines;
+  LoopLines dots;
   for (const PictureLoop& loop : picture.loops) {
-    if (loop.loop_class == loop_class) lines.emplace_back(view.at(loop.a), view.at(loop.b));
+    if (loop.loop_class != loop_class) continue;
+    const Point2 a = view.at(loop.a);
+    const Point2 b = view.at(loop.b);
+    ((a - b).norm() < 5.0 ? dots : lines).emplace_back(a, b);
   }
-  return lines;
+  // Many loops lie over one another: thinner ink for more of them.
+  const double opacity = std::clamp(150.0 / static_cast<double>(picture.loops.size() + 1), 0.35, 0.9);
+  canvas.segments(lines, {loop_color(loop_class), 1.3, opacity});
+  canvas.segments(dots, {loop_color(loop_class), 4.0});
 }
 
 std::vector<LegendItem> legend_of(const GraphPicture& picture, std::span<const Route> robots) {
@@ -102,6 +110,14 @@ void draw_color_bar(SvgCanvas& canvas, double bottom, double largest) {
                 {.color = kMutedInk, .size = 12.0, .anchor = Anchor::middle});
   }
   canvas.text(corner + Point2(-10.0, 10.0), "ATE (m)", {.color = kMutedInk, .anchor = Anchor::end});
+}
+
+/// The name above the dot, kept inside the figure.
+void draw_labelled_start(SvgCanvas& canvas, const Point2& at, const std::string& name) {
+  const double half = 0.5 * text_width(name, 13.0);
+  const double x = std::clamp(at.x(), 16.0 + half, kFigureWidth - 16.0 - half);
+  draw_start(canvas, at, kInk);
+  canvas.text({x, at.y() - 12.0}, name, {.size = 13.0, .anchor = Anchor::middle, .weight = 600, .halo = 4.0});
 }
 
 // ---- boxplots
@@ -197,7 +213,9 @@ std::string plot_routes(const Plan& plan, std::span<const Route> routes) {
   SvgCanvas canvas(kFigureWidth);
   const MapView view = begin_map(canvas, extent.box(), legend_of(routes));
   draw_plan(canvas, view, plan, kWall);
-  for (const Route& route : routes) draw_path(canvas, view, route.path, robot_color(route.robot), 3.0);
+  for (std::size_t i = 0; i < routes.size(); ++i) {
+    canvas.polyline(view.at(routes[i].path), {robot_color(routes[i].robot), path_width(i, routes.size())});
+  }
   for (const Route& route : routes) {
     if (!route.path.empty()) draw_start(canvas, view.at(route.path.front()), robot_color(route.robot));
   }
@@ -240,13 +258,12 @@ std::string plot_graph(const GraphPicture& picture, std::span<const Route> robot
   SvgCanvas canvas(kFigureWidth);
   const MapView view = begin_map(canvas, extent.box(), legend_of(picture, robots));
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    draw_path(canvas, view, picture.robot_paths[i], robot_color(robots[i].robot), 3.0);
+    canvas.polyline(view.at(picture.robot_paths[i]),
+                    {robot_color(robots[i].robot), path_width(i, robots.size())});
   }
-  // Many loops lie over one another: thinner ink for more of them.
-  const double opacity = std::clamp(60.0 / static_cast<double>(picture.loops.size() + 1), 0.25, 0.9);
   for (const LoopClass loop_class :
        {LoopClass::correct, LoopClass::wrong_registration, LoopClass::wrong_place}) {
-    canvas.segments(lines_of(picture, view, loop_class), {loop_color(loop_class), 1.4, opacity});
+    draw_loops(canvas, view, picture, loop_class);
   }
   for (std::size_t i = 0; i < robots.size(); ++i) {
     if (picture.robot_paths[i].empty()) continue;
@@ -283,10 +300,7 @@ std::string plot_error_paths(const Plan& plan, std::span<const ErrorPath> paths)
   }
   for (const ErrorPath& path : paths) {
     if (path.path.empty()) continue;
-    const Point2 start = view.at(path.path.front());
-    canvas.circle(start, 5.5, kInk, {kWhite, 2.0});
-    canvas.text(start + Point2(0.0, -11.0), path.name,
-                {.size = 13.0, .anchor = Anchor::middle, .weight = 600});
+    draw_labelled_start(canvas, view.at(path.path.front()), path.name);
   }
   draw_scale_bar(canvas, view);
   draw_color_bar(canvas, view.bottom(), largest);

@@ -118,6 +118,11 @@ void SvgCanvas::text(const Point2& at, std::string_view text, const TextStyle& s
                                                      : "middle";
   std::string extra;
   if (style.weight != 400) extra += format(" font-weight=\"{}\"", style.weight);
+  if (style.halo > 0.0) {
+    extra +=
+        format(" stroke=\"#ffffff\" stroke-width=\"{}\" stroke-linejoin=\"round\" paint-order=\"stroke\"",
+               number(style.halo));
+  }
   if (style.turn_deg != 0.0) extra += format(" transform=\"rotate({:g} {})\"", style.turn_deg, pair(at));
   body_ += format("<text x=\"{}\" y=\"{}\" font-size=\"{:g}\" fill=\"{}\" text-anchor=\"{}\"{}>{}</text>\n",
                   number(at.x()), number(at.y()), style.size, hex(style.color), anchor, extra, escaped(text));

@@ -29,6 +29,7 @@ struct TextStyle {
   double size = 14.0;
   Anchor anchor = Anchor::start;
   int weight = 400;       ///< As in CSS: 400 plain, 600 semi-bold.
+  double halo = 0.0;      ///< White rim in pixels, for text over lines.
   double turn_deg = 0.0;  ///< About the anchor, clockwise.
 };
 

@@ -70,6 +70,22 @@ std::string group_line(const Table& table, const std::vector<std::size_t>& width
   return aligned(titles, spans);
 }
 
+/// Lines of at most `width` characters, broken between words.
+std::string wrapped(const std::string& text, std::size_t width) {
+  std::string out;
+  std::size_t column = 0;
+  for (std::size_t first = 0; first < text.size();) {
+    const std::size_t last = std::min(text.find(' ', first), text.size());
+    const std::string word = text.substr(first, last - first);
+    const std::size_t length = num_characters(word);
+    if (column > 0) out += column + 1 + length > width ? '\n' : ' ';
+    column = column > 0 && column + 1 + length <= width ? column + 1 + length : length;
+    out += word;
+    first = last + 1;
+  }
+  return out + "\n";
+}
+
 /// "Group: heading" for formats whose tables have one header row.
 Row flat_header(const Table& table) {
   Row header = table.header;
@@ -108,7 +124,10 @@ std::string html_group_row(const Table& table) {
 }
 
 std::string html_cell(const std::string& cell) {
-  const char* mark = cell == "✓" ? " class=\"good\"" : cell == "✗" ? " class=\"bad\"" : "";
+  const char* mark = cell == "✓"   ? " class=\"mark good\""
+                     : cell == "✗" ? " class=\"mark bad\""
+                     : cell == "○" ? " class=\"mark\""
+                                   : "";
   return format("<td{}>{}</td>", mark, escaped(cell));
 }
 
@@ -124,7 +143,7 @@ std::string text_of(const Table& table) {
   if (!table.groups.empty()) text += group_line(table, widths);
   text += aligned(table.header, widths) + rule + "\n";
   for (const Row& row : table.rows) text += aligned(row, widths);
-  return text + rule + "\n" + table.caption + "\n";
+  return text + rule + "\n" + wrapped(table.caption, std::max<std::size_t>(full, 60));
 }
 
 std::string markdown_of(const Table& table) {
