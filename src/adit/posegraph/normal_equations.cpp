@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/posegraph/normal_equations.hpp"
+
+#include <numeric>
+
+#include "adit/core/parallel.hpp"
+#include "adit/posegraph/factors.hpp"
+
+namespace adit {
+namespace {
+constexpr std::size_t kGrain = 256;  // edges or blocks that one thread takes at a time
+}
+
+template <class P>
+GraphStructure structure_of(const BasicPoseGraph<P>& graph, const Components& components,
+                            const std::vector<double>& edge_weights) {
+  using Part = GraphStructure::Term::Part;
+  GraphStructure s;
+  s.variable_of_node.assign(graph.nodes.size(), 0);
+  for (const std::size_t anchor : components.anchors) s.variable_of_node[anchor] = GraphStructure::kFixed;
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+    if (s.variable_of_node[i] == GraphStructure::kFixed) continue;
+    s.variable_of_node[i] = s.node_of_variable.size();
+    s.node_of_variable.push_back(i);
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t e = 0; e < graph.edges.size(); ++e) {
+    const std::size_t from = s.variable_of_node[graph.edges[e].from];
+    const std::size_t to = s.variable_of_node[graph.edges[e].to];
+    if (!edge_weights.empty() && edge_weights[e] <= 0.0) continue;
+    if (from == GraphStructure::kFixed && to == GraphStructure::kFixed) continue;
+    s.active_edges.push_back(e);
+    if (from != GraphStructure::kFixed && to != GraphStructure::kFixed) pairs.emplace_back(from, to);
+  }
+  s.pattern = BlockPattern::of_pairs(s.node_of_variable.size(), std::move(pairs));
+
+  const auto for_terms = [&](const auto& visit) {
+    for (std::size_t a = 0; a < s.active_edges.size(); ++a) {
+      const auto& edge = graph.edges[s.active_edges[a]];
+      const std::size_t from = s.variable_of_node[edge.from];
+      const std::size_t to = s.variable_of_node[edge.to];
+      if (from != GraphStructure::kFixed) visit(s.pattern.column_start[from], a, Part::from_from);
+      if (to != GraphStructure::kFixed) visit(s.pattern.column_start[to], a, Part::to_to);
+      if (from == GraphStructure::kFixed || to == GraphStructure::kFixed) continue;
+      visit(s.pattern.block(std::max(from, to), std::min(from, to)), a,
+            from > to ? Part::from_to : Part::to_from);
+    }
+  };
+  s.term_start.assign(s.pattern.num_blocks() + 1, 0);
+  for_terms([&](std::size_t block, std::size_t, Part) { ++s.term_start[block + 1]; });
+  std::partial_sum(s.term_start.begin(), s.term_start.end(), s.term_start.begin());
+  s.terms.resize(s.term_start.back());
+  std::vector<std::size_t> next(s.term_start.begin(), s.term_start.end() - 1);
+  for_terms([&](std::size_t block, std::size_t a, Part part) { s.terms[next[block]++] = {a, part}; });
+  return s;
+}
+
+template <int D>
+std::vector<double> sum_terms(const GraphStructure& structure, const std::vector<EdgeTerms<D>>& edges) {
+  using Block = Eigen::Matrix<double, D, D>;
+  using Part = GraphStructure::Term::Part;
+  std::vector<double> values(structure.pattern.num_blocks() * D * D);
+  parallel_for_each(
+      structure.pattern.num_blocks(),
+      [&](std::size_t b) {
+        Block sum = Block::Zero();
+        for (std::size_t t = structure.term_start[b]; t < structure.term_start[b + 1]; ++t) {
+          const EdgeTerms<D>& edge = edges[structure.terms[t].active_edge];
+          switch (structure.terms[t].part) {
+            case Part::from_from:
+              sum += edge.from_from;
+              break;
+            case Part::to_to:
+              sum += edge.to_to;
+              break;
+            case Part::from_to:
+              sum += edge.from_to;
+              break;
+            case Part::to_from:
+              sum += edge.from_to.transpose();
+              break;
+          }
+        }
+        Eigen::Map<Block>(values.data() + b * D * D) = sum;
+      },
+      kGrain);
+  return values;
+}
+
+template <class P>
+NormalEquations linearize(const BasicPoseGraph<P>& graph, const GraphStructure& structure,
+                          const std::vector<P>& poses, const std::vector<double>& edge_weights) {
+  constexpr int D = P::kDof;
+  using Tangent = typename P::Tangent;
+  const std::size_t num_edges = structure.active_edges.size();
+  std::vector<EdgeTerms<D>> terms(num_edges);
+  std::vector<Tangent> gradient_from(num_edges);
+  std::vector<Tangent> gradient_to(num_edges);
+  parallel_for_each(
+      num_edges,
+      [&](std::size_t a) {
+        const std::size_t e = structure.active_edges[a];
+        const auto& edge = graph.edges[e];
+        const BetweenFactor<P> f = linearize(edge.T_from_to, poses[edge.from], poses[edge.to]);
+        const double weight = edge_weights.empty() ? 1.0 : edge_weights[e];
+        const typename P::Jacobian information = weight * edge.information;
+        const typename P::Jacobian from_information = f.d_from.transpose() * information;
+        const typename P::Jacobian to_information = f.d_to.transpose() * information;
+        terms[a].from_from.noalias() = from_information * f.d_from;
+        terms[a].from_to.noalias() = from_information * f.d_to;
+        terms[a].to_to.noalias() = to_information * f.d_to;
+        gradient_from[a].noalias() = from_information * f.residual;
+        gradient_to[a].noalias() = to_information * f.residual;
+      },
+      kGrain);
+  NormalEquations out{sum_terms<D>(structure, terms), {}};
+  out.gradient.resize(static_cast<Eigen::Index>(structure.node_of_variable.size() * D));
+  parallel_for_each(
+      structure.node_of_variable.size(),
+      [&](std::size_t v) {
+        const std::size_t diagonal = structure.pattern.column_start[v];
+        Tangent sum = Tangent::Zero();
+        for (std::size_t t = structure.term_start[diagonal]; t < structure.term_start[diagonal + 1]; ++t) {
+          const GraphStructure::Term& term = structure.terms[t];
+          const bool from = term.part == GraphStructure::Term::Part::from_from;
+          sum += from ? gradient_from[term.active_edge] : gradient_to[term.active_edge];
+        }
+        out.gradient.template segment<D>(static_cast<Eigen::Index>(v * D)) = sum;
+      },
+      kGrain);
+  return out;
+}
+
+template GraphStructure structure_of(const PoseGraph&, const Components&, const std::vector<double>&);
+template GraphStructure structure_of(const PoseGraph2&, const Components&, const std::vector<double>&);
+template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<2>>&);
+template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<3>>&);
+template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<6>>&);
+template NormalEquations linearize(const PoseGraph&, const GraphStructure&, const std::vector<Pose>&,
+                                   const std::vector<double>&);
+template NormalEquations linearize(const PoseGraph2&, const GraphStructure&, const std::vector<Pose2>&,
+                                   const std::vector<double>&);
+
+}  // namespace adit

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "adit/posegraph/block_cholesky.hpp"
+#include "adit/posegraph/pose_graph.hpp"
+
+namespace adit {
+
+/// Which nodes of a graph are unknowns, which edges take part, and where each edge's terms go in the normal
+/// equations. Edges of weight 0 and edges between two anchors are left out.
+struct GraphStructure {
+  static constexpr std::size_t kFixed = static_cast<std::size_t>(-1);
+  /// One term of one block of the normal matrix.
+  struct Term {
+    std::size_t active_edge;
+    enum class Part { from_from, to_to, from_to, to_from } part;
+  };
+  std::vector<std::size_t> variable_of_node;  ///< kFixed for anchors.
+  std::vector<std::size_t> node_of_variable;
+  std::vector<std::size_t> active_edges;  ///< Indices of edges, ascending.
+  BlockPattern pattern;
+  std::vector<std::size_t> term_start;  ///< One more than the blocks of the pattern.
+  std::vector<Term> terms;              ///< By block, in the order of the edges.
+};
+template <class P>
+[[nodiscard]] GraphStructure structure_of(const BasicPoseGraph<P>& graph, const Components& components,
+                                          const std::vector<double>& edge_weights);
+
+/// H dx = -g: half the second and first derivatives of chi2, in the perturbation of factors.hpp.
+struct NormalEquations {
+  std::vector<double> values;  ///< Blocks of H in the order of the pattern.
+  Eigen::VectorXd gradient;    ///< g = sum of w J^T Omega r.
+};
+template <class P>
+[[nodiscard]] NormalEquations linearize(const BasicPoseGraph<P>& graph, const GraphStructure& structure,
+                                        const std::vector<P>& poses, const std::vector<double>& edge_weights);
+
+/// What the sums over edges need of one edge, for blocks of size D: the caller fills it in, `sum_terms` adds
+/// it up.
+template <int D>
+struct EdgeTerms {
+  Eigen::Matrix<double, D, D> from_from, to_to, from_to;
+};
+template <int D>
+[[nodiscard]] std::vector<double> sum_terms(const GraphStructure& structure,
+                                            const std::vector<EdgeTerms<D>>& edges);
+
+}  // namespace adit

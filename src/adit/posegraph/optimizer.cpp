@@ -1,0 +1,283 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/posegraph/optimizer.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "adit/core/check.hpp"
+#include "adit/core/format.hpp"
+#include "adit/core/parallel.hpp"
+#include "adit/posegraph/chordal.hpp"
+#include "adit/posegraph/factors.hpp"
+#include "adit/posegraph/normal_equations.hpp"
+
+namespace adit {
+namespace {
+
+constexpr std::size_t kGrain = 256;
+// A residual this small, in standard deviations squared per edge, is rounding: nothing is left to gain.
+constexpr double kNoise = 1e-16;
+
+// Lambda of LM. It is 0, plain Gauss-Newton, until a step fails: damping slows the long waves of a chain
+// most, and these are what loops correct.
+constexpr double kFirstLambda = 1e-6;
+constexpr double kLargestLambda = 1e8;
+
+template <class P>
+double edge_cost(const typename BasicPoseGraph<P>::Edge& edge, const std::vector<P>& poses) {
+  const typename P::Tangent r = between_residual(edge.T_from_to, poses[edge.from], poses[edge.to]);
+  return r.dot(edge.information * r);
+}
+
+template <class P>
+double total_cost(const BasicPoseGraph<P>& graph, const std::vector<P>& poses,
+                  const std::vector<double>& weights) {
+  return parallel_sum(graph.edges.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0.0;
+    for (std::size_t e = begin; e < end; ++e) {
+      if (weights.empty())
+        sum += edge_cost<P>(graph.edges[e], poses);
+      else if (weights[e] > 0.0)
+        sum += weights[e] * edge_cost<P>(graph.edges[e], poses);
+    }
+    return sum;
+  });
+}
+
+template <class Matrix>
+bool is_indefinite(const Matrix& information) {
+  if (!information.allFinite()) return true;
+  if ((information - information.transpose()).norm() > 1e-9 * information.norm()) return true;
+  if (information.llt().info() == Eigen::Success) return false;
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(information, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().minCoeff() < -1e-9 * solver.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+// The diagonal of H, as one vector.
+Eigen::VectorXd diagonal_of(const BlockPattern& pattern, const std::vector<double>& values, std::size_t d) {
+  Eigen::VectorXd diagonal(static_cast<Eigen::Index>(pattern.size() * d));
+  for (std::size_t v = 0; v < pattern.size(); ++v) {
+    const double* block = values.data() + pattern.column_start[v] * d * d;
+    for (std::size_t i = 0; i < d; ++i) diagonal[static_cast<Eigen::Index>(v * d + i)] = block[i * d + i];
+  }
+  return diagonal;
+}
+
+std::vector<double> damped(const BlockPattern& pattern, std::vector<double> values, std::size_t d,
+                           double lambda) {
+  for (std::size_t v = 0; v < pattern.size(); ++v) {
+    double* block = values.data() + pattern.column_start[v] * d * d;
+    for (std::size_t i = 0; i < d; ++i) block[i * d + i] *= 1.0 + lambda;
+  }
+  return values;
+}
+
+template <class P>
+std::vector<P> stepped(const std::vector<P>& poses, const GraphStructure& structure,
+                       const Eigen::VectorXd& step) {
+  std::vector<P> out = poses;
+  for (std::size_t v = 0; v < structure.node_of_variable.size(); ++v) {
+    P& pose = out[structure.node_of_variable[v]];
+    pose = retract(pose, typename P::Tangent(step.segment<P::kDof>(static_cast<Eigen::Index>(v * P::kDof))));
+  }
+  return out;
+}
+
+// The search itself: graph, weights and structure stay, poses and cost move.
+template <class P>
+class Minimizer {
+ public:
+  Minimizer(const BasicPoseGraph<P>& graph, const OptimizerConfig& config, const std::vector<double>& weights,
+            const Components& components)
+      : graph_(graph),
+        config_(config),
+        weights_(weights),
+        structure_(structure_of(graph, components, weights)),
+        cholesky_(analyze(structure_.pattern), P::kDof),
+        lambda_(config.method == "gn" ? 0.0 : config.initial_damping) {}
+
+  void run(Solution<P>& solution) {
+    while (solution.status == SolveStatus::max_iterations && solution.iterations < config_.max_iterations) {
+      iterate(solution);
+    }
+  }
+
+ private:
+  void iterate(Solution<P>& s) {
+    if (s.cost_final <= kNoise * static_cast<double>(graph_.edges.size()))
+      return converge(s, "the cost is zero");
+    if (!current_) equations_ = linearize(graph_, structure_, s.poses, weights_);
+    current_ = true;
+    ++s.iterations;
+    const auto free =
+        lambda_ > 0.0 ? cholesky_.factorize(damped(structure_.pattern, equations_.values, P::kDof, lambda_))
+                      : cholesky_.factorize(equations_.values);
+    if (free) return give_up(s, graph_.nodes[structure_.node_of_variable[*free]].key);
+    const Eigen::VectorXd step = cholesky_.solve(-equations_.gradient);
+    const double predicted = predicted_decrease(step);
+    if (!step.allFinite()) return worsen(s);
+    std::vector<P> poses = stepped(s.poses, structure_, step);
+    const double cost = total_cost(graph_, poses, weights_);
+    const double decrease = s.cost_final - cost;
+    // Near the minimum rounding decides the sign of the last decrease, so the model's word ends the search as
+    // well.
+    const double enough = config_.relative_tolerance * s.cost_final;
+    if (std::isfinite(cost) && (decrease > 0.0 || config_.method == "gn")) {
+      s.poses = std::move(poses);
+      s.cost_final = cost;
+      current_ = false;
+      lambda_ = decrease > 0.5 * predicted ? lower(lambda_) : lambda_;
+      if (std::abs(decrease) <= enough) converge(s, "the cost no longer falls");
+      return;
+    }
+    if (predicted <= enough) return converge(s, "the cost no longer falls");
+    worsen(s);
+  }
+
+  // Of the quadratic model: -2 g.x - x.H x, where (H + lambda D) x = -g.
+  [[nodiscard]] double predicted_decrease(const Eigen::VectorXd& step) const {
+    double out = -equations_.gradient.dot(step);
+    if (lambda_ > 0.0) {
+      const Eigen::VectorXd diagonal = diagonal_of(structure_.pattern, equations_.values, P::kDof);
+      out += lambda_ * step.dot(diagonal.cwiseProduct(step));
+    }
+    return out;
+  }
+
+  static double lower(double lambda) { return lambda <= kFirstLambda ? 0.0 : lambda * 0.1; }
+
+  static void converge(Solution<P>& s, const char* why) {
+    s.status = SolveStatus::converged;
+    s.reason = why;
+  }
+
+  void worsen(Solution<P>& s) {
+    if (config_.method == "gn") {
+      s.status = SolveStatus::non_finite;
+      s.reason = "a Gauss-Newton step made the cost not finite; method lm damps such steps";
+      return;
+    }
+    lambda_ = lambda_ == 0.0 ? kFirstLambda : lambda_ * 10.0;
+    if (lambda_ > kLargestLambda) converge(s, "no step lowers the cost");
+  }
+
+  void give_up(Solution<P>& s, std::uint64_t key) {
+    s.status = SolveStatus::singular;
+    s.reason = format("the edges leave node {} free to move: give them information in every direction", key);
+    s.poses = poses_of(graph_);
+    s.cost_final = s.cost_initial;
+  }
+
+  const BasicPoseGraph<P>& graph_;
+  const OptimizerConfig& config_;
+  const std::vector<double>& weights_;
+  GraphStructure structure_;
+  BlockCholesky cholesky_;
+  NormalEquations equations_;
+  bool current_ = false;  // equations_ belong to the present poses
+  double lambda_;
+};
+
+// Puts the start into `solution`; false when the configuration's start does not exist.
+template <class P>
+void choose_start(const BasicPoseGraph<P>& graph, const OptimizerConfig& config,
+                  const std::vector<double>& weights, Solution<P>& solution) {
+  if (config.initialization == "none") return;
+  Result<std::vector<P>> chordal = chordal_poses(graph, weights);
+  if (!chordal) {
+    solution.notes.push_back("no chordal initialization: " + chordal.error().message);
+    return;
+  }
+  const double cost = total_cost(graph, *chordal, weights);
+  if (config.initialization == "auto" && !(cost < solution.cost_final)) return;
+  solution.poses = std::move(*chordal);
+  solution.cost_final = cost;
+}
+
+}  // namespace
+
+std::string_view to_string(SolveStatus status) {
+  switch (status) {
+    case SolveStatus::converged:
+      return "converged";
+    case SolveStatus::max_iterations:
+      return "max_iterations";
+    case SolveStatus::indefinite_information:
+      return "indefinite_information";
+    case SolveStatus::singular:
+      return "singular";
+    case SolveStatus::non_finite:
+      return "non_finite";
+  }
+  return "unknown";
+}
+
+template <class P>
+std::vector<double> edge_costs(const BasicPoseGraph<P>& graph, const std::vector<P>& poses) {
+  ADIT_CHECK(poses.size() == graph.nodes.size(), "one pose a node");
+  std::vector<double> costs(graph.edges.size());
+  parallel_for_each(
+      costs.size(), [&](std::size_t e) { costs[e] = edge_cost<P>(graph.edges[e], poses); }, kGrain);
+  return costs;
+}
+
+template <class P>
+std::vector<std::size_t> indefinite_edges(const BasicPoseGraph<P>& graph) {
+  std::vector<std::size_t> out;
+  bool last = false;
+  for (std::size_t e = 0; e < graph.edges.size(); ++e) {
+    // Most graphs repeat one matrix over and over.
+    const bool repeated = e > 0 && graph.edges[e].information == graph.edges[e - 1].information;
+    if (!repeated) last = is_indefinite(graph.edges[e].information);
+    if (last) out.push_back(e);
+  }
+  return out;
+}
+
+template <class P>
+Solution<P> optimize(const BasicPoseGraph<P>& graph, const OptimizerConfig& config,
+                     const std::vector<double>& edge_weights) {
+  graph.check();
+  ADIT_CHECK(edge_weights.empty() || edge_weights.size() == graph.edges.size(),
+             "one weight an edge, or none");
+  Solution<P> solution;
+  solution.poses = poses_of(graph);
+  solution.edge_weights = edge_weights.empty() ? std::vector<double>(graph.edges.size(), 1.0) : edge_weights;
+  solution.cost_initial = solution.cost_final = total_cost(graph, solution.poses, edge_weights);
+  if (const auto bad = indefinite_edges(graph); !bad.empty()) {
+    const auto& edge = graph.edges[bad.front()];
+    solution.status = SolveStatus::indefinite_information;
+    solution.reason =
+        format("{} of {} information matrices are indefinite, the first of edge {} -> {}", bad.size(),
+               graph.edges.size(), graph.nodes[edge.from].key, graph.nodes[edge.to].key);
+    return solution;
+  }
+  if (!std::isfinite(solution.cost_initial)) {
+    solution.status = SolveStatus::non_finite;
+    solution.reason = "the cost of the start is not a finite number";
+    return solution;
+  }
+  const Components components = connected_components(graph, edge_weights);
+  if (components.anchors.size() > 1) {
+    solution.notes.push_back(
+        format("{} parts that no edge links, each solved with its own anchor", components.anchors.size()));
+  }
+  solution.status = SolveStatus::max_iterations;
+  solution.reason = format("stopped after {} iterations", config.max_iterations);
+  choose_start(graph, config, edge_weights, solution);
+  Minimizer<P>(graph, config, edge_weights, components).run(solution);
+  return solution;
+}
+
+template std::vector<double> edge_costs(const PoseGraph&, const std::vector<Pose>&);
+template std::vector<double> edge_costs(const PoseGraph2&, const std::vector<Pose2>&);
+template std::vector<std::size_t> indefinite_edges(const PoseGraph&);
+template std::vector<std::size_t> indefinite_edges(const PoseGraph2&);
+template Solution<Pose> optimize(const PoseGraph&, const OptimizerConfig&, const std::vector<double>&);
+template Solution<Pose2> optimize(const PoseGraph2&, const OptimizerConfig&, const std::vector<double>&);
+
+}  // namespace adit
