@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/registration/icp_refine.hpp"
+
+#include <gtest/gtest.h>
+
+#include "adit/core/rng.hpp"
+
+namespace adit {
+namespace {
+
+Vector3 random_vector(Rng& rng, double size) {
+  return size * Vector3(rng.normal(), rng.normal(), rng.normal());
+}
+
+TEST(PlaneResidual, JacobianAgreesWithFiniteDifferences) {
+  Rng rng(1);
+  for (int k = 0; k < 50; ++k) {
+    const Pose T(so3::exp(random_vector(rng, 1.5)), random_vector(rng, 10.0));
+    const Vector3 p_a = random_vector(rng, 10.0);
+    const Vector3 n_a = random_vector(rng, 1.0).normalized();
+    const Vector3 p_b = random_vector(rng, 10.0);
+    const PlaneResidual r = plane_residual(T, p_a, n_a, p_b);
+    for (int d = 0; d < 6; ++d) {
+      constexpr double kStep = 1e-6;
+      const double ahead = plane_residual(T * Pose::exp(kStep * Vector6::Unit(d)), p_a, n_a, p_b).value;
+      const double behind = plane_residual(T * Pose::exp(-kStep * Vector6::Unit(d)), p_a, n_a, p_b).value;
+      EXPECT_NEAR(r.jacobian[d], (ahead - behind) / (2.0 * kStep), 1e-7);
+    }
+  }
+}
+
+/// Points on three walls of a corner, with their true normals.
+Features corner(std::size_t n, std::uint64_t seed) {
+  Rng rng(seed);
+  Features out;
+  for (std::size_t k = 0; k < n; ++k) {
+    const int wall = static_cast<int>(k % 3);
+    Vector3 p(rng.uniform(0.0, 6.0), rng.uniform(0.0, 6.0), rng.uniform(0.0, 6.0));
+    p[wall] = 0.0;
+    out.points.push_back(p.cast<float>());
+    out.normals.push_back(Eigen::Vector3f::Unit(wall));
+    out.descriptors.push_back({});
+  }
+  return out;
+}
+
+TEST(RefinePointToPlane, BringsACornerHome) {
+  const Features a = corner(3000, 2);
+  const Features b = corner(3000, 3);
+  const KdTree tree(a.points);
+  const Pose guess = Pose::exp((Vector6() << 0.15, -0.1, 0.12, 0.02, -0.03, 0.02).finished());
+  const Pose refined = refine_point_to_plane(a, tree, b, guess, {});
+  EXPECT_LT(refined.translation().norm(), 1e-3);
+  EXPECT_LT(refined.angle(), 1e-3);
+}
+
+TEST(RefinePointToPlane, LeavesOpenDirectionsAlone) {
+  Features a = corner(3000, 2);
+  for (std::size_t k = 0; k < a.size(); ++k) {  // a floor alone
+    a.points[k].z() = 0.0F;
+    a.normals[k] = Eigen::Vector3f::UnitZ();
+  }
+  const Pose guess = Pose::translation_of(0.3, 0.2, 0.1);
+  const Pose refined = refine_point_to_plane(a, KdTree(a.points), a, guess, {});
+  EXPECT_NEAR(refined.translation().x(), 0.3, 1e-3);
+  EXPECT_NEAR(refined.translation().y(), 0.2, 1e-3);
+  EXPECT_NEAR(refined.translation().z(), 0.0, 1e-3);
+}
+
+TEST(RefinePointToPlane, WithoutNeighborsReturnsTheGuess) {
+  const Features a = corner(100, 2);
+  const Pose guess = Pose::translation_of(500.0, 0.0, 0.0);
+  EXPECT_EQ(refine_point_to_plane(a, KdTree(a.points), a, guess, {}).matrix(), guess.matrix());
+  EXPECT_TRUE(associate(KdTree(), a, Pose(), 1.0).empty());
+}
+
+}  // namespace
+}  // namespace adit

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/registration/registration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numbers>
+
+#include "adit/core/rng.hpp"
+
+namespace adit {
+namespace {
+
+/// Points spread over the rectangle origin + s u + t v, 0 <= s, t <= 1.
+void add_rectangle(PointCloud& cloud, Rng& rng, const Vector3& origin, const Vector3& u, const Vector3& v) {
+  constexpr double kDensity = 60.0;  // a square metre
+  const auto n = static_cast<int>(kDensity * u.cross(v).norm());
+  for (int k = 0; k < n; ++k) {
+    const Vector3 noise = 0.01 * Vector3(rng.normal(), rng.normal(), rng.normal());
+    cloud.points.push_back((origin + rng.uniform() * u + rng.uniform() * v + noise).cast<float>());
+  }
+}
+
+void add_box(PointCloud& cloud, Rng& rng, const Vector3& low, const Vector3& size) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector3 u = Vector3::Unit((axis + 1) % 3) * size[(axis + 1) % 3];
+    const Vector3 v = Vector3::Unit((axis + 2) % 3) * size[(axis + 2) % 3];
+    add_rectangle(cloud, rng, low, u, v);
+    add_rectangle(cloud, rng, low + Vector3::Unit(axis) * size[axis], u, v);
+  }
+}
+
+/// A hall with boxes standing about; `layout` places them, `sample` draws the points.
+PointCloud hall(std::uint64_t layout, std::uint64_t sample) {
+  Rng place(layout);
+  Rng rng(sample);
+  PointCloud cloud;
+  add_box(cloud, rng, {-10.0, -8.0, -1.5}, {20.0, 16.0, 5.0});
+  for (int k = 0; k < 14; ++k) {
+    const Vector3 size(place.uniform(0.6, 4.0), place.uniform(0.6, 4.0), place.uniform(0.6, 3.5));
+    add_box(cloud, rng, {place.uniform(-9.0, 6.0), place.uniform(-7.0, 4.0), -1.5}, size);
+  }
+  return cloud;
+}
+
+/// A straight smooth tube of 5 m radius, seen from its axis, x.
+PointCloud tube(std::uint64_t sample) {
+  Rng rng(sample);
+  PointCloud cloud;
+  for (int k = 0; k < 40000; ++k) {
+    const double angle = rng.uniform(0.0, 2.0 * std::numbers::pi);
+    const double radius = 4.0 + 0.01 * rng.normal();
+    cloud.points.push_back(
+        Vector3(rng.uniform(-15.0, 15.0), radius * std::cos(angle), radius * std::sin(angle)).cast<float>());
+  }
+  return cloud;
+}
+
+TEST(Registration, FindsHallsAgainUnderAnyTurn) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Rng rng(100 + seed);
+    const double angle = std::numbers::pi * static_cast<double>(seed) / 6.0;  // up to half a turn
+    const Vector3 axis = Vector3(rng.normal(), rng.normal(), rng.normal()).normalized();
+    const Pose T_b_a(so3::exp(angle * axis), Vector3(1.0, -2.0, 0.3));
+    const Registration r = register_clouds(hall(seed, 1), transformed(T_b_a, hall(seed, 2)), {});
+    ASSERT_EQ(r.verdict, LoopVerdict::accepted) << r.reason;
+    const Pose error = T_b_a * *r.T_a_b;
+    EXPECT_LT(error.translation().norm(), 0.05) << "seed " << seed;
+    EXPECT_LT(error.angle(), 0.01) << "seed " << seed;
+    EXPECT_GT(r.overlap, 0.9);
+    EXPECT_GT(r.weak_axis, 0.05);
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix6>(r.information).eigenvalues()[0], 0.0);
+  }
+}
+
+TEST(Registration, CovarianceIsOfTheSizeOfTheErrors) {
+  double squared_mahalanobis = 0.0;
+  const int num_runs = 8;
+  for (std::uint64_t seed = 1; seed <= num_runs; ++seed) {
+    const Registration r = register_clouds(hall(3, 2 * seed), hall(3, 2 * seed + 1), {});
+    ASSERT_TRUE(r.T_a_b.has_value());
+    const Vector6 error = r.T_a_b->log();
+    squared_mahalanobis += error.dot(r.information * error) / num_runs;
+  }
+  EXPECT_LT(squared_mahalanobis, 5.0 * 6.0);  // not over-confident by more than a factor of some sigma
+}
+
+TEST(Registration, ThePlainPipelineNeedsNoRefinement) {
+  RegistrationConfig config;
+  config.refine = false;
+  config.min_overlap = 0.0;
+  const Pose T_b_a = Pose::planar(2.0, 1.0, 2.0);
+  const Registration r = register_clouds(hall(4, 1), transformed(T_b_a, hall(4, 2)), config);
+  ASSERT_EQ(r.verdict, LoopVerdict::accepted) << r.reason;
+  const Pose error = T_b_a * *r.T_a_b;
+  EXPECT_LT(error.translation().norm(), 0.3);
+  EXPECT_LT(error.angle(), 0.05);
+}
+
+TEST(Registration, KnowsThatATubeIsOpenAlongItsAxis) {
+  RegistrationConfig config;
+  config.min_inliers = 3;
+  config.ratio_test = false;
+  const Registration r = register_clouds(tube(1), tube(2), config);
+  if (!r.T_a_b || r.information.isZero()) return;  // it refused, with a reason: as good
+  EXPECT_LT(r.weak_axis, 0.01);
+  EXPECT_GT(std::abs(r.weak_direction.x()), 0.99);
+  EXPECT_NE(r.reason.find("slide along"), std::string::npos) << r.reason;
+}
+
+TEST(Registration, DifferentHallsAreRejectedWithAReason) {
+  const Registration r = register_clouds(hall(1, 1), tube(1), {});
+  EXPECT_EQ(r.verdict, LoopVerdict::rejected);
+  EXPECT_FALSE(r.reason.empty());
+}
+
+TEST(Registration, DegenerateCloudsAreRejectedWithoutATransform) {
+  const PointCloud good = hall(1, 1);
+  PointCloud three;
+  three.points = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  PointCloud line;
+  PointCloud copies;
+  PointCloud broken;
+  for (int k = 0; k < 500; ++k) {
+    line.points.emplace_back(0.1F * static_cast<float>(k), 2.0F, 0.0F);
+    copies.points.emplace_back(1.0F, 2.0F, 3.0F);
+    broken.points.emplace_back(std::nanf(""), 2.0F, std::numeric_limits<float>::infinity());
+  }
+  for (const PointCloud& bad : {PointCloud{}, three, line, copies, broken}) {
+    for (const Registration& r :
+         {register_clouds(good, bad, {}), register_clouds(bad, good, {}), register_clouds(bad, bad, {})}) {
+      EXPECT_EQ(r.verdict, LoopVerdict::rejected);
+      EXPECT_FALSE(r.T_a_b.has_value());
+      EXPECT_FALSE(r.reason.empty());
+    }
+  }
+}
+
+TEST(Registration, APlaneAloneIsNotAccepted) {
+  Rng rng(1);
+  PointCloud plane;
+  add_rectangle(plane, rng, {-10.0, -10.0, -1.5}, {20.0, 0.0, 0.0}, {0.0, 20.0, 0.0});
+  const Registration r = register_clouds(plane, transformed(Pose::planar(1.0, 1.0, 1.0), plane), {});
+  if (r.verdict == LoopVerdict::accepted) {
+    EXPECT_LT(r.weak_axis, 0.01);
+  }
+}
+
+TEST(Registration, NanPointsChangeNothing) {
+  const PointCloud a = hall(5, 1);
+  const PointCloud b = hall(5, 2);
+  PointCloud with_nan = b;
+  with_nan.points.insert(with_nan.points.begin() + 10, Eigen::Vector3f::Constant(std::nanf("")));
+  const Registration clean = register_clouds(a, b, {});
+  const Registration dirty = register_clouds(a, with_nan, {});
+  ASSERT_TRUE(clean.T_a_b.has_value());
+  EXPECT_EQ(clean.T_a_b->matrix(), dirty.T_a_b->matrix());
+}
+
+TEST(RegistrationConfig, DefaultsAreInRange) {
+  RegistrationConfig config;
+  EXPECT_TRUE(check_fields(fields_of(config)).has_value());
+}
+
+}  // namespace
+}  // namespace adit
