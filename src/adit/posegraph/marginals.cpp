@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/posegraph/marginals.hpp"
+
+#include "adit/core/check.hpp"
+#include "adit/core/format.hpp"
+#include "adit/posegraph/factors.hpp"
+#include "adit/posegraph/normal_equations.hpp"
+#include "adit/posegraph/optimizer.hpp"
+
+namespace adit {
+
+template <class P>
+struct Marginals<P>::Impl {
+  GraphStructure structure;
+  std::vector<P> poses;
+  BlockCholesky cholesky;
+
+  // Rows of `nodes` in the columns of H^-1 that belong to `nodes`; zero where a node is an anchor.
+  [[nodiscard]] Eigen::MatrixXd inverse_block(const std::vector<std::size_t>& nodes) const {
+    constexpr int D = P::kDof;
+    const auto at = [](std::size_t i) { return static_cast<Eigen::Index>(i) * D; };
+    const auto size = at(nodes.size());
+    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(at(structure.node_of_variable.size()), size);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      const std::size_t v = structure.variable_of_node[nodes[k]];
+      if (v != GraphStructure::kFixed) unit.block(at(v), at(k), D, D).setIdentity();
+    }
+    const Eigen::MatrixXd columns = cholesky.solve(unit);
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(size, size);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      const std::size_t v = structure.variable_of_node[nodes[k]];
+      if (v != GraphStructure::kFixed) out.middleRows(at(k), D) = columns.middleRows(at(v), D);
+    }
+    return 0.5 * (out + out.transpose());
+  }
+};
+
+namespace {
+
+// d (T_a_b, right perturbation) / d (perturbation of T_w_a): moved to the far end by the adjoint of T_b_a.
+Matrix6 adjoint_of(const Pose& T) { return T.adjoint(); }
+Matrix3 adjoint_of(const Pose2& T) {
+  Matrix3 A = Matrix3::Identity();
+  A.topLeftCorner<2, 2>() = T.rotation_matrix();
+  A(0, 2) = T.translation().y();
+  A(1, 2) = -T.translation().x();
+  return A;
+}
+
+}  // namespace
+
+template <class P>
+Result<Marginals<P>> Marginals<P>::compute(const BasicPoseGraph<P>& graph,
+                                           const std::vector<double>& edge_weights) {
+  graph.check();
+  ADIT_CHECK(edge_weights.empty() || edge_weights.size() == graph.edges.size(),
+             "one weight an edge, or none");
+  if (const auto bad = indefinite_edges(graph); !bad.empty()) {
+    return fail(format("{} of {} information matrices are indefinite", bad.size(), graph.edges.size()));
+  }
+  GraphStructure structure = structure_of(graph, connected_components(graph, edge_weights), edge_weights);
+  const std::vector<P> poses = poses_of(graph);
+  BlockCholesky cholesky(analyze(structure.pattern), P::kDof);
+  if (const auto free = cholesky.factorize(linearize(graph, structure, poses, edge_weights).values)) {
+    return fail(format("no covariance: the edges leave node {} free to move",
+                       graph.nodes[structure.node_of_variable[*free]].key));
+  }
+  Marginals out;
+  out.impl_ = std::make_shared<const Impl>(Impl{std::move(structure), poses, std::move(cholesky)});
+  return out;
+}
+
+template <class P>
+typename Marginals<P>::Covariance Marginals<P>::covariance(std::size_t node) const {
+  ADIT_CHECK(node < impl_->poses.size(), "a node of the graph");
+  return impl_->inverse_block({node});
+}
+
+template <class P>
+typename Marginals<P>::JointCovariance Marginals<P>::joint(std::size_t a, std::size_t b) const {
+  ADIT_CHECK(a < impl_->poses.size() && b < impl_->poses.size(), "two nodes of the graph");
+  return impl_->inverse_block({a, b});
+}
+
+template <class P>
+typename Marginals<P>::Covariance Marginals<P>::relative(std::size_t a, std::size_t b) const {
+  ADIT_CHECK(a < impl_->poses.size() && b < impl_->poses.size(), "two nodes of the graph");
+  constexpr int D = P::kDof;
+  Eigen::Matrix<double, D, 2 * D> J;
+  J << -adjoint_of(impl_->poses[b].inverse() * impl_->poses[a]), Covariance::Identity();
+  return J * joint(a, b) * J.transpose();
+}
+
+template class Marginals<Pose>;
+template class Marginals<Pose2>;
+
+}  // namespace adit
