@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+#include <variant>
+
+#include "adit/io/atomic_file.hpp"
+#include "adit/io/cloud_files.hpp"
+#include "adit/io/g2o.hpp"
+#include "adit/io/kitti.hpp"
+#include "adit/io/mcap.hpp"
+#include "adit/io/mesh_files.hpp"
+#include "adit/io/recording_files.hpp"
+#include "adit/io/scan_folder.hpp"
+#include "adit/io/text.hpp"
+#include "adit/io/tum.hpp"
+#include "command_line.hpp"
+
+namespace adit::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class Kind { recording, cloud, mesh, trajectory, graph, unknown };
+
+std::string extension_of(const fs::path& path) { return lower_case(path.extension().string()); }
+
+bool is_any_of(const std::string& text, std::initializer_list<const char*> list) {
+  return std::find(list.begin(), list.end(), text) != list.end();
+}
+
+Kind kind_of(const std::string& name) {
+  const std::string extension = extension_of(name);
+  if (is_any_of(extension, {".pcd", ".bin", ".ply"})) return Kind::cloud;
+  if (is_any_of(extension, {".obj", ".stl", ".dae", ".glb", ".gltf"})) return Kind::mesh;
+  if (is_any_of(extension, {".tum", ".csv", ".kitti", ".txt"})) return Kind::trajectory;
+  if (extension == ".g2o") return Kind::graph;
+  const bool is_folder = extension.empty() || fs::is_directory(name) || name.find('@') != std::string::npos;
+  return is_folder || extension == ".mcap" ? Kind::recording : Kind::unknown;
+}
+
+std::string csv_text(const Trajectory& trajectory) {
+  std::string text = "stamp_s,x,y,z,qx,qy,qz,qw\n" + tum_text(trajectory);
+  for (char& c : text) c = c == ' ' ? ',' : c;
+  return text;
+}
+
+Result<Trajectory> read_csv(const fs::path& path) {
+  return read_bytes(path).and_then([&](std::string text) -> Result<Trajectory> {
+    // The heading becomes a comment, the rest is TUM with commas.
+    if (!text.empty() && (text[0] < '0' || text[0] > '9') && text[0] != '-') text[0] = '#';
+    for (char& c : text) c = c == ',' ? ' ' : c;
+    Result<Trajectory> trajectory = parse_tum(text);
+    if (!trajectory) return fail(path.string(), trajectory.error());
+    return trajectory;
+  });
+}
+
+Result<> write_trajectory(const fs::path& out, const Trajectory& trajectory) {
+  const std::string extension = extension_of(out);
+  if (extension == ".csv") return write_bytes(out, csv_text(trajectory));
+  if (extension == ".kitti") return write_bytes(out, write_kitti_poses(trajectory));
+  return write_tum(out, trajectory);
+}
+
+Result<> convert_trajectory(const fs::path& in, const fs::path& out) {
+  if (extension_of(in) == ".kitti")
+    return fail(in.string() + ": KITTI poses hold no stamps; they are written only");
+  const Result<Trajectory> trajectory = extension_of(in) == ".csv" ? read_csv(in) : read_tum(in);
+  if (!trajectory) return tl::unexpected(trajectory.error());
+  return write_trajectory(out, *trajectory);
+}
+
+/// A PLY with faces is a mesh and stays one where the output can hold it.
+Result<> convert_cloud(const fs::path& in, const fs::path& out) {
+  if (extension_of(in) == ".ply" && extension_of(out) == ".ply") {
+    if (const Result<TriangleMesh> mesh = read_mesh(in)) return write_mesh(out, *mesh);
+  }
+  return read_cloud(in).and_then([&](const PointCloud& cloud) { return write_cloud(out, cloud); });
+}
+
+Result<> convert_graph(const fs::path& in, const fs::path& out) {
+  return read_g2o(in).and_then([&](const G2oFile& file) {
+    std::ostringstream text;
+    std::visit([&](const auto& graph) { write_g2o(text, graph); }, file.graph);
+    return write_bytes(out, text.str());
+  });
+}
+
+Result<> write_recording_to(const Recording& recording, const std::string& in, const fs::path& out) {
+  switch (kind_of(out.string())) {
+    case Kind::recording:
+      return extension_of(out) == ".mcap" ? write_recording(out, recording)
+                                          : write_scan_folder(out, recording);
+    case Kind::trajectory: {
+      // Ground truth where there is one, as nobody else can compute it; the wheels' odometry otherwise.
+      const Trajectory& poses = recording.truth.empty() ? recording.wheel : recording.truth;
+      if (poses.empty())
+        return fail(in + ": has neither ground truth nor wheel odometry; 'adit odometry' computes poses");
+      return write_trajectory(out, poses);
+    }
+    default:
+      return fail(out.string() +
+                  ": a recording becomes .mcap, a folder of clouds, or a trajectory (.tum, .csv, .kitti)");
+  }
+}
+
+Result<> convert(const std::string& in, const std::string& out) {
+  const Kind from = kind_of(in);
+  const Kind to = kind_of(out);
+  if (from == Kind::recording) {
+    return open_recording(in).and_then(
+        [&](const Recording& recording) { return write_recording_to(recording, in, out); });
+  }
+  if (from == Kind::mesh && extension_of(out) == ".ply") {
+    return read_mesh(fs::path(in)).and_then([&](const TriangleMesh& mesh) { return write_mesh(out, mesh); });
+  }
+  if (from == Kind::cloud && to == Kind::cloud) return convert_cloud(in, out);
+  if (from == Kind::trajectory && to == Kind::trajectory) return convert_trajectory(in, out);
+  if (from == Kind::graph && to == Kind::graph) return convert_graph(in, out);
+  return fail(in + " cannot become " + out + "; 'adit convert --help' lists the pairs");
+}
+
+}  // namespace
+
+void add_convert(Program& program) {
+  struct Paths {
+    std::string in;
+    std::string out;
+  };
+  const auto paths = std::make_shared<Paths>();
+  CLI::App* command =
+      program.add_command("convert", "Convert between recording, cloud, mesh, trajectory and graph formats",
+                          [paths](const Common&) { return convert(paths->in, paths->out); });
+  command->add_option("IN", paths->in, "What to read")->required();
+  command->add_option("OUT", paths->out, "What to write; its extension says the format")->required();
+  command->footer(
+      "recording (.mcap, folder of clouds, FOLDER@even) -> .mcap, folder, or its poses (.tum .csv .kitti)\n"
+      "cloud (.pcd .ply .bin) -> cloud; mesh (.obj .stl .dae .glb .ply) -> .ply\n"
+      "trajectory (.tum .csv) -> .tum .csv .kitti; graph (.g2o) -> .g2o, rewritten");
+}
+
+}  // namespace adit::app
