@@ -70,8 +70,9 @@ std::vector<double> nice_ticks(double low, double high, int count) {
   ADIT_CHECK(low < high && count > 0, "an axis has a length and ticks");
   const double step = round_down_nicely((high - low) / count * 1.5);
   std::vector<double> ticks;
-  for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1.0)
-    ticks.push_back(i * step);
+  for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1.0) {
+    ticks.push_back(i * step + 0.0);  // -0 becomes 0
+  }
   return ticks;
 }
 
