@@ -55,5 +55,6 @@ void add_register(Program& program);
 void add_solve(Program& program);
 void add_convert(Program& program);
 void add_info(Program& program);
+void add_config(Program& program);
 
 }  // namespace adit::app

@@ -4,6 +4,16 @@
 
 int main(int argc, char** argv) {
   adit::app::Program program;
+  add_study(program);
+  add_slam(program);
+  add_world(program);
+  add_simulate(program);
+  add_odometry(program);
   add_register(program);
+  add_solve(program);
+  add_evaluate(program);
+  add_convert(program);
+  add_info(program);
+  add_config(program);
   return program.run(argc, argv);
 }

@@ -128,10 +128,16 @@ Result<> write_robot(const std::filesystem::path& dir, const RobotMap& map, cons
   return done;
 }
 
+Result<> write_graph(const std::filesystem::path& path, const PoseGraph& graph) {
+  std::ostringstream text;
+  write_g2o(text, graph);
+  return write_bytes(path, text.str());
+}
+
 Result<> write_graphs(const std::filesystem::path& dir, const FleetSolution& solution) {
-  Result<> done = write_g2o(dir / "graph_initial.g2o", solution.initial);
-  if (done) done = write_g2o(dir / "graph_pcm.g2o", solution.after_pcm);
-  if (done) done = write_g2o(dir / "graph_optimized.g2o", solution.optimized);
+  Result<> done = write_graph(dir / "graph_initial.g2o", solution.initial);
+  if (done) done = write_graph(dir / "graph_pcm.g2o", solution.after_pcm);
+  if (done) done = write_graph(dir / "graph_optimized.g2o", solution.optimized);
   return done;
 }
 

@@ -32,7 +32,7 @@ std::string policy_phrase(const std::string& keyframes) {
 }
 
 Figure routes_figure(const StudyResult& study) {
-  std::vector<Route> routes;
+  std::vector<RobotPath> routes;
   for (const RobotResult& robot : study.robots) routes.push_back({robot.name, routes.size(), robot.route});
   return {"routes", "", "Routes of the robots over the map",
           "True trajectories over the walls of the world, seen from above; dots mark where the robots start.",
@@ -79,7 +79,7 @@ constexpr std::array<Stage, 3> kStages = {{{"initial", "initial graph", &PairRes
 
 Figure graph_figure(const StudyResult& study, const PairResult& pair, const Stage& stage) {
   const GraphPicture& picture = pair.*stage.picture;
-  std::vector<Route> robots;
+  std::vector<RobotPath> robots;
   for (const MergedRobot& robot : pair.robots)
     robots.push_back({robot.name, index_of(study, robot.name), {}});
   robots.resize(picture.robot_paths.size());

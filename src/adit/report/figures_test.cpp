@@ -41,7 +41,7 @@ TEST(Figures, AnEmptyStudyHasNone) { EXPECT_TRUE(study_figures({}).empty()); }
 
 TEST(Plots, LoopsHaveTheColoursOfTheirClass) {
   const PairResult pair = made_up::pair("all", true);
-  const std::vector<Route> robots = {{"a", 0, {}}, {"b", 1, {}}};
+  const std::vector<RobotPath> robots = {{"a", 0, {}}, {"b", 1, {}}};
   const std::string svg = plot_graph(pair.initial, robots);
   for (const char* label : {"correct: 1", "wrong place: 1", "wrong registration: 1"}) {
     EXPECT_NE(svg.find(label), std::string::npos);
@@ -51,11 +51,12 @@ TEST(Plots, LoopsHaveTheColoursOfTheirClass) {
 
 TEST(Plots, DegenerateInputStillDraws) {
   expect_renders(plot_routes({}, {}));
-  expect_renders(plot_routes({}, std::vector<Route>{{"empty", 0, {}}, {"one point", 1, {Vector3(5, 5, 5)}}}));
+  expect_renders(
+      plot_routes({}, std::vector<RobotPath>{{"empty", 0, {}}, {"one point", 1, {Vector3(5, 5, 5)}}}));
   expect_renders(plot_boxes({}, {}, "m"));
   const std::vector<std::string> methods = {"a", "b"};
   expect_renders(plot_boxes(methods, std::vector<BoxGroup>{{"r", {{}, {0.0, 0.0}}}}, "m"));
-  expect_renders(plot_graph({{{}, {}}, {}}, std::vector<Route>{{"a", 0, {}}, {"b", 1, {}}}));
+  expect_renders(plot_graph({{{}, {}}, {}}, std::vector<RobotPath>{{"a", 0, {}}, {"b", 1, {}}}));
   expect_renders(plot_error_paths({}, {}));
   expect_renders(
       plot_error_paths({}, std::vector<ErrorPath>{{"r", {Vector3::Zero(), Vector3::Zero()}, {0.0, 0.0}}}));

@@ -21,9 +21,9 @@ Point2 legend_at() { return {16.0, 10.0}; }
 constexpr double kLegendWidth = kFigureWidth - 32.0;
 constexpr double kFooter = 44.0;
 
-std::vector<LegendItem> legend_of(std::span<const Route> routes) {
+std::vector<LegendItem> legend_of(std::span<const RobotPath> routes) {
   std::vector<LegendItem> items;
-  for (const Route& route : routes) items.push_back({route.name, robot_color(route.robot)});
+  for (const RobotPath& route : routes) items.push_back({route.name, robot_color(route.robot)});
   return items;
 }
 
@@ -64,7 +64,7 @@ void draw_loops(SvgCanvas& canvas, const MapView& view, const GraphPicture& pict
   canvas.segments(dots, {loop_color(loop_class), 4.0});
 }
 
-std::vector<LegendItem> legend_of(const GraphPicture& picture, std::span<const Route> robots) {
+std::vector<LegendItem> legend_of(const GraphPicture& picture, std::span<const RobotPath> robots) {
   std::vector<LegendItem> items = legend_of(robots);
   constexpr std::array<std::pair<LoopClass, const char*>, 3> kClasses = {
       {{LoopClass::correct, "correct"},
@@ -206,17 +206,17 @@ void draw_box(SvgCanvas& canvas, const ValueAxis& axis, double x, std::span<cons
 
 }  // namespace
 
-std::string plot_routes(const Plan& plan, std::span<const Route> routes) {
+std::string plot_routes(const Plan& plan, std::span<const RobotPath> routes) {
   MapExtent extent;
   extent.extend(plan);
-  for (const Route& route : routes) extent.extend(route.path);
+  for (const RobotPath& route : routes) extent.extend(route.path);
   SvgCanvas canvas(kFigureWidth);
   const MapView view = begin_map(canvas, extent.box(), legend_of(routes));
   draw_plan(canvas, view, plan, kWall);
   for (std::size_t i = 0; i < routes.size(); ++i) {
     canvas.polyline(view.at(routes[i].path), {robot_color(routes[i].robot), path_width(i, routes.size())});
   }
-  for (const Route& route : routes) {
+  for (const RobotPath& route : routes) {
     if (!route.path.empty()) draw_start(canvas, view.at(route.path.front()), robot_color(route.robot));
   }
   draw_scale_bar(canvas, view);
@@ -251,7 +251,7 @@ std::string plot_boxes(std::span<const std::string> methods, std::span<const Box
   return canvas.document();
 }
 
-std::string plot_graph(const GraphPicture& picture, std::span<const Route> robots) {
+std::string plot_graph(const GraphPicture& picture, std::span<const RobotPath> robots) {
   ADIT_CHECK(picture.robot_paths.size() == robots.size(), "one robot a path");
   MapExtent extent;
   for (const std::vector<Vector3>& path : picture.robot_paths) extent.extend(path);

@@ -12,14 +12,14 @@
 namespace adit {
 
 /// A named path in the colour of its robot (its index in the fleet).
-struct Route {
+struct RobotPath {
   std::string name;
   std::size_t robot = 0;
   std::vector<Vector3> path;
 };
 
 /// Robots' routes over the walls of the world (`plan` may be empty), a dot where each starts.
-[[nodiscard]] std::string plot_routes(const Plan& plan, std::span<const Route> routes);
+[[nodiscard]] std::string plot_routes(const Plan& plan, std::span<const RobotPath> routes);
 
 /// One group of boxes a robot, one box a method. The axis turns logarithmic when the boxes span more than a
 /// factor of 30.
@@ -33,7 +33,7 @@ struct BoxGroup {
 
 /// A pose graph: paths in their robots' colours, loops green (correct), red (wrong place), blue (wrong
 /// registration). `robots` name the picture's paths and their colours; its paths are not read.
-[[nodiscard]] std::string plot_graph(const GraphPicture& picture, std::span<const Route> robots);
+[[nodiscard]] std::string plot_graph(const GraphPicture& picture, std::span<const RobotPath> robots);
 
 /// Paths coloured by their error, with a colour bar; errors and paths have the same lengths.
 struct ErrorPath {

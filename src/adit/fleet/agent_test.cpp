@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/agent.hpp"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+
+#include "adit/core/parallel.hpp"
+#include "support/box_world.hpp"
+
+namespace adit {
+namespace {
+
+std::vector<Pose> street(double from, double to, double lane) {
+  std::vector<Pose> poses;
+  const double step = from < to ? 2.0 : -2.0;
+  for (double x = from; (to - x) * step >= 0.0; x += step)
+    poses.push_back(Pose::planar(x, lane, step > 0.0 ? 0.0 : M_PI));
+  return poses;
+}
+
+AgentConfig lenient() {
+  AgentConfig config;
+  config.place.max_distance = 0.4;
+  return config;
+}
+
+/// Two robots on one street, the second in the opposite direction and on the other lane.
+struct TwoRobots {
+  std::vector<Pose> truth_0 = street(0.0, 40.0, -0.5);
+  std::vector<Pose> truth_1 = street(50.0, 14.0, 0.5);
+  std::vector<Agent> agents;
+
+  explicit TwoRobots(std::uint64_t seed = 3) {
+    const test::BoxWorld world(seed);
+    agents.reserve(2);
+    for (const auto& [id, truth] : {std::pair{0, &truth_0}, std::pair{1, &truth_1}}) {
+      const auto map = std::make_shared<const RobotMap>(
+          test::drive(world, {static_cast<std::uint8_t>(id)}, *truth, id == 0 ? 0.002 : -0.002));
+      agents.emplace_back(map, std::make_shared<FeatureStore>(map, lenient().registration), lenient());
+    }
+  }
+
+  /// Delivers messages until all is said; `copies` of each.
+  void meet(int copies = 1) {
+    std::deque<Message> queue;
+    const auto post = [&](const std::vector<Message>& messages) {
+      for (const Message& message : messages)
+        queue.insert(queue.end(), static_cast<std::size_t>(copies), message);
+    };
+    post(agents[0].meet({1}));
+    for (int budget = 10000; !queue.empty() && budget > 0; --budget) {
+      const Message message = queue.front();
+      queue.pop_front();
+      // Answers to a repeated Hello repeat everything; one round of that is enough for the test.
+      const std::vector<Message> replies = agents[message.to.value].on(message);
+      copies = 1;
+      post(replies);
+    }
+    ASSERT_TRUE(queue.empty());
+  }
+};
+
+TEST(Agent, TwoRobotsThatMeetAgreeOnOneCorrectMap) {
+  TwoRobots fleet;
+  fleet.meet();
+  const FleetSolution first = fleet.agents[0].solve({});
+  const FleetSolution second = fleet.agents[1].solve({});
+  ASSERT_EQ(first.pairs.size(), 1U);
+  ASSERT_TRUE(first.pairs[0].merged) << first.pairs[0].refused_reason;
+  EXPECT_GE(first.pairs[0].clique, 3U);
+
+  const Pose T_true = fleet.truth_0.front().inverse();  // odometry frame of robot 0
+  const auto& poses_1 = first.T_world_keyframe.at({1});
+  ASSERT_EQ(poses_1.size(), fleet.truth_1.size());
+  for (std::size_t k = 0; k < poses_1.size(); ++k) {
+    EXPECT_LT(((T_true * fleet.truth_1[k]).translation() - poses_1[k].translation()).norm(), 0.6) << k;
+  }
+  for (const LoopOutcome& outcome : first.loops) {
+    if (!outcome.in_use()) continue;
+    const Pose T_from_to =
+        fleet.truth_0[outcome.loop.from.index].inverse() * fleet.truth_1[outcome.loop.to.index];
+    EXPECT_LT((T_from_to.inverse() * outcome.loop.T_from_to).translation().norm(), 0.5);
+  }
+  // Both know the same, so both compute the same, to the last bit.
+  for (const auto& [robot, poses] : first.T_world_keyframe) {
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      EXPECT_EQ(poses[k].matrix(), second.T_world_keyframe.at(robot)[k].matrix());
+    }
+  }
+}
+
+TEST(Agent, RepeatedMessagesChangeNothing) {
+  TwoRobots once;
+  once.meet();
+  TwoRobots twice;
+  twice.meet(2);
+  twice.meet();
+  ASSERT_EQ(once.agents[1].known().loops.size(), twice.agents[1].known().loops.size());
+  EXPECT_GT(once.agents[1].known().loops.size(), 0U);
+  EXPECT_EQ(once.agents[1].known().robots.at({0}).nodes.size(),
+            twice.agents[1].known().robots.at({0}).nodes.size());
+}
+
+TEST(Agent, OneOrTwoThreadsGiveTheSameLoops) {
+  set_num_threads(1);
+  TwoRobots one;
+  one.meet();
+  set_num_threads(2);
+  TwoRobots two;
+  two.meet();
+  ASSERT_EQ(one.agents[0].known().loops.size(), two.agents[0].known().loops.size());
+  auto other = two.agents[0].known().loops.begin();
+  for (const auto& [ends, loop] : one.agents[0].known().loops) {
+    EXPECT_EQ(ends, other->first);
+    EXPECT_EQ(loop.T_from_to.matrix(), other->second.T_from_to.matrix());
+    EXPECT_EQ(loop.num_inliers, other->second.num_inliers);
+    ++other;
+  }
+}
+
+TEST(Agent, KnowsNothingOfARobotItNeverMet) {
+  TwoRobots fleet;
+  EXPECT_EQ(fleet.agents[0].known().robots.size(), 1U);
+  const FleetSolution alone = fleet.agents[0].solve({});
+  ASSERT_EQ(alone.components.size(), 1U);
+  EXPECT_EQ(alone.components[0].robots, std::vector<RobotId>{{0}});
+  EXPECT_TRUE(alone.pairs.empty());
+}
+
+TEST(Agent, MessageForAnotherRobotIsABug) {
+  TwoRobots fleet;
+  EXPECT_THROW((void)fleet.agents[0].on(Message{{1}, {7}, Loops{}}), ContractViolation);
+}
+
+TEST(Agent, RequestForAKeyframeThatDoesNotExistIsAnsweredWithLess) {
+  TwoRobots fleet;
+  const std::vector<Message> replies = fleet.agents[0].on(Message{{1}, {0}, CloudRequest{{0, 999999}}});
+  ASSERT_EQ(replies.size(), 1U);
+  EXPECT_EQ(std::get<Clouds>(replies[0].body).clouds.size(), 1U);
+}
+
+}  // namespace
+}  // namespace adit

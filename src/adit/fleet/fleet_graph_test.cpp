@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/fleet_graph.hpp"
+
+#include <gtest/gtest.h>
+
+#include "adit/core/rng.hpp"
+#include "adit/robot/robot_map.hpp"
+
+namespace adit {
+namespace {
+
+constexpr std::uint32_t kNodes = 40;
+
+Pose true_pose(RobotId robot, std::uint32_t k) {
+  // Robots on slightly different circles: every pose differs, and each robot starts elsewhere.
+  const double angle = 0.06 * k + 0.4 * robot.value;
+  return Pose::planar((20.0 + robot.value) * std::sin(angle), -(20.0 + robot.value) * std::cos(angle), angle,
+                      0.0);
+}
+
+FleetGraph robots_without_loops(int num_robots) {
+  FleetGraph fleet;
+  for (std::uint8_t r = 0; r < num_robots; ++r) {
+    RobotGraph& graph = fleet.robots[{r}];
+    graph.name = "robot_" + std::to_string(r);
+    for (std::uint32_t k = 0; k < kNodes; ++k) {
+      const Pose T_odom_base = true_pose({r}, 0).inverse() * true_pose({r}, k);
+      const double step = k == 0 ? 0.0 : 1.2;
+      graph.nodes.push_back(
+          {Stamp{k}, T_odom_base, k == 0 ? Matrix6(Matrix6::Zero()) : odometry_covariance({}, step)});
+    }
+  }
+  return fleet;
+}
+
+void add_loop(FleetGraph& fleet, KeyframeId from, KeyframeId to, const Pose& error = {}) {
+  LoopClosure loop;
+  loop.from = from;
+  loop.to = to;
+  loop.T_from_to = true_pose(from.robot, from.index).inverse() * true_pose(to.robot, to.index) * error;
+  loop.verdict = LoopVerdict::accepted;
+  fleet.loops[{from, to}] = loop;
+}
+
+double largest_error(const FleetSolution& solution, const Component& component) {
+  const Pose T_frame_world = true_pose(component.anchor, 0).inverse();
+  double worst = 0.0;
+  for (const RobotId robot : component.robots) {
+    for (std::uint32_t k = 0; k < kNodes; ++k) {
+      const Vector3 expected = (T_frame_world * true_pose(robot, k)).translation();
+      worst = std::max(worst, (solution.T_world_keyframe.at(robot)[k].translation() - expected).norm());
+    }
+  }
+  return worst;
+}
+
+TEST(FleetGraph, RobotsWithoutLoopsStayApartWithAReason) {
+  const FleetSolution solution = solve(robots_without_loops(2), {});
+  ASSERT_EQ(solution.components.size(), 2U);
+  ASSERT_EQ(solution.pairs.size(), 1U);
+  EXPECT_FALSE(solution.pairs[0].merged);
+  EXPECT_NE(solution.pairs[0].refused_reason.find("resembled"), std::string::npos);
+  EXPECT_LT(largest_error(solution, solution.components[1]), 1e-9);
+}
+
+TEST(FleetGraph, FalseLoopsAreDroppedByPcm) {
+  FleetGraph fleet = robots_without_loops(2);
+  for (std::uint32_t k = 5; k < 35; k += 5) add_loop(fleet, {{0}, k}, {{1}, k});
+  Rng rng(5);
+  for (std::uint32_t k = 6; k < 35; k += 6) {
+    add_loop(fleet, {{0}, k}, {{1}, k + 1},
+             Pose::planar(rng.uniform(5, 20), rng.uniform(5, 20), rng.uniform(-3, 3)));
+  }
+  const FleetSolution solution = solve(fleet, {});
+  ASSERT_EQ(solution.components.size(), 1U);
+  EXPECT_EQ(solution.components[0].anchor, RobotId{0});
+  EXPECT_EQ(solution.pairs[0].num_loops, 11U);
+  EXPECT_EQ(solution.pairs[0].clique, 6U);
+  EXPECT_LT(largest_error(solution, solution.components[0]), 0.05);
+  for (const LoopOutcome& outcome : solution.loops) {
+    EXPECT_EQ(outcome.in_use(), outcome.loop.to.index == outcome.loop.from.index);
+  }
+}
+
+TEST(FleetGraph, ThreeRobotsInARowShareTheFrameOfTheSmallestId) {
+  FleetGraph fleet = robots_without_loops(4);
+  for (std::uint32_t k = 5; k < 35; k += 5) {
+    add_loop(fleet, {{1}, k}, {{2}, k});
+    add_loop(fleet, {{2}, k}, {{3}, k});
+  }
+  const FleetSolution solution = solve(fleet, {});
+  ASSERT_EQ(solution.components.size(), 2U);
+  EXPECT_EQ(solution.components[0].robots, std::vector<RobotId>{{0}});
+  EXPECT_EQ(solution.components[1].anchor, RobotId{1});
+  EXPECT_EQ(solution.components[1].robots, (std::vector<RobotId>{{1}, {2}, {3}}));
+  EXPECT_LT(largest_error(solution, solution.components[1]), 0.05);
+}
+
+TEST(FleetGraph, LoopsThatAreTooFewDoNotJoinMaps) {
+  FleetGraph fleet = robots_without_loops(2);
+  add_loop(fleet, {{0}, 10}, {{1}, 10});
+  BackEndConfig config;
+  config.min_loops = 2;
+  const FleetSolution solution = solve(fleet, config);
+  EXPECT_FALSE(solution.pairs[0].merged);
+  EXPECT_EQ(solution.components.size(), 2U);
+  EXPECT_LT(largest_error(solution, solution.components[1]), 1e-6);
+}
+
+TEST(FleetGraph, RobotWithoutKeyframesStopsNobody) {
+  FleetGraph fleet = robots_without_loops(3);
+  fleet.robots[{1}].nodes.clear();
+  for (std::uint32_t k = 5; k < 35; k += 5) add_loop(fleet, {{0}, k}, {{2}, k});
+  const FleetSolution solution = solve(fleet, {});
+  EXPECT_TRUE(solution.T_world_keyframe.at({1}).empty());
+  EXPECT_EQ(solution.T_world_keyframe.at({2}).size(), kNodes);
+  for (const PairOutcome& pair : solution.pairs) {
+    EXPECT_EQ(pair.merged, pair.a == RobotId{0} && pair.b == RobotId{2});
+    if (!pair.merged) EXPECT_NE(pair.refused_reason.find("left no keyframe of robot_1"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace adit

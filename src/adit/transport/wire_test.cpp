@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/transport/wire.hpp"
+
+#include <gtest/gtest.h>
+
+#include "adit/core/rng.hpp"
+
+namespace adit {
+namespace {
+
+LoopClosure a_loop() {
+  LoopClosure loop;
+  loop.from = {{0}, 12};
+  loop.to = {{3}, 70000};
+  Vector6 xi;
+  xi << 1, -2, 3, 0.1, 0.2, -0.3;
+  loop.T_from_to = Pose::exp(xi);
+  loop.information = Matrix6::Identity() * 7.0;
+  loop.information(0, 4) = loop.information(4, 0) = 0.25;
+  loop.num_inliers = 42;
+  loop.overlap = 0.625;
+  loop.weak_axis = 0.01;
+  loop.place_distance = 0.125;
+  loop.verdict = LoopVerdict::accepted;
+  loop.reason = "42 inliers";
+  return loop;
+}
+
+std::vector<Message> one_of_each() {
+  const std::vector<float> heights(20 * 60, 1.5F);
+  const ScanContext context = from_heights(20, 60, heights);
+  GraphNode node{{1234567890123456789}, a_loop().T_from_to, Matrix6::Identity() * 0.5};
+  return {{{0}, {1}, Hello{{{{0}, 5, 6}, {{1}, 7, 8}}, 3, true}},
+          {{1}, {0}, GraphPart{{2}, "robot_2", 4, {node, node}}},
+          {{1}, {0}, Places{9, {{11, context}}, true}},
+          {{0}, {1}, CloudRequest{{1, 2, 3}}},
+          {{1},
+           {0},
+           Clouds{{{5, {Eigen::Vector3f(1.0F, -2.0F, 3.0F), Eigen::Vector3f(0.0025F, 160.0F, -160.0F)}}}}},
+          {{0}, {1}, Loops{{a_loop()}}}};
+}
+
+TEST(Wire, EveryKindOfMessageComesBack) {
+  for (const Message& message : one_of_each()) {
+    const std::vector<std::byte> bytes = encode(message);
+    const Result<Message> back = decode(bytes);
+    ASSERT_TRUE(back.has_value()) << back.error().message;
+    EXPECT_EQ(back->from, message.from);
+    EXPECT_EQ(back->to, message.to);
+    EXPECT_EQ(back->body.index(), message.body.index());
+    EXPECT_EQ(encode(*back), bytes);
+  }
+}
+
+TEST(Wire, NumbersOfGraphAndLoopsTravelExactly) {
+  const Result<Message> back = decode(encode({{0}, {1}, Loops{{a_loop()}}}));
+  ASSERT_TRUE(back.has_value());
+  const LoopClosure& loop = std::get<Loops>(back->body).loops.at(0);
+  EXPECT_LT((loop.T_from_to.matrix() - a_loop().T_from_to.matrix()).norm(), 1e-15);
+  EXPECT_EQ(loop.information, a_loop().information);
+  EXPECT_EQ(loop.to, a_loop().to);
+  EXPECT_EQ(loop.reason, a_loop().reason);
+  EXPECT_EQ(loop.verdict, LoopVerdict::accepted);
+}
+
+TEST(Wire, PointsKeepFiveMillimetresAndFarOnesStayBehind) {
+  Clouds clouds;
+  clouds.clouds.push_back(
+      {1, {Eigen::Vector3f(12.3456F, -7.7777F, 0.1F), Eigen::Vector3f(170.0F, 0.0F, 0.0F)}});
+  const Result<Message> back = decode(encode({{0}, {1}, clouds}));
+  ASSERT_TRUE(back.has_value());
+  const auto& points = std::get<Clouds>(back->body).clouds.at(0).points;
+  ASSERT_EQ(points.size(), 1U);
+  EXPECT_LT((points[0] - Eigen::Vector3f(12.3456F, -7.7777F, 0.1F)).cwiseAbs().maxCoeff(), 0.0026F);
+}
+
+TEST(Wire, EveryCutIsAnError) {
+  for (const Message& message : one_of_each()) {
+    const std::vector<std::byte> bytes = encode(message);
+    for (std::size_t length = 0; length < bytes.size(); ++length) {
+      EXPECT_FALSE(decode(std::span(bytes).first(length)).has_value())
+          << "kind " << message.body.index() << " cut at " << length;
+    }
+  }
+}
+
+TEST(Wire, DamagedBytesNeverCrash) {
+  Rng rng(1);
+  for (const Message& message : one_of_each()) {
+    const std::vector<std::byte> bytes = encode(message);
+    for (int trial = 0; trial < 300; ++trial) {
+      std::vector<std::byte> damaged = bytes;
+      for (int flips = 0; flips < 4; ++flips)
+        damaged[rng.below(damaged.size())] = static_cast<std::byte>(rng.below(256));
+      const Result<Message> back = decode(damaged);
+      if (back) EXPECT_LE(encode(*back).size(), 4 * bytes.size());
+    }
+  }
+}
+
+TEST(Wire, ForeignVersionAndTrailingBytesAreRefused) {
+  std::vector<std::byte> bytes = encode({{0}, {1}, CloudRequest{{1}}});
+  bytes.push_back(std::byte{0});
+  EXPECT_NE(decode(bytes).error().message.find("too many"), std::string::npos);
+  bytes[0] = std::byte{99};
+  EXPECT_NE(decode(bytes).error().message.find("version 99"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace adit
