@@ -42,7 +42,7 @@ void draw_start(SvgCanvas& canvas, const Point2& at, Rgba color) {
 /// Robots that share a tunnel hide one another: the earlier ones are drawn wider, so that a rim of each stays
 /// visible.
 double path_width(std::size_t index, std::size_t count) {
-  return 3.0 + 2.0 * static_cast<double>(count - 1 - index);
+  return 3.0 + 1.5 * static_cast<double>(count - 1 - index);
 }
 
 using LoopLines = std::vector<std::pair<Point2, Point2>>;
@@ -59,7 +59,7 @@ void draw_loops(SvgCanvas& canvas, const MapView& view, const GraphPicture& pict
     ((a - b).norm() < 5.0 ? dots : lines).emplace_back(a, b);
   }
   // Many loops lie over one another: thinner ink for more of them.
-  const double opacity = std::clamp(150.0 / static_cast<double>(picture.loops.size() + 1), 0.35, 0.9);
+  const double opacity = std::clamp(150.0 / static_cast<double>(picture.loops.size() + 1), 0.5, 0.9);
   canvas.segments(lines, {loop_color(loop_class), 1.3, opacity});
   canvas.segments(dots, {loop_color(loop_class), 4.0});
 }
