@@ -190,7 +190,7 @@ TEST(Pcd, ErrorsNameThePlace) {
   EXPECT_ERROR(read_pcd("solid cube\n"), "header line 1: solid");
   EXPECT_ERROR(read_pcd(pcd_header("x y", "4 4", "F F", 1, "ascii") + "1 2\n"), "no field 'z'");
   EXPECT_ERROR(read_pcd(pcd_header("x y z", "4 4 4", "F F F", 2, "ascii") + "1 2 3\n1 2\n"),
-               "line 9: 2 values, 3 needed");
+               "line 10: 2 values, 3 needed");
   EXPECT_ERROR(read_pcd(pcd_header("x y z", "4 4 4", "F F F", 2, "ascii") + "1 2 3\n"), "1 of 2 points");
   EXPECT_ERROR(read_pcd(pcd_header("x y z", "4 4 4", "F F F", 1, "ascii") + "1 a 3\n"),
                "'a' is no value of field 'y'");

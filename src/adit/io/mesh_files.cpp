@@ -105,6 +105,13 @@ Result<TriangleMesh> convert(const Assimp::Importer& importer, const aiScene* sc
       });
 }
 
+/// assimp 5.2 never returns from some truncated PLY files, so header and vertices are checked before it sees
+/// them.
+Result<> check_ply(std::string_view bytes, const std::string& extension) {
+  if (extension != "ply") return {};
+  return read_ply(bytes).map([](const CloudFile&) {});
+}
+
 Result<std::string> known_extension(const std::string& extension) {
   static constexpr std::string_view kKnown[] = {"ply", "obj", "stl", "dae", "glb", "gltf"};
   std::string lower = lower_case(extension);
@@ -120,6 +127,11 @@ Result<TriangleMesh> read_mesh(const std::filesystem::path& path) {
   if (!extension) return fail(path.string(), extension.error());
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return fail(path.string() + ": no such file");
+  if (*extension == "ply") {
+    const Result<> checked =
+        read_bytes(path).and_then([&](const std::string& bytes) { return check_ply(bytes, "ply"); });
+    if (!checked) return fail(path.string(), checked.error());
+  }
   // Not through memory: a glTF or OBJ file may refer to others beside it.
   Assimp::Importer importer;
   configure(importer);
@@ -131,6 +143,7 @@ Result<TriangleMesh> read_mesh(const std::filesystem::path& path) {
 Result<TriangleMesh> read_mesh(std::string_view bytes, const std::string& extension) {
   return known_extension(extension).and_then([&](const std::string& known) -> Result<TriangleMesh> {
     if (bytes.empty()) return fail("the file is empty");
+    if (Result<> checked = check_ply(bytes, known); !checked) return tl::unexpected(checked.error());
     Assimp::Importer importer;
     configure(importer);
     return convert(importer, importer.ReadFileFromMemory(bytes.data(), bytes.size(), kSteps, known.c_str()),

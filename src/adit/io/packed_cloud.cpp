@@ -70,9 +70,10 @@ std::optional<std::int64_t> load_time(ScalarType type, const char* bytes, std::e
   if (type == ScalarType::int64) return load<std::int64_t>(bytes, order);
   const double value = load_scalar(type, bytes, order);
   if (!is_float(type)) return static_cast<std::int64_t>(value);
-  const double ns = value * 1e9;
-  if (!(std::abs(ns) < 9.2e18)) return std::nullopt;
-  return std::llround(ns);
+  if (!(std::abs(value) < 9.2e9)) return std::nullopt;
+  // Whole seconds apart from the rest: in one product an absolute time would lose its last 100 ns.
+  const double seconds = std::floor(value);
+  return static_cast<std::int64_t>(seconds) * 1'000'000'000 + std::llround((value - seconds) * 1e9);
 }
 
 Result<> check_field(const PackedCloud& cloud, const std::optional<PackedField>& field, const char* name) {
