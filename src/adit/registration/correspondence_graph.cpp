@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <utility>
 
 #include "adit/core/check.hpp"
 #include "adit/core/parallel.hpp"
@@ -65,6 +66,76 @@ std::uint64_t consistent_in_block(const Rows& a, const Rows& b, Eigen::Index fro
   const BlockArray slack = 4.0F * da * db;
   return mask_of(excess.data(), slack.data());
 }
+
+using Bits = std::vector<std::uint64_t>;
+
+Bits intersection(const Bits& bits, std::span<const std::uint64_t> row) {
+  Bits out(bits.size());
+  for (std::size_t w = 0; w < bits.size(); ++w) out[w] = bits[w] & row[w];
+  return out;
+}
+
+void clear(Bits& bits, std::uint32_t v) { bits[v / 64] &= ~(std::uint64_t{1} << (v % 64)); }
+
+class CliqueSearch {
+ public:
+  CliqueSearch(const ConsistencyGraph& graph, std::uint64_t max_nodes)
+      : graph_(graph), nodes_left_(max_nodes) {}
+
+  /// Extends the current clique by vertices of `candidates`, all of which are joined to all of it.
+  void expand(Bits candidates) {
+    if (current_.size() > best.size()) best = current_;
+    const std::vector<Coloured> order = coloured(candidates);
+    for (auto it = order.rbegin(); it != order.rend(); ++it) {
+      if (current_.size() + it->colour <= best.size() || nodes_left_ == 0) return;
+      --nodes_left_;
+      current_.push_back(it->vertex);
+      expand(intersection(candidates, graph_.row(it->vertex)));
+      current_.pop_back();
+      clear(candidates, it->vertex);
+    }
+  }
+
+  std::vector<std::uint32_t> best;
+
+ private:
+  struct Coloured {
+    std::uint32_t vertex;
+    std::size_t colour;  ///< From 1; a clique has at most one vertex of each.
+  };
+
+  /// Greedy colour classes of mutually unjoined vertices, colours ascending.
+  std::vector<Coloured> coloured(Bits uncoloured) const {
+    std::vector<Coloured> order;
+    for (std::size_t colour = 1; num_bits(uncoloured) > 0; ++colour) {
+      Bits free = uncoloured;
+      for_each_first(free, [&](std::uint32_t v) {
+        order.push_back({v, colour});
+        clear(uncoloured, v);
+        const std::span<const std::uint64_t> row = graph_.row(v);
+        for (std::size_t w = 0; w < free.size(); ++w) free[w] &= ~row[w];
+      });
+    }
+    return order;
+  }
+
+  /// Takes the first bit out again and again; `visit` may clear further ones.
+  template <class Visit>
+  static void for_each_first(Bits& bits, const Visit& visit) {
+    for (std::size_t w = 0; w < bits.size(); ++w) {
+      while (bits[w] != 0) {
+        const auto v =
+            static_cast<std::uint32_t>(w * 64 + static_cast<std::size_t>(std::countr_zero(bits[w])));
+        bits[w] &= bits[w] - 1;
+        visit(v);
+      }
+    }
+  }
+
+  const ConsistencyGraph& graph_;
+  std::uint64_t nodes_left_;
+  std::vector<std::uint32_t> current_;
+};
 
 }  // namespace
 
@@ -127,6 +198,15 @@ std::vector<std::uint32_t> max_core(const ConsistencyGraph& graph) {
     if (core[v] == k) innermost.push_back(v);
   }
   return innermost;
+}
+
+std::vector<std::uint32_t> largest_clique(const ConsistencyGraph& graph, std::uint64_t max_search_nodes) {
+  Bits all((graph.num_vertices() + 63) / 64, 0);
+  for (std::size_t v = 0; v < graph.num_vertices(); ++v) all[v / 64] |= std::uint64_t{1} << (v % 64);
+  CliqueSearch search(graph, max_search_nodes);
+  search.expand(std::move(all));
+  std::sort(search.best.begin(), search.best.end());
+  return std::move(search.best);
 }
 
 }  // namespace adit

@@ -46,4 +46,10 @@ class ConsistencyGraph {
 /// an empty graph.
 [[nodiscard]] std::vector<std::uint32_t> max_core(const ConsistencyGraph& graph);
 
+/// A largest clique, ascending; the largest found so far once `max_search_nodes` branches are used up: a
+/// budget of branches, not of time, so that the same graph has the same answer on every machine. Branch and
+/// bound with greedy colouring as the bound (Tomita and Kameda, 2007).
+[[nodiscard]] std::vector<std::uint32_t> largest_clique(const ConsistencyGraph& graph,
+                                                        std::uint64_t max_search_nodes);
+
 }  // namespace adit

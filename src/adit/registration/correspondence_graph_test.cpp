@@ -65,6 +65,41 @@ TEST(MaxCore, OfDegenerateGraphs) {
   EXPECT_EQ(max_core(ConsistencyGraph(3)).size(), 3U);  // no edge: all are in the 0-core
 }
 
+/// The size of the largest clique that holds `taken`, with further vertices from `from` on.
+std::size_t clique_size_by_brute_force(const ConsistencyGraph& graph, std::vector<std::size_t>& taken,
+                                       std::size_t from) {
+  std::size_t best = taken.size();
+  for (std::size_t v = from; v < graph.num_vertices(); ++v) {
+    if (!std::all_of(taken.begin(), taken.end(), [&](std::size_t w) { return graph.has_edge(v, w); }))
+      continue;
+    taken.push_back(v);
+    best = std::max(best, clique_size_by_brute_force(graph, taken, v + 1));
+    taken.pop_back();
+  }
+  return best;
+}
+
+TEST(LargestClique, AgreesWithBruteForce) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const ConsistencyGraph graph = random_graph(seed, 10 + 3 * seed, 0.3);
+    const auto clique = largest_clique(graph, 1000000);
+    std::vector<std::size_t> taken;
+    EXPECT_EQ(clique.size(), clique_size_by_brute_force(graph, taken, 0)) << "seed " << seed;
+    for (const std::uint32_t v : clique) {
+      for (const std::uint32_t w : clique) EXPECT_TRUE(v == w || graph.has_edge(v, w));
+    }
+  }
+}
+
+TEST(LargestClique, KeepsToItsBudget) {
+  const ConsistencyGraph graph = random_graph(3, 300, 0.8);
+  const auto clique = largest_clique(graph, 50);
+  EXPECT_GT(clique.size(), 10U);  // greedy, but a clique
+  EXPECT_EQ(clique, largest_clique(graph, 50));
+  EXPECT_TRUE(largest_clique(ConsistencyGraph(0), 50).empty());
+  EXPECT_EQ(largest_clique(ConsistencyGraph(3), 50).size(), 1U);
+}
+
 TEST(ConsistencyGraph, JoinsWhatKeepsItsDistance) {
   Rng rng(5);
   std::vector<Eigen::Vector3f> a;

@@ -45,7 +45,9 @@ MatchedPoints pruned(const MatchedPoints& points, const RegistrationConfig& conf
   const double bound = std::min(config.graph_noise_voxels * config.voxel_size, config.max_noise_bound);
   const ConsistencyGraph graph = consistency_graph(points.a, points.b, static_cast<float>(bound));
   MatchedPoints out;
-  for (const std::uint32_t k : max_core(graph)) {
+  const bool exact = config.pruning == "clique";
+  const auto max_nodes = static_cast<std::uint64_t>(config.clique_max_search_nodes);
+  for (const std::uint32_t k : exact ? largest_clique(graph, max_nodes) : max_core(graph)) {
     out.a.push_back(points.a[k]);
     out.b.push_back(points.b[k]);
   }
@@ -84,7 +86,7 @@ Registration register_features(const Features& a, const Features& b, const Regis
   const double bound = std::min(config.solver_noise_voxels * config.voxel_size, config.max_noise_bound);
   const auto solution = solve_robustly(consistent.a, consistent.b, bound, config);
   if (!solution) {
-    return rejected(out, format("the {} consistent points do not determine a rotation", consistent.a.size()));
+    return rejected(out, format("the {} consistent points agree on no rotation", consistent.a.size()));
   }
   out.T_a_b = solution->T_a_b;
   out.num_inliers = static_cast<int>(solution->inliers.size());

@@ -15,7 +15,7 @@ namespace {
 
 /// Points spread over the rectangle origin + s u + t v, 0 <= s, t <= 1.
 void add_rectangle(PointCloud& cloud, Rng& rng, const Vector3& origin, const Vector3& u, const Vector3& v) {
-  constexpr double kDensity = 60.0;  // a square metre
+  constexpr double kDensity = 40.0;  // a square metre
   const auto n = static_cast<int>(kDensity * u.cross(v).norm());
   for (int k = 0; k < n; ++k) {
     const Vector3 noise = 0.01 * Vector3(rng.normal(), rng.normal(), rng.normal());
@@ -37,10 +37,10 @@ PointCloud hall(std::uint64_t layout, std::uint64_t sample) {
   Rng place(layout);
   Rng rng(sample);
   PointCloud cloud;
-  add_box(cloud, rng, {-10.0, -8.0, -1.5}, {20.0, 16.0, 5.0});
+  add_box(cloud, rng, {-10.0, -8.0, -1.5}, {15.0, 12.0, 4.0});
   for (int k = 0; k < 14; ++k) {
     const Vector3 size(place.uniform(0.6, 4.0), place.uniform(0.6, 4.0), place.uniform(0.6, 3.5));
-    add_box(cloud, rng, {place.uniform(-9.0, 6.0), place.uniform(-7.0, 4.0), -1.5}, size);
+    add_box(cloud, rng, {place.uniform(-9.0, 1.0), place.uniform(-7.0, 0.0), -1.5}, size);
   }
   return cloud;
 }
@@ -77,7 +77,7 @@ TEST(Registration, FindsHallsAgainUnderAnyTurn) {
 
 TEST(Registration, CovarianceIsOfTheSizeOfTheErrors) {
   double squared_mahalanobis = 0.0;
-  const int num_runs = 8;
+  const int num_runs = 6;
   for (std::uint64_t seed = 1; seed <= num_runs; ++seed) {
     const Registration r = register_clouds(hall(3, 2 * seed), hall(3, 2 * seed + 1), {});
     ASSERT_TRUE(r.T_a_b.has_value());
@@ -99,12 +99,20 @@ TEST(Registration, ThePlainPipelineNeedsNoRefinement) {
   EXPECT_LT(error.angle(), 0.05);
 }
 
+TEST(Registration, CliquePruningFindsTheSamePose) {
+  RegistrationConfig config;
+  config.pruning = "clique";
+  const Pose T_b_a = Pose::planar(2.0, 1.0, -2.0);
+  const Registration r = register_clouds(hall(2, 1), transformed(T_b_a, hall(2, 2)), config);
+  ASSERT_EQ(r.verdict, LoopVerdict::accepted) << r.reason;
+  EXPECT_LT((T_b_a * *r.T_a_b).translation().norm(), 0.05);
+}
+
 TEST(Registration, KnowsThatATubeIsOpenAlongItsAxis) {
   RegistrationConfig config;
   config.min_inliers = 3;
-  config.ratio_test = false;
   const Registration r = register_clouds(tube(1), tube(2), config);
-  if (!r.T_a_b || r.information.isZero()) return;  // it refused, with a reason: as good
+  ASSERT_EQ(r.verdict, LoopVerdict::accepted) << r.reason;  // by so few inliers
   EXPECT_LT(r.weak_axis, 0.01);
   EXPECT_GT(std::abs(r.weak_direction.x()), 0.99);
   EXPECT_NE(r.reason.find("slide along"), std::string::npos) << r.reason;
