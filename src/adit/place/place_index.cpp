@@ -67,6 +67,7 @@ std::vector<std::size_t> PlaceIndex::candidates(const Places& places, KeyframeId
     ranked.resize(wanted);
   }
   std::vector<std::size_t> positions;
+  positions.reserve(ranked.size());
   for (const auto& [distance, i] : ranked) positions.push_back(i);
   return positions;
 }
