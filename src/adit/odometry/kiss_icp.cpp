@@ -5,6 +5,17 @@
 #include "adit/odometry/preprocess.hpp"
 
 namespace adit {
+namespace {
+
+// Sum of squared distances to the map, a voxel at most for each point.
+double misfit(const Alignment& alignment, const ThinnedScan& scan, const LocalMap& map) {
+  const double reach = map.voxel_size();
+  const auto fit = linearize_rigid(scan.source, map, alignment.T_map_base, reach, reach);
+  const auto lost = static_cast<double>(scan.source.size()) - fit.num_correspondences;
+  return fit.squared_residuals + lost * reach * reach;
+}
+
+}  // namespace
 
 KissIcp::KissIcp(const KissIcpConfig& config, const Pose& T_base_lidar)
     : config_(config),
@@ -29,7 +40,14 @@ OdometryStep KissIcp::register_scan(const Scan& scan) {
 
 OdometryStep KissIcp::registered(const ThinnedScan& scan, const Pose& T_prediction) {
   const double sigma = threshold_.sigma();
-  const Alignment alignment = align_rigid(scan.source, map_, T_prediction, sigma, config_);
+  Alignment alignment = align_rigid(scan.source, map_, T_prediction, sigma, config_);
+  if (config_.irregular_steps) {
+    const Alignment rival = align_rigid(scan.source, map_, T_odom_base_, sigma, config_);
+    const bool better =
+        rival.status == StepStatus::ok &&
+        (alignment.status != StepStatus::ok || misfit(rival, scan, map_) < misfit(alignment, scan, map_));
+    if (better) alignment = rival;
+  }
   if (alignment.status == StepStatus::ok)
     threshold_.add(T_prediction.inverse() * alignment.T_map_base);
   else

@@ -16,6 +16,7 @@ namespace adit {
 struct KissIcpConfig : ScanToMapConfig {
   double initial_threshold = 2.0;
   double min_motion = 0.1;
+  bool irregular_steps = false;
 };
 
 inline Fields fields_of(KissIcpConfig& c) {
@@ -23,6 +24,9 @@ inline Fields fields_of(KissIcpConfig& c) {
   fields.push_back(
       {"initial_threshold", &c.initial_threshold, "m", 0.01, 100.0, "first sigma of the motion model"});
   fields.push_back({"min_motion", &c.min_motion, "m", 0.0, 10.0, "smaller deviations do not train sigma"});
+  fields.push_back(
+      {"irregular_steps", &c.irregular_steps, "", 0, 1,
+       "for scans at irregular intervals: also start from the last pose and keep the better fit"});
   return fields;
 }
 
