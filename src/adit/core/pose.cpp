@@ -105,7 +105,8 @@ Matrix3 left_jacobian_inverse(const Vector3& phi) {
 Pose::Pose(const Eigen::Quaterniond& rotation, const Vector3& translation) : q_(rotation), t_(translation) {
   ADIT_CHECK(rotation.coeffs().allFinite() && translation.allFinite(), "a pose has only finite numbers");
   ADIT_CHECK(std::abs(rotation.norm() - 1.0) < 1e-3, "a pose's quaternion has norm 1");
-  q_.normalize();
+  // One that is as good as it gets stays bit for bit, so that poses survive being written and read.
+  if (std::abs(q_.squaredNorm() - 1.0) > 1e-15) q_.normalize();
 }
 
 Pose::Pose(const Matrix3& rotation, const Vector3& translation) : t_(translation) {

@@ -3,6 +3,7 @@
 #include "adit/io/g2o.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -84,7 +85,7 @@ struct Format<Pose> {
     const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
     if (std::abs(q.norm() - 1.0) > kMaxNormError)
       return fail(format("the quaternion has norm {}, not 1", q.norm()));
-    return Pose(q.normalized(), Vector3(v[0], v[1], v[2]));
+    return Pose(std::abs(q.norm() - 1.0) < 1e-9 ? q : q.normalized(), Vector3(v[0], v[1], v[2]));
   }
   static std::array<double, 7> numbers(const Pose& T) {
     const Eigen::Quaterniond& q = T.rotation();

@@ -108,8 +108,6 @@ class Minimizer {
 
  private:
   void iterate(Solution<P>& s) {
-    if (s.cost_final <= kNoise * static_cast<double>(graph_.edges.size()))
-      return converge(s, "the cost is zero");
     if (!current_) equations_ = linearize(graph_, structure_, s.poses, weights_);
     current_ = true;
     ++s.iterations;
@@ -117,6 +115,8 @@ class Minimizer {
         lambda_ > 0.0 ? cholesky_.factorize(damped(structure_.pattern, equations_.values, P::kDof, lambda_))
                       : cholesky_.factorize(equations_.values);
     if (free) return give_up(s, graph_.nodes[structure_.node_of_variable[*free]].key);
+    if (s.cost_final <= kNoise * static_cast<double>(graph_.edges.size()))
+      return converge(s, "the cost is zero");
     const Eigen::VectorXd step = cholesky_.solve(-equations_.gradient);
     const double predicted = predicted_decrease(step);
     if (!step.allFinite()) return worsen(s);
