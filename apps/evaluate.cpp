@@ -81,10 +81,10 @@ Result<LoopSummary> loops_of(const SavedSession& session, const std::vector<Traj
 }
 
 Table robot_table(const SavedSession& session, const std::vector<RobotErrors>& errors) {
-  Table table{"Trajectory errors",
-              "ATE after one alignment of all robots that share a map; RPE over 10 m.",
-              {"Robot", "ATE max (m)", "ATE rmse (m)", "Odometry ATE max (m)", "RPE median (m)"},
-              {}};
+  Table table;
+  table.title = "Trajectory errors";
+  table.caption = "ATE after one alignment of all robots that share a map; RPE over 10 m.";
+  table.header = {"Robot", "ATE max (m)", "ATE rmse (m)", "Odometry ATE max (m)", "RPE median (m)"};
   for (std::size_t i = 0; i < errors.size(); ++i) {
     table.rows.push_back(
         {session.robots[i], format("{:.3f}", errors[i].joint.max_m), format("{:.3f}", errors[i].joint.rmse_m),
@@ -95,10 +95,10 @@ Table robot_table(const SavedSession& session, const std::vector<RobotErrors>& e
 }
 
 Table loop_table(const LoopSummary& summary) {
-  Table table{"Loops",
-              "Classes after the paper: more than 10 m apart; more than 1 m or 15 degrees off.",
-              {"Stage", "Loops", "Correct", "Wrong place", "Wrong registration", "Precision (%)"},
-              {}};
+  Table table;
+  table.title = "Loops";
+  table.caption = "Classes after the paper: more than 10 m apart; more than 1 m or 15 degrees off.";
+  table.header = {"Stage", "Loops", "Correct", "Wrong place", "Wrong registration", "Precision (%)"};
   const auto row = [&](const std::string& stage, const LoopCounts& counts) {
     table.rows.push_back(
         {stage, format("{}", counts.total), format("{}", counts.correct()), format("{}", counts.wrong_place),

@@ -14,7 +14,8 @@ namespace {
 volatile std::sig_atomic_t interrupt_count = 0;
 
 void on_interrupt(int signal) {
-  if (interrupt_count++ > 0) {
+  interrupt_count = interrupt_count + 1;
+  if (interrupt_count > 1) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }

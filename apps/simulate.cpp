@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "adit/core/format.hpp"
+#include "adit/core/parallel.hpp"
+#include "adit/io/mcap.hpp"
+#include "adit/io/tum.hpp"
+#include "inputs.hpp"
+#include "progress.hpp"
+#include "run_config.hpp"
+
+namespace adit::app {
+namespace {
+
+struct Options {
+  std::string world;
+  std::string routes;
+  std::string out;
+  std::string lidar = "os2-128";
+  std::string robot;
+  std::optional<std::uint64_t> seed;
+};
+
+std::filesystem::path recording_file(const Options& options, const Recording& recording) {
+  return std::filesystem::path(options.out) / (recording.name + ".mcap");
+}
+
+std::filesystem::path truth_file(const Options& options, const Recording& recording) {
+  return std::filesystem::path(options.out) / (recording.name + "_truth.tum");
+}
+
+// A robot keeps its noise whether or not the others are wanted, so all are set up and the rest is left out.
+Result<std::vector<Recording>> chosen(std::vector<Recording> recordings, const std::string& robot) {
+  if (robot.empty()) return recordings;
+  std::string names;
+  for (const Recording& recording : recordings) {
+    if (recording.name == robot) return std::vector<Recording>{recording};
+    names += (names.empty() ? "" : ", ") + recording.name;
+  }
+  return fail("no robot is called '" + robot + "'; the routes have " + names);
+}
+
+// Both files appear whole or not at all; after Ctrl-C the next scan fails, and with it the file.
+Result<> write(const Options& options, Recording recording, Progress& progress) {
+  recording.read_scan = [cast = std::move(recording.read_scan)](std::size_t i) -> Result<Scan> {
+    if (interrupted()) return fail("interrupted");
+    return cast(i);
+  };
+  const auto count = [&](std::size_t) { progress.advance(); };
+  if (const Result<> done = write_recording(recording_file(options, recording), recording, count); !done) {
+    return done;
+  }
+  return write_tum(truth_file(options, recording), recording.truth);
+}
+
+Result<> write_all(const Options& options, const std::vector<Recording>& recordings) {
+  std::error_code error;
+  std::filesystem::create_directories(options.out, error);
+  if (error) return fail(options.out + ": cannot make this folder: " + error.message());
+  std::size_t num_scans = 0;
+  for (const Recording& recording : recordings) num_scans += recording.num_scans();
+  Progress progress("scans", num_scans);
+  std::vector<Result<>> written(recordings.size());
+  parallel_for_each(recordings.size(),
+                    [&](std::size_t i) { written[i] = write(options, recordings[i], progress); });
+  const auto failed = std::ranges::find_if(written, [](const Result<>& done) { return !done; });
+  return failed == written.end() ? Result<>() : *failed;
+}
+
+void print(const Options& options, const std::vector<Recording>& recordings, const Common& common) {
+  nlohmann::ordered_json report;
+  for (const Recording& recording : recordings) {
+    const std::string file = recording_file(options, recording).string();
+    const double length = path_length(recording.truth);
+    const double duration = to_seconds(recording.truth.back().stamp - recording.truth.front().stamp);
+    report["recordings"].push_back({{"robot", recording.name},
+                                    {"file", file},
+                                    {"truth", truth_file(options, recording).string()},
+                                    {"scans", recording.num_scans()},
+                                    {"path_length_m", length},
+                                    {"duration_s", duration}});
+    if (common.json) continue;
+    std::printf("%s: %zu scans, %.1f m in %.1f s\n", file.c_str(), recording.num_scans(), length, duration);
+  }
+  if (common.json) std::printf("%s\n", report.dump().c_str());
+}
+
+Result<> simulate_command(const Options& options, const Common& common) {
+  RunConfig config;
+  if (const Result<> known = choose_lidar(options.lidar, config.simulation); !known) {
+    usage_error(known.error().message);
+  }
+  if (const Result<> configured = configure(fields_of(config), common); !configured) return configured;
+  if (options.seed) config.simulation.seed = *options.seed;
+  const auto recordings =
+      load_world(options.world, options.routes)
+          .and_then([&](const World& world) { return simulate(world, config.simulation); })
+          .and_then([&](const std::vector<Recording>& all) { return chosen(all, options.robot); });
+  if (!recordings) return tl::unexpected(recordings.error());
+  catch_interrupts();
+  if (const Result<> written = write_all(options, *recordings); !written) return written;
+  print(options, *recordings, common);
+  return {};
+}
+
+}  // namespace
+
+void add_simulate(Program& program) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_command("simulate", "Drive robots through a mesh: one recording a robot, with ground truth",
+                          [options](const Common& common) { return simulate_command(*options, common); });
+  command->add_option("--world", options->world,
+                      "Mesh: PLY, OBJ, STL, DAE, GLB (default: the one the routes name)");
+  command->add_option("--routes", options->routes, "routes.yaml")->required();
+  command->add_option("--out", options->out, "Folder for ROBOT.mcap and ROBOT_truth.tum")->required();
+  command->add_option("--lidar", options->lidar, "Simulated LiDAR")->capture_default_str();
+  command->add_option("--robot", options->robot, "Only the robot of this name");
+  command->add_option("--seed", options->seed, "Of all noise; wins over the configuration");
+}
+
+}  // namespace adit::app
