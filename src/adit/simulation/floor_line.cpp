@@ -55,9 +55,9 @@ bool wall_between(const Raycaster& raycaster, const Vector3& a, const Vector3& b
 // From a to b (not included) on the floor. Over a hole in the mesh the straight line stands in.
 std::vector<Vector3> between(const Raycaster& raycaster, const Vector3& a, const Vector3& b) {
   std::vector<Vector3> points{a};
-  const double parts = std::ceil((b - a).norm() / kPointSpacing);
-  for (double part = 1.0; part < parts; ++part) {
-    Vector3 p = a + (part / parts) * (b - a);
+  const auto parts = static_cast<int>(std::ceil((b - a).norm() / kPointSpacing));
+  for (int part = 1; part < parts; ++part) {
+    Vector3 p = a + (static_cast<double>(part) / parts) * (b - a);
     p.z() = floor_height(raycaster, p).value_or(p.z());
     points.push_back(p);
   }
@@ -85,7 +85,7 @@ std::optional<double> floor_height(const Raycaster& raycaster, const Vector3& p)
 
 Result<std::vector<Vector3>> floor_line(const Raycaster& raycaster, const Route& route) {
   if (const Result<> checked = check_route(route); !checked) return tl::unexpected(checked.error());
-  const Result<std::vector<Vector3>> snapped = snapped_waypoints(raycaster, route);
+  Result<std::vector<Vector3>> snapped = snapped_waypoints(raycaster, route);
   if (!snapped) return snapped;
   std::vector<Vector3> line;
   for (std::size_t i = 0; i + 1 < snapped->size(); ++i) {

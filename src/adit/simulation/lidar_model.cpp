@@ -192,10 +192,10 @@ Result<> check_ascending(const std::string& what, double low, double high) {
 Result<> check_lidar(LidarConfig config) {
   if (Result<> fields = check_fields(fields_of(config)); !fields) return fail("lidar", fields.error());
   if (config.beams > 1) {
-    const auto field = check_ascending("elevation", config.elevation_min_deg, config.elevation_max_deg);
+    Result<> field = check_ascending("elevation", config.elevation_min_deg, config.elevation_max_deg);
     if (!field) return field;
   }
-  if (const auto range = check_ascending("range", config.range_min, config.range_max); !range) return range;
+  if (Result<> range = check_ascending("range", config.range_min, config.range_max); !range) return range;
   return check_ascending("drop-out", config.dropout_start_deg, config.dropout_end_deg);
 }
 
