@@ -116,9 +116,9 @@ struct Raycaster::Scene {
 Result<Raycaster> Raycaster::build(const TriangleMesh& mesh) {
   if (const Result<> checked = check_mesh(mesh); !checked) return tl::unexpected(checked.error());
   auto scene = std::make_shared<Scene>();
-  // One thread: the order of triangles in a tree built by several hangs on their number, and with it which of
-  // two triangles a ray through their common edge meets.
-  scene->device = Device(rtcNewDevice("threads=1"));
+  // No thread limit here: Embree would put it on the TBB of the whole process for as long as the device
+  // lives.
+  scene->device = Device(rtcNewDevice(nullptr));
   ADIT_CHECK(scene->device != nullptr, "Embree starts");
   scene->embree = embree_scene(scene->device.get(), mesh);
   scene->planes = planes_of(mesh);

@@ -114,6 +114,35 @@ TEST(Raycaster, any_thread_may_cast) {
     EXPECT_EQ(parallel[i], raycaster.cast(rays[i], 50.0F).distance);
 }
 
+TEST(Raycaster, building_leaves_the_thread_limit_of_the_process_alone) {
+  const int before = num_threads();
+  const Raycaster raycaster = Raycaster::build(random_soup(300)).value();
+  EXPECT_EQ(num_threads(), before);
+}
+
+TEST(Raycaster, at_edges_and_corners_the_same_triangle_wins_with_any_number_of_threads) {
+  const Eigen::AlignedBox2d area(Eigen::Vector2d(0, 0), Eigen::Vector2d(100, 100));
+  const TriangleMesh mesh =
+      test::floor_of(area, 0.5, [](double x, double y) { return std::sin(x) * std::cos(y); });
+  std::vector<Ray> rays;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    const Eigen::Vector3f corner = mesh.vertices[static_cast<std::size_t>(t[0])];
+    const Eigen::Vector3f edge = 0.5F * (corner + mesh.vertices[static_cast<std::size_t>(t[2])]);
+    rays.push_back({corner + 5.0F * Eigen::Vector3f::UnitZ(), -Eigen::Vector3f::UnitZ()});
+    rays.push_back({edge + 5.0F * Eigen::Vector3f::UnitZ(), -Eigen::Vector3f::UnitZ()});
+  }
+  const int before = num_threads();
+  set_num_threads(1);
+  const std::vector<RayHit> one = Raycaster::build(mesh).value().cast(rays, 50.0F);
+  set_num_threads(4);
+  const std::vector<RayHit> four = Raycaster::build(mesh).value().cast(rays, 50.0F);
+  set_num_threads(before);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(one[i].distance, four[i].distance);
+    ASSERT_EQ(one[i].normal, four[i].normal);
+  }
+}
+
 TEST(Raycaster, sees_both_sides_and_stops_at_the_given_distance) {
   TriangleMesh mesh;
   test::add_quad(mesh, {5, -1, -1}, {5, 1, -1}, {5, 1, 1}, {5, -1, 1});
