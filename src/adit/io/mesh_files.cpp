@@ -29,6 +29,8 @@ void configure(Assimp::Importer& importer) {
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
 }
 
+std::string first_line(const std::string& text) { return text.substr(0, text.find_first_of("\r\n")); }
+
 /// assimp hands out DAE (whatever its up axis) and glTF scenes y up.
 bool is_y_up(const std::string& extension) {
   return extension == "dae" || extension == "glb" || extension == "gltf";
@@ -85,16 +87,21 @@ TriangleMesh weld(const TriangleMesh& soup) {
   return mesh;
 }
 
-Result<TriangleMesh> convert(const Assimp::Importer& importer, const aiScene* scene,
+/// The triangles of all nodes of the scene, as they stand in the file, z up.
+Result<TriangleMesh> soup_of(const Assimp::Importer& importer, const aiScene* scene,
                              const std::string& extension) {
   // Names the reason that assimp gives, in one line.
-  if (scene == nullptr) return fail("cannot be read: " + std::string(importer.GetErrorString()));
+  if (scene == nullptr) return fail("cannot be read: " + first_line(importer.GetErrorString()));
   if (scene->mRootNode == nullptr) return fail("holds no scene");
   TriangleMesh soup;
   append(soup, *scene, *scene->mRootNode, aiMatrix4x4());
   if (is_y_up(extension)) {
     for (Eigen::Vector3f& v : soup.vertices) v = Eigen::Vector3f(v.x(), -v.z(), v.y());
   }
+  return soup;
+}
+
+Result<TriangleMesh> checked(const TriangleMesh& soup) {
   if (soup.triangles.empty()) return fail("the mesh has no triangles; a point cloud is no world");
   // Before welding, which sorts: NaN has no place in an order.
   return check_mesh(soup)
@@ -103,13 +110,6 @@ Result<TriangleMesh> convert(const Assimp::Importer& importer, const aiScene* sc
         if (mesh.empty()) return fail("all triangles of the mesh have zero size");
         return mesh;
       });
-}
-
-/// assimp 5.2 never returns from some truncated PLY files, so header and vertices are checked before it sees
-/// them.
-Result<> check_ply(std::string_view bytes, const std::string& extension) {
-  if (extension != "ply") return {};
-  return read_ply(bytes).map([](const CloudFile&) {});
 }
 
 Result<std::string> known_extension(const std::string& extension) {
@@ -123,32 +123,31 @@ Result<std::string> known_extension(const std::string& extension) {
 }  // namespace
 
 Result<TriangleMesh> read_mesh(const std::filesystem::path& path) {
-  const Result<std::string> extension = known_extension(path.extension().string());
-  if (!extension) return fail(path.string(), extension.error());
+  const auto read = [&](const std::string& extension) -> Result<TriangleMesh> {
+    if (extension == "ply") return read_bytes(path).and_then(read_ply_mesh);
+    // Not through memory: a glTF or OBJ file may refer to others beside it.
+    Assimp::Importer importer;
+    configure(importer);
+    return soup_of(importer, importer.ReadFile(path.string(), kSteps), extension);
+  };
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return fail(path.string() + ": no such file");
-  if (*extension == "ply") {
-    const Result<> checked =
-        read_bytes(path).and_then([&](const std::string& bytes) { return check_ply(bytes, "ply"); });
-    if (!checked) return fail(path.string(), checked.error());
-  }
-  // Not through memory: a glTF or OBJ file may refer to others beside it.
-  Assimp::Importer importer;
-  configure(importer);
-  Result<TriangleMesh> mesh = convert(importer, importer.ReadFile(path.string(), kSteps), *extension);
+  Result<std::string> extension = known_extension(path.extension().string());
+  if (extension && !std::filesystem::is_regular_file(path, ignored)) extension = fail("no such file");
+  Result<TriangleMesh> mesh = extension.and_then(read).and_then(checked);
   if (!mesh) return fail(path.string(), mesh.error());
   return mesh;
 }
 
 Result<TriangleMesh> read_mesh(std::string_view bytes, const std::string& extension) {
-  return known_extension(extension).and_then([&](const std::string& known) -> Result<TriangleMesh> {
+  const auto read = [&](const std::string& known) -> Result<TriangleMesh> {
     if (bytes.empty()) return fail("the file is empty");
-    if (Result<> checked = check_ply(bytes, known); !checked) return tl::unexpected(checked.error());
+    if (known == "ply") return read_ply_mesh(bytes);
     Assimp::Importer importer;
     configure(importer);
-    return convert(importer, importer.ReadFileFromMemory(bytes.data(), bytes.size(), kSteps, known.c_str()),
-                   known);
-  });
+    const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), kSteps, known.c_str());
+    return soup_of(importer, scene, known);
+  };
+  return known_extension(extension).and_then(read).and_then(checked);
 }
 
 Result<> write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {

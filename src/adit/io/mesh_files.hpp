@@ -22,7 +22,9 @@ namespace adit {
 ///  - GLB (and glTF) is y up and in metres by its standard; it is turned so that its up becomes +z: (x, y, z)
 ///  of the
 ///    file becomes (x, -z, y).
-/// A missing, damaged or unknown file and a mesh without triangles are errors.
+/// PLY is read by ply.hpp (assimp 5.2 does not return from some truncated ones), the other formats by assimp.
+/// Text formats state no length: an OBJ or ascii STL file that is cut between two faces gives the faces
+/// before. A missing, damaged or unknown file and a mesh without triangles are errors.
 Result<TriangleMesh> read_mesh(const std::filesystem::path& path);
 
 /// The same from bytes; `extension` says the format: "ply", "obj", "stl", "dae", "glb".

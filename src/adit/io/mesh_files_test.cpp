@@ -43,29 +43,34 @@ TEST(MeshFiles, OwnPlyReadsBack) {
   EXPECT_EQ(cloud->cloud.points, ramp().vertices);
 }
 
-TEST(MeshFiles, ObjWithAQuadAndALine) {
-  expect_ramp(
-      read_mesh("v 0 0 0\nv 4 0 0\nv 4 2 1\nv 0 2 1\nvn 0 0 1\nf 1//1 2//1 3//1 4//1\nl 1 3\n", "obj"));
+std::string obj() { return "v 0 0 0\nv 4 0 0\nv 4 2 1\nv 0 2 1\nvn 0 0 1\nf 1//1 2//1 3//1 4//1\nl 1 3\n"; }
+
+std::string ascii_stl() {
+  return "solid ramp\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 0 0\nvertex 4 2 "
+         "1\nendloop\nendfacet\n"
+         "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 2 1\nvertex 0 2 "
+         "1\nendloop\nendfacet\nendsolid ramp\n";
 }
 
-TEST(MeshFiles, StlCornersAreWelded) {
-  const std::string ascii =
-      "solid ramp\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 0 0\nvertex 4 2 "
-      "1\nendloop\nendfacet\n"
-      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 2 1\nvertex 0 2 1\nendloop\nendfacet\nendsolid "
-      "ramp\n";
-  expect_ramp(read_mesh(ascii, ".STL"));
-  std::string binary(80, ' ');
-  append_little_endian(binary, std::uint32_t{2});
+std::string binary_stl() {
+  std::string bytes(80, ' ');
+  append_little_endian(bytes, std::uint32_t{2});
   for (const Eigen::Vector3i& triangle : ramp().triangles) {
     for (int k = -1; k < 3; ++k) {
       const Eigen::Vector3f v =
           k < 0 ? Eigen::Vector3f(0, 0, 1) : ramp().vertices[static_cast<std::size_t>(triangle[k])];
-      for (int axis = 0; axis < 3; ++axis) append_little_endian(binary, v[axis]);
+      for (int axis = 0; axis < 3; ++axis) append_little_endian(bytes, v[axis]);
     }
-    append_little_endian(binary, std::uint16_t{0});
+    append_little_endian(bytes, std::uint16_t{0});
   }
-  expect_ramp(read_mesh(binary, "stl"));
+  return bytes;
+}
+
+TEST(MeshFiles, ObjWithAQuadAndALine) { expect_ramp(read_mesh(obj(), "obj")); }
+
+TEST(MeshFiles, StlCornersAreWelded) {
+  expect_ramp(read_mesh(ascii_stl(), ".STL"));
+  expect_ramp(read_mesh(binary_stl(), "stl"));
 }
 
 std::string dae(std::string_view up_axis, std::string_view positions, std::string_view matrix) {
@@ -84,11 +89,14 @@ std::string dae(std::string_view up_axis, std::string_view positions, std::strin
          R"(<instance_visual_scene url="#s"/></scene></COLLADA>)";
 }
 
+constexpr std::string_view kIdentity = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1";
+
+std::string z_up_dae() { return dae("Z_UP", "0 0 0 4 0 0 4 2 1 0 2 1", kIdentity); }
+
 TEST(MeshFiles, DaeComesOutZUpWhateverItsUpAxis) {
-  const char* identity = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1";
-  expect_ramp(read_mesh(dae("Z_UP", "0 0 0 4 0 0 4 2 1 0 2 1", identity), "dae"));
+  expect_ramp(read_mesh(z_up_dae(), "dae"));
   // Up is y: (x, y, z) of the world is (x, z, -y) of the file.
-  expect_ramp(read_mesh(dae("Y_UP", "0 0 0 4 0 0 4 1 -2 0 1 -2", identity), "dae"));
+  expect_ramp(read_mesh(dae("Y_UP", "0 0 0 4 0 0 4 1 -2 0 1 -2", kIdentity), "dae"));
 }
 
 TEST(MeshFiles, DaeNodeTransformsAreApplied) {
@@ -134,9 +142,63 @@ TEST(MeshFiles, BadInput) {
   EXPECT_FALSE(read_mesh("v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", "obj"));
   EXPECT_FALSE(write_mesh(folder / "a.ply", {}));
   EXPECT_ERROR(write_mesh(folder / "a.obj", ramp()), "written as .ply");
-  const std::string bytes = write_ply(ramp());
-  for (std::size_t size = 0; size < bytes.size(); size += 3)
-    static_cast<void>(read_mesh(bytes.substr(0, size), "ply"));
+}
+
+TEST(MeshFiles, EveryTruncationOfAPlyIsAnError) {
+  const std::string binary = write_ply(ramp());
+  const std::string ascii =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement face "
+      "2\nproperty list uchar int vertex_index\nend_header\n0 0 0\n4 0 0\n4 2 1\n0 2 1\n3 0 1 2\n3 0 2 3";
+  for (const std::string& bytes : {binary, ascii}) {
+    expect_ramp(read_mesh(bytes, "ply"));
+    for (std::size_t size = 0; size < bytes.size(); ++size)
+      EXPECT_FALSE(read_mesh(bytes.substr(0, size), "ply")) << size << " of " << bytes.size();
+  }
+}
+
+/// Text formats have no length to check against: cut between two faces, they give the faces before the cut.
+TEST(MeshFiles, TruncationsOfOtherFormatsAreErrorsOrTheFacesBefore) {
+  for (const auto& [extension, bytes] : {std::pair("obj", obj()),
+                                         {"stl", ascii_stl()},
+                                         {"stl", binary_stl()},
+                                         {"dae", z_up_dae()},
+                                         {"glb", glb()}}) {
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+      const Result<TriangleMesh> mesh = read_mesh(bytes.substr(0, size), extension);
+      if (!mesh) {
+        EXPECT_EQ(mesh.error().message.find('\n'), std::string::npos) << mesh.error().message;
+        continue;
+      }
+      EXPECT_TRUE(check_mesh(*mesh));
+      EXPECT_LE(mesh->triangles.size(), 2U);
+    }
+  }
+}
+
+TEST(MeshFiles, PlyPolygonsBecomeFansAndOtherListsAreSteppedOver) {
+  const auto ply = [](std::string_view corners) {
+    return "ply\nformat ascii 1.0\nelement face 3\nproperty list uchar float texcoord\nproperty list uchar "
+           "int "
+           "vertex_indices\nproperty uchar red\nelement vertex 4\nproperty double x\nproperty double "
+           "y\nproperty "
+           "double z\nproperty float t\nend_header\n" +
+           std::string(corners) + "2 0.5 1 2 0 1 7\n0 0 7\n0 0 0 1\n4 0 0 9\n4 2 1 1e5\n0 2 1 5\n";
+  };
+  expect_ramp(read_mesh(ply("0 4 0 1 2 3 255\n"), "ply"));
+  EXPECT_ERROR(read_mesh(ply("0 4 0 1 2 4 255\n"), "ply"), "4");
+  EXPECT_FALSE(read_mesh(ply("0 4 0 1 2 -3 255\n"), "ply"));
+  EXPECT_FALSE(read_mesh(ply("0 4 0 1 2 nan 255\n"), "ply"));
+  EXPECT_TRUE(ply_has_faces(ply("")));
+  PointCloud cloud;
+  cloud.points = {{1, 2, 3}};
+  EXPECT_FALSE(ply_has_faces(write_ply(cloud)));
+}
+
+TEST(MeshFiles, AVertexThatIsNotFiniteIsAnError) {
+  TriangleMesh mesh = ramp();
+  mesh.vertices[1].y() = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_ERROR(read_mesh(write_ply(mesh), "ply"), "not finite");
 }
 
 TEST(MeshFiles, RealWorlds) {

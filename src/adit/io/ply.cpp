@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -131,11 +132,16 @@ class BinaryBody {
     if (order_ == std::endian::big) std::reverse(rows.begin() + static_cast<std::ptrdiff_t>(end), rows.end());
     return true;
   }
-  bool skip_list(const PlyProperty& list) {
+  bool read_list(std::vector<double>& values, const PlyProperty& list) {
     const std::size_t begin = offset_;
     if (!skip(1, size_of(*list.count_type))) return false;
     const double count = load_scalar(*list.count_type, bytes_.data() + begin, order_);
-    return count >= 0.0 && skip(static_cast<std::size_t>(count), size_of(list.type));
+    const std::size_t first = offset_;
+    if (!(count >= 0.0) || !skip(static_cast<std::size_t>(count), size_of(list.type))) return false;
+    values.clear();
+    for (std::size_t at = first; at < offset_; at += size_of(list.type))
+      values.push_back(load_scalar(list.type, bytes_.data() + at, order_));
+    return true;
   }
   [[nodiscard]] std::string place() const { return format("byte {}", offset_); }
   static bool end_row() { return true; }
@@ -153,11 +159,16 @@ class AsciiBody {
   bool append_next(std::string& rows, ScalarType type) {
     return start_row() && next_ < words_.size() && append_scalar(rows, type, words_[next_++]);
   }
-  bool skip_list(const PlyProperty& /*list*/) {
+  bool read_list(std::vector<double>& values, const PlyProperty& /*list*/) {
     if (!start_row() || next_ >= words_.size()) return false;
     const std::optional<std::size_t> count = parse_size(words_[next_++]);
     if (!count || *count > words_.size() - next_) return false;
-    next_ += *count;
+    values.clear();
+    for (const std::size_t end = next_ + *count; next_ < end; ++next_) {
+      const std::optional<double> value = parse_double(words_[next_]);
+      if (!value) return false;
+      values.push_back(*value);
+    }
     return true;
   }
   [[nodiscard]] std::string place() const { return format("line {}", lines_.number()); }
@@ -177,19 +188,25 @@ class AsciiBody {
   std::size_t next_ = 0;
 };
 
-/// The scalars of all rows of the element as little-endian bytes, lists left out.
-template <class Body>
-Result<std::string> pack_element(Body& body, const PlyElement& element) {
+/// The scalars of all rows of the element as little-endian bytes; each list goes to `on_list(property,
+/// values)`.
+template <class Body, class OnList>
+Result<std::string> pack_element(Body& body, const PlyElement& element, const OnList& on_list) {
+  if (element.count > 0 && element.properties.empty())
+    return fail(format("element {} has no properties", element.name));
   std::string rows;
+  std::vector<double> values;
   for (std::size_t i = 0; i < element.count; ++i) {
     for (const PlyProperty& property : element.properties) {
       const bool read =
-          property.count_type ? body.skip_list(property) : body.append_next(rows, property.type);
-      if (read) continue;
-      return fail(format("{}: {} {} of {}: no value for '{}'; the file is truncated or damaged", body.place(),
-                         element.name, i, element.count, property.name));
+          property.count_type ? body.read_list(values, property) : body.append_next(rows, property.type);
+      if (!read) {
+        return fail(format("{}: {} {} of {}: no value for '{}'; the file is truncated or damaged",
+                           body.place(), element.name, i, element.count, property.name));
+      }
+      if (property.count_type) on_list(property, std::as_const(values));
     }
-    if (!element.properties.empty() && !body.end_row()) {
+    if (!body.end_row()) {
       return fail(format("{}: {} {} of {}: more values than properties", body.place(), element.name, i,
                          element.count));
     }
@@ -197,28 +214,87 @@ Result<std::string> pack_element(Body& body, const PlyElement& element) {
   return rows;
 }
 
+/// Names the fields in the packed rows of an element, which must outlive the result.
+PackedCloud packed_cloud(std::string_view rows, const PlyElement& element) {
+  PackedCloud packed;
+  packed.bytes = rows;
+  packed.num_points = element.count;
+  const std::size_t stride = element.count == 0 ? 0 : rows.size() / element.count;
+  std::size_t offset = 0;
+  for (const PlyProperty& property : element.properties) {
+    if (property.count_type) continue;
+    assign_field(packed, property.name, {property.type, offset, stride});
+    offset += size_of(property.type);
+  }
+  return packed;
+}
+
+constexpr std::string_view kNoVertices = "the header has no element 'vertex'";
+
 /// Reads through the elements up to `vertex` and unpacks that.
 template <class Body>
 Result<CloudFile> read_vertices(Body body, const PlyHeader& header) {
   for (const PlyElement& element : header.elements) {
-    if (element.count > 0 && element.properties.empty())
-      return fail(format("element {} has no properties", element.name));
-    const Result<std::string> rows = pack_element(body, element);
+    const Result<std::string> rows = pack_element(body, element, [](const auto&, const auto&) {});
+    if (!rows) return tl::unexpected(rows.error());
+    if (element.name == "vertex") return unpack(packed_cloud(*rows, element));
+  }
+  return fail(std::string(kNoVertices));
+}
+
+/// Cuts a polygon into the fan of triangles around its first corner; a point or a line adds nothing.
+void append_polygon(TriangleMesh& mesh, const std::vector<double>& corners) {
+  // What is no index of a vertex becomes -1, which check_mesh refuses.
+  const auto index = [&](std::size_t k) {
+    const bool is_int = corners[k] >= 0.0 && corners[k] <= std::numeric_limits<int>::max();
+    return is_int ? static_cast<int>(corners[k]) : -1;
+  };
+  for (std::size_t k = 2; k < corners.size(); ++k)
+    mesh.triangles.emplace_back(index(0), index(k - 1), index(k));
+}
+
+Result<std::vector<Eigen::Vector3f>> unpack_vertices(std::string_view rows, const PlyElement& element) {
+  PackedCloud packed = packed_cloud(rows, element);
+  packed.intensity.reset();
+  packed.time.reset();
+  return unpack(packed).and_then([](CloudFile file) -> Result<std::vector<Eigen::Vector3f>> {
+    // Left out as in a cloud, they would shift the indices of the faces.
+    if (file.num_skipped_nan > 0) return fail(format("{} vertices are not finite", file.num_skipped_nan));
+    return std::move(file.cloud.points);
+  });
+}
+
+template <class Body>
+Result<TriangleMesh> read_polygons(Body body, const PlyHeader& header) {
+  TriangleMesh mesh;
+  bool has_vertices = false;
+  for (const PlyElement& element : header.elements) {
+    const auto on_list = [&](const PlyProperty& list, const std::vector<double>& values) {
+      const bool is_polygon = list.name == "vertex_indices" || list.name == "vertex_index";
+      if (is_polygon && element.name == "face") append_polygon(mesh, values);
+    };
+    const Result<std::string> rows = pack_element(body, element, on_list);
     if (!rows) return tl::unexpected(rows.error());
     if (element.name != "vertex") continue;
-    PackedCloud packed;
-    packed.bytes = *rows;
-    packed.num_points = element.count;
-    const std::size_t stride = element.count == 0 ? 0 : rows->size() / element.count;
-    std::size_t offset = 0;
-    for (const PlyProperty& property : element.properties) {
-      if (property.count_type) continue;
-      assign_field(packed, property.name, {property.type, offset, stride});
-      offset += size_of(property.type);
-    }
-    return unpack(packed);
+    Result<std::vector<Eigen::Vector3f>> vertices = unpack_vertices(*rows, element);
+    if (!vertices) return tl::unexpected(vertices.error());
+    mesh.vertices = std::move(*vertices);
+    has_vertices = true;
   }
-  return fail("the header has no element 'vertex'");
+  if (!has_vertices) return fail(std::string(kNoVertices));
+  return mesh;
+}
+
+/// Calls `use(body, header)` with the body that the header announces.
+template <class T, class Use>
+Result<T> read_body(std::string_view bytes, const Use& use) {
+  LineReader lines(bytes);
+  const Result<PlyHeader> header = read_header(lines);
+  if (!header) return tl::unexpected(header.error());
+  if (header->data == PlyData::ascii) return use(AsciiBody(lines), *header);
+  const std::endian order =
+      header->data == PlyData::binary_big_endian ? std::endian::big : std::endian::little;
+  return use(BinaryBody(bytes, lines.offset(), order), *header);
 }
 
 std::string_view name_of(PlyData data) {
@@ -257,13 +333,21 @@ std::string ascii_rows(const PointCloud& cloud) {
 }  // namespace
 
 Result<CloudFile> read_ply(std::string_view bytes) {
+  return read_body<CloudFile>(bytes,
+                              [](auto body, const PlyHeader& header) { return read_vertices(body, header); });
+}
+
+Result<TriangleMesh> read_ply_mesh(std::string_view bytes) {
+  return read_body<TriangleMesh>(
+      bytes, [](auto body, const PlyHeader& header) { return read_polygons(body, header); });
+}
+
+bool ply_has_faces(std::string_view bytes) {
   LineReader lines(bytes);
   const Result<PlyHeader> header = read_header(lines);
-  if (!header) return tl::unexpected(header.error());
-  if (header->data == PlyData::ascii) return read_vertices(AsciiBody(lines), *header);
-  const std::endian order =
-      header->data == PlyData::binary_big_endian ? std::endian::big : std::endian::little;
-  return read_vertices(BinaryBody(bytes, lines.offset(), order), *header);
+  return header && std::ranges::any_of(header->elements, [](const PlyElement& element) {
+           return element.name == "face" && element.count > 0;
+         });
 }
 
 std::string write_ply(const PointCloud& cloud, PlyData data) {

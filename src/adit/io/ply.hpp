@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// PLY, the Stanford polygon format: point clouds (meshes are read by mesh_files.hpp).
+/// PLY, the Stanford polygon format: point clouds and meshes in memory (cloud_files.hpp and mesh_files.hpp
+/// read files).
 #pragma once
 
 #include <string>
@@ -16,6 +17,15 @@ namespace adit {
 /// time_offset, timestamp; units as in pcd.hpp). Other properties, list properties and elements are stepped
 /// over. Errors name the header line or the byte offset.
 Result<CloudFile> read_ply(std::string_view bytes);
+
+/// Reads the vertices and the polygons of a mesh: the lists `vertex_indices` (or `vertex_index`) of the
+/// element `face`, each cut into the fan of triangles around its first corner, which is right for convex
+/// polygons. Errors as above, also for a vertex that is not finite and a truncated list; `check_mesh` is the
+/// caller's.
+Result<TriangleMesh> read_ply_mesh(std::string_view bytes);
+
+/// Whether the header announces faces, so that the file is a mesh rather than a cloud.
+[[nodiscard]] bool ply_has_faces(std::string_view bytes);
 
 enum class PlyData { ascii, binary_little_endian, binary_big_endian };
 
