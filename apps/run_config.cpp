@@ -7,6 +7,7 @@ namespace adit::app {
 RunConfig::RunConfig() {
   loops.registration.refine = false;
   loops.registration.min_overlap = 0.0;
+  loops.registration.min_inliers = 30;
 }
 
 Fields fields_of(RunConfig& c) {

@@ -12,7 +12,7 @@ namespace adit {
 /// paper says so). The defaults suit tubes of 7 to 10 m: with the cloud cropped at 30 m, a straight tube's
 /// box is as wide as the tube, and a junction's reaches down the side passage.
 struct TunnelFilterConfig {
-  double width_threshold_m = 14.0;
+  double width_threshold_m = 20.0;
   double max_range_m = 30.0;
 };
 inline Fields fields_of(TunnelFilterConfig& c) {

@@ -14,9 +14,9 @@
 namespace adit {
 
 struct PlaceIndexConfig {
-  /// Swarm-SLAM's similarity of 0.8, the system that the paper follows (the paper leaves its value open; Scan
+  /// Swarm-SLAM's similarity of 0.9, the system that the paper follows (the paper leaves its value open; Scan
   /// Context's own is 0.13).
-  double max_distance = 0.2;
+  double max_distance = 0.1;
   int num_candidates = 10;
   int exclude_recent = 50;
   std::string search = "ring_key";  ///< ring_key | brute_force

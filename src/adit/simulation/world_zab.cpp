@@ -77,10 +77,10 @@ std::array<Tube, kNumTubes> draw_tubes(double curvature_factor, Rng& rng) {
 std::vector<Passage> draw_passages(double spacing_factor, Rng& rng) {
   constexpr double kApart = 28.0;
   const auto near = [&](double distance) { return distance + rng.uniform(-7.0, 7.0); };
-  std::vector<Passage> passages{{0, near(138.0), 0.0, PassageKind::plain, {}},
+  std::vector<Passage> passages{{0, near(100.0), 0.0, PassageKind::plain, {}},
                                 {1, near(162.0), 0.0, PassageKind::chamber, {}},
                                 {1, near(255.0), 0.0, PassageKind::winding, {}},
-                                {2, near(302.0), 0.0, PassageKind::plain, {}}};
+                                {2, near(330.0), 0.0, PassageKind::plain, {}}};
   for (std::size_t tube = 0; tube + 1 < kNumTubes; ++tube)
     for (double at = rng.uniform(35.0, 70.0); at < kLength - 30.0;
          at += spacing_factor * rng.uniform(45.0, 110.0)) {
@@ -89,7 +89,7 @@ std::vector<Passage> draw_passages(double spacing_factor, Rng& rng) {
               passages, [&](const Passage& p) { return p.tube != tube || std::abs(p.from - at) > kApart; }))
         passages.push_back({tube, at, 0.0, kind, {}});
     }
-  for (Passage& passage : passages) passage.to = passage.from + rng.uniform(-5.0, 5.0);
+  for (Passage& passage : passages) passage.to = passage.from + rng.uniform(-10.0, 10.0);
   return passages;
 }
 
@@ -110,31 +110,35 @@ Polyline passage_line(const Passage& passage, const std::array<Tube, kNumTubes>&
 
 void add_passage(WorldPlan& plan, Passage& passage, std::array<Tube, kNumTubes>& tubes, Rng& rng) {
   passage.line = passage_line(passage, tubes);
-  const double width = rng.uniform(3.4, 4.0);
-  const Arch arch{width, rng.uniform(3.1, 3.5), rng.uniform(1.3, 1.6), 16};
+  // No two alike: built at different times for people, cables or vehicles.
+  const double width = rng.uniform(3.4, 6.0);
+  const Arch arch{width, rng.uniform(3.1, 4.6), rng.uniform(1.3, 2.0), 16};
   add_closed_tunnel(plan, arch_profile(arch), passage.line);
   if (passage.kind == PassageKind::chamber) {
     const double middle = 0.5 * length_of(passage.line) + rng.uniform(-2.0, 2.0);
-    plan.spaces.push_back(sweep(arch_profile({6.2, 4.2, 2.2, 20}),
-                                part_of(passage.line, middle - 3.5, middle + 3.5), Ends::closed));
+    const double half_length = rng.uniform(2.5, 5.0);
+    const Arch chamber{width + rng.uniform(1.5, 4.0), rng.uniform(4.8, 6.0), 2.4, 20};
+    plan.spaces.push_back(sweep(arch_profile(chamber),
+                                part_of(passage.line, middle - half_length, middle + half_length),
+                                Ends::closed));
   }
-  constexpr double kMargin = 4.5;
-  tubes[passage.tube].taken.push_back({1.0, passage.from - kMargin, passage.from + kMargin});
-  tubes[passage.tube + 1].taken.push_back({-1.0, passage.to - kMargin, passage.to + kMargin});
+  const double margin = 0.5 * width + 3.0;
+  tubes[passage.tube].taken.push_back({1.0, passage.from - margin, passage.from + margin});
+  tubes[passage.tube + 1].taken.push_back({-1.0, passage.to - margin, passage.to + margin});
 }
 
 /// A stretch of road tube that is wider on one side, with a machine in it.
 void add_lay_by(WorldPlan& plan, Tube& tube, Rng& rng) {
-  constexpr double kBayLength = 30.0;
+  const double bay_length = rng.uniform(20.0, 40.0);
   constexpr int kAttempts = 40;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const double side = side_of(rng);
-    const double begin = rng.uniform(20.0, kLength - 50.0);
-    if (!tube.is_free(side, begin - 6.0, begin + kBayLength + 6.0)) continue;
+    const double begin = rng.uniform(20.0, kLength - 60.0);
+    if (!tube.is_free(side, begin - 6.0, begin + bay_length + 6.0)) continue;
     plan.spaces.push_back(sweep(shifted(arch_profile({10.0, 6.5, 2.0, 40}), 3.0 * side),
-                                part_of(tube.line, begin, begin + kBayLength), Ends::closed));
-    add_machine(plan, tube.site(side, begin + rng.uniform(8.0, 22.0)), 6.2);
-    tube.taken.push_back({side, begin - 6.0, begin + kBayLength + 6.0});
+                                part_of(tube.line, begin, begin + bay_length), Ends::closed));
+    add_machine(plan, tube.site(side, begin + rng.uniform(8.0, bay_length - 8.0)), 6.2);
+    tube.taken.push_back({side, begin - 6.0, begin + bay_length + 6.0});
     return;
   }
 }
