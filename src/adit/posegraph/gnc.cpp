@@ -23,11 +23,33 @@ double lower_gamma(double a, double x) {
   return sum * std::exp(a * std::log(x) - x - std::lgamma(a));
 }
 
+constexpr double kSmallestMu =
+    1e-6;                           // below, loops weigh too little to tie anything down in double precision
+constexpr double kLargestMu = 1e3;  // above, the surrogate is the truncated cost itself
+constexpr double kNear = 4.0;       // chi2 over the bound: twice its standard deviations
+constexpr int kMaxRounds = 20;      // of settling; a few are the rule
+
+template <class P>
+std::size_t num_rejected(const Solution<P>& s) {
+  return static_cast<std::size_t>(std::ranges::count_if(s.edge_weights, [](double w) { return w < 0.5; }));
+}
+
 // Prop. 4 of the paper: closed-form weight of a residual's chi2 at this mu.
 double truncated_weight(double chi2, double bound, double mu) {
   if (chi2 <= mu / (mu + 1.0) * bound) return 1.0;
   if (chi2 >= (mu + 1.0) / mu * bound) return 0.0;
   return std::clamp(std::sqrt(bound * mu * (mu + 1.0) / chi2) - mu, 0.0, 1.0);
+}
+
+// Loops' weights by their chi2; odometry edges are known inliers.
+template <class P, class WeightOfChi2>
+std::vector<double> weights_of(const BasicPoseGraph<P>& graph, const std::vector<double>& costs,
+                               const WeightOfChi2& weight) {
+  std::vector<double> weights(costs.size(), 1.0);
+  for (std::size_t e = 0; e < weights.size(); ++e) {
+    if (graph.edges[e].kind == EdgeKind::loop) weights[e] = weight(costs[e]);
+  }
+  return weights;
 }
 
 template <class P>
@@ -39,14 +61,9 @@ double largest_loop_cost(const BasicPoseGraph<P>& graph, const std::vector<doubl
   return largest;
 }
 
-template <class P>
-std::vector<double> weights_at(const BasicPoseGraph<P>& graph, const std::vector<double>& costs, double bound,
-                               double mu) {
-  std::vector<double> weights(costs.size(), 1.0);
-  for (std::size_t e = 0; e < weights.size(); ++e) {
-    if (graph.edges[e].kind == EdgeKind::loop) weights[e] = truncated_weight(costs[e], bound, mu);
-  }
-  return weights;
+// Remark 5: the smallest mu at which the surrogate is still convex for the largest residual.
+double first_mu(double largest_chi2, double bound) {
+  return largest_chi2 > bound ? std::max(kSmallestMu, bound / (2.0 * largest_chi2 - bound)) : kLargestMu;
 }
 
 bool all_binary(const std::vector<double>& weights) {
@@ -54,23 +71,107 @@ bool all_binary(const std::vector<double>& weights) {
 }
 
 template <class P>
-void put_poses(BasicPoseGraph<P>& graph, const std::vector<P>& poses) {
+BasicPoseGraph<P> moved(BasicPoseGraph<P> graph, const std::vector<P>& poses) {
   for (std::size_t i = 0; i < poses.size(); ++i) graph.nodes[i].pose = poses[i];
+  return graph;
 }
 
-std::size_t num_rejected(const std::vector<double>& weights) {
-  return static_cast<std::size_t>(std::ranges::count_if(weights, [](double w) { return w < 0.5; }));
-}
-
-// Known inliers have weight 1 whatever the caller said.
+// The search: graph and settings stay, solutions go through.
 template <class P>
-std::vector<double> start_weights(const BasicPoseGraph<P>& graph, std::vector<double> weights) {
-  if (weights.empty()) weights.assign(graph.edges.size(), 1.0);
-  for (std::size_t e = 0; e < weights.size(); ++e) {
-    if (graph.edges[e].kind == EdgeKind::odometry) weights[e] = 1.0;
+class Search {
+ public:
+  Search(const BasicPoseGraph<P>& graph, const GncConfig& config)
+      : graph_(graph), config_(config), bound_(chi2_quantile(config.inlier_probability, P::kDof)) {}
+
+  // Graduated non-convexity from the poses of `s`.
+  [[nodiscard]] Solution<P> graduate(Solution<P> s) const {
+    OptimizerConfig inner = config_.optimizer;
+    inner.initialization = "none";
+    inner.relative_tolerance = std::max(inner.relative_tolerance, 1e-3);
+    inner.max_iterations = std::min(inner.max_iterations, 5);
+    std::vector<double> costs = edge_costs(graph_, s.poses);
+    double mu = first_mu(largest_loop_cost(graph_, costs), bound_);
+    for (int outer = 0; s.ok() && outer < config_.max_outer_iterations; ++outer, mu *= config_.mu_step) {
+      const auto weights =
+          weights_of(graph_, costs, [&](double chi2) { return truncated_weight(chi2, bound_, mu); });
+      if (mu >= kLargestMu || all_binary(weights)) break;
+      s = continued(s, s.poses, inner, weights);
+      costs = edge_costs(graph_, s.poses);
+    }
+    return s;
   }
-  return weights;
-}
+
+  // Alternates between the poses for these loops and the loops for these poses; both lower the objective, so
+  // that it ends. True loops that were lost on the way come back.
+  [[nodiscard]] Solution<P> settle(const Solution<P>& graduated) const {
+    Solution<P> settled = alternate(graduated, bound_);
+    // A loop outside the bound may lie inside once it takes part: those near it get a second chance.
+    Solution<P> generous = alternate(settled, kNear * bound_);
+    settled.iterations = generous.iterations;
+    return generous.ok() && objective(generous) < objective(settled) ? generous : settled;
+  }
+
+  // The truncated least-squares objective.
+  [[nodiscard]] double objective(const Solution<P>& s) const {
+    const std::vector<double> costs = edge_costs(graph_, s.poses);
+    double sum = 0.0;
+    for (std::size_t e = 0; e < costs.size(); ++e) {
+      sum += graph_.edges[e].kind == EdgeKind::loop ? std::min(costs[e], bound_) : costs[e];
+    }
+    return sum;
+  }
+
+  // Nothing hints at a better explanation: no odometry edge is off by more than twice the bound's standard
+  // deviations, at most one loop in ten was rejected, and no part of the graph came loose.
+  [[nodiscard]] bool is_clearly_fine(const Solution<P>& s) const {
+    if (s.status != SolveStatus::converged) return false;
+    const std::vector<double> costs = edge_costs(graph_, s.poses);
+    std::size_t num_loops = 0;
+    for (std::size_t e = 0; e < costs.size(); ++e) {
+      if (graph_.edges[e].kind == EdgeKind::loop)
+        ++num_loops;
+      else if (costs[e] > kNear * bound_)
+        return false;
+    }
+    return 10 * num_rejected(s) <= num_loops && connected_components(graph_, s.edge_weights).anchors.size() ==
+                                                    connected_components(graph_).anchors.size();
+  }
+
+ private:
+  // Loops within `first_bound` take part in the first round, those within the bound in the others.
+  [[nodiscard]] Solution<P> alternate(Solution<P> s, double first_bound) const {
+    OptimizerConfig warm = config_.optimizer;
+    warm.initialization = "none";
+    for (int round = 0; s.ok() && round < kMaxRounds; ++round) {
+      const double bound = round == 0 ? first_bound : bound_;
+      const auto weights = weights_of(graph_, edge_costs(graph_, s.poses),
+                                      [&](double chi2) { return chi2 <= bound ? 1.0 : 0.0; });
+      if (round > 0 && weights == s.edge_weights) break;
+      Solution<P> next = continued(s, s.poses, warm, weights);
+      if (round == 0) {
+        // A chain that false loops have bent beyond what the solver straightens is found anew.
+        Solution<P> anew = continued(next, poses_of(graph_), config_.optimizer, weights);
+        next.iterations = anew.iterations;
+        if (anew.ok() && anew.cost_final < next.cost_final) next = std::move(anew);
+      }
+      s = std::move(next);
+    }
+    return s;
+  }
+
+  // One more solve, counted on top of those before.
+  [[nodiscard]] Solution<P> continued(const Solution<P>& before, const std::vector<P>& start,
+                                      const OptimizerConfig& config,
+                                      const std::vector<double>& weights) const {
+    Solution<P> s = optimize(moved(graph_, start), config, weights);
+    s.iterations += before.iterations;
+    return s;
+  }
+
+  const BasicPoseGraph<P>& graph_;
+  const GncConfig& config_;
+  double bound_;
+};
 
 }  // namespace
 
@@ -88,49 +189,29 @@ double chi2_quantile(double probability, int dof) {
 }
 
 template <class P>
-Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config,
-                         const std::vector<double>& initial_weights) {
-  ADIT_CHECK(initial_weights.empty() || initial_weights.size() == graph.edges.size(),
-             "one weight an edge, or none");
-  const double bound = chi2_quantile(config.inlier_probability, P::kDof);
-  BasicPoseGraph<P> moving = graph;  // carries the poses from one outer iteration to the next
-  std::vector<double> weights = start_weights(graph, initial_weights);
-  Solution<P> first = optimize(moving, config.optimizer, weights);
-  if (!first.ok()) return first;
-  const double cost_initial = first.cost_initial;
-  int iterations = first.iterations;
-  put_poses(moving, first.poses);
-  std::vector<double> costs = edge_costs(moving, first.poses);
-  const double largest = largest_loop_cost(graph, costs);
-
-  // Remark 5: the smallest mu at which the surrogate is still convex for the largest residual.
-  double mu = largest > bound ? std::max(1e-6, bound / (2.0 * largest - bound)) : 1e6;
-  OptimizerConfig inner = config.optimizer;
-  inner.initialization = "none";
-  inner.relative_tolerance = std::max(inner.relative_tolerance, 1e-3);
-  inner.max_iterations = std::min(inner.max_iterations, 5);
-  for (int outer = 0; outer < config.max_outer_iterations; ++outer, mu *= config.mu_step) {
-    weights = weights_at(graph, costs, bound, mu);
-    if (mu > 1e3 || (outer > 0 && all_binary(weights))) break;
-    const Solution<P> step = optimize(moving, inner, weights);
-    iterations += step.iterations;
-    if (!step.ok()) return step;
-    put_poses(moving, step.poses);
-    costs = edge_costs(moving, step.poses);
+Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config) {
+  const Search<P> search(graph, config);
+  OptimizerConfig none = config.optimizer;
+  none.initialization = "none";
+  none.max_iterations = 0;
+  const Solution<P> given = optimize(graph, none);
+  if (!given.ok()) return given;
+  Solution<P> best = search.settle(search.graduate(given));
+  if (!search.is_clearly_fine(best)) {
+    Solution<P> other = optimize(graph, config.optimizer);
+    if (other.ok()) other = search.settle(search.graduate(std::move(other)));
+    const int iterations = best.iterations + other.iterations;
+    if (other.ok() && (!best.ok() || search.objective(other) < search.objective(best)))
+      best = std::move(other);
+    best.iterations = iterations;
   }
-  for (double& weight : weights) weight = weight < 0.5 ? 0.0 : 1.0;
-  inner = config.optimizer;
-  inner.initialization = "none";
-  Solution<P> last = optimize(moving, inner, weights);
-  last.iterations += iterations;
-  last.cost_initial = cost_initial;
-  last.notes.insert(last.notes.begin(), first.notes.begin(), first.notes.end());
-  const std::size_t rejected = num_rejected(weights);
-  if (rejected > 0) last.notes.push_back(format("{} loops rejected", rejected));
-  return last;
+  best.cost_initial = given.cost_initial;
+  if (const std::size_t rejected = num_rejected(best); rejected > 0)
+    best.notes.push_back(format("{} loops rejected", rejected));
+  return best;
 }
 
-template Solution<Pose> optimize_gnc(const PoseGraph&, const GncConfig&, const std::vector<double>&);
-template Solution<Pose2> optimize_gnc(const PoseGraph2&, const GncConfig&, const std::vector<double>&);
+template Solution<Pose> optimize_gnc(const PoseGraph&, const GncConfig&);
+template Solution<Pose2> optimize_gnc(const PoseGraph2&, const GncConfig&);
 
 }  // namespace adit

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <vector>
-
 #include "adit/core/config.hpp"
 #include "adit/posegraph/optimizer.hpp"
 #include "adit/posegraph/pose_graph.hpp"
@@ -12,7 +10,7 @@ namespace adit {
 
 struct GncConfig {
   double inlier_probability =
-      0.99;              ///< A true loop's chi2 (unhalved) is below chi2inv(this, dof) that often.
+      0.999;             ///< A true loop's chi2 (unhalved) is below chi2inv(this, dof) that often.
   double mu_step = 1.4;  ///< Factor on the control parameter from one outer iteration to the next.
   int max_outer_iterations = 100;
   OptimizerConfig optimizer;
@@ -28,16 +26,19 @@ inline Fields fields_of(GncConfig& c) {
 }
 
 /// Pose-graph optimization that finds the false loops itself: graduated non-convexity with truncated least
-/// squares. Odometry edges are known inliers and keep weight 1; every loop ends with a weight in [0, 1], 0
-/// for rejected ones. The bound is on unhalved chi2 (c^2 = chi2inv(p, dof): 16.81 at 6 dof, 11.34 at 3),
-/// which is GTSAM's on halved errors. Each outer iteration starts from the poses of the one before.
-/// `initial_weights` (one an edge, or empty: all 1) are the loops' weights of the first solve, e.g. from
-/// pairwise consistency; they may recover from any value. Source: Yang, Antonante, Tzoumas, Carlone,
-/// "Graduated Non-Convexity for Robust Spatial Perception" (RA-L 2020), Proposition 4 (weights), Remark 5
-/// (mu).
+/// squares. Odometry edges are known inliers and keep weight 1; every loop ends with weight 1, or 0 when
+/// rejected. The bound is on unhalved chi2 (c^2 = chi2inv(p, dof): 22.46 at 6 dof, 16.27 at 3), which is
+/// GTSAM's on halved errors. Each outer iteration starts from the poses of the one before.
+///
+/// The first weights come from the residuals at the graph's own poses, so that a good guess is used. Unless
+/// that ends clearly well (odometry unbent, few loops rejected, nothing come loose), a second search starts
+/// from the least-squares solution with all loops, as a bad guess needs it, and the lower truncated cost, the
+/// sum over odometry of chi2 plus the sum over loops of min(chi2, c^2), wins. Each search settles at the end:
+/// least squares over the loops within the bound, in turn with choosing these loops anew, until they stay
+/// the same. Source: Yang, Antonante, Tzoumas, Carlone, "Graduated Non-Convexity for Robust Spatial
+/// Perception" (RA-L 2020), Proposition 4 (weights), Remark 5 (mu).
 template <class P>
-[[nodiscard]] Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config = {},
-                                       const std::vector<double>& initial_weights = {});
+[[nodiscard]] Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config = {});
 
 /// Upper quantile of the chi-square distribution: P(x <= result) = probability. Accurate to 1e-9 relative.
 [[nodiscard]] double chi2_quantile(double probability, int dof);

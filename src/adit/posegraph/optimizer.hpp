@@ -62,8 +62,8 @@ struct Solution {
 };
 
 /// Minimises chi2 over all poses. Each connected component keeps its anchor's pose. `edge_weights` multiplies
-/// the information of each edge (empty: all 1); edges of weight 0 do not take part, but still link
-/// components. Deterministic: the same bytes with any number of threads.
+/// the information of each edge (empty: all 1); edges of weight 0 take no part: they
+/// link nothing. Deterministic: the same bytes with any number of threads.
 template <class P>
 [[nodiscard]] Solution<P> optimize(const BasicPoseGraph<P>& graph, const OptimizerConfig& config = {},
                                    const std::vector<double>& edge_weights = {});
