@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "adit/fleet/agent.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "adit/core/parallel.hpp"
@@ -27,6 +28,19 @@ RobotGraph graph_of(const RobotMap& map) {
     graph.nodes.push_back({map.keyframes[k].stamp, map.keyframes[k].T_odom_base, map.step_covariances[k]});
   }
   return graph;
+}
+
+/// The back-end inverts the covariance of each step; the first keyframe has none.
+bool is_usable(const GraphPart& part) {
+  for (std::size_t i = part.first_index == 0 ? 1 : 0; i < part.nodes.size(); ++i) {
+    const Matrix6& covariance = part.nodes[i].step_covariance;
+    if (!covariance.allFinite() || covariance.llt().info() != Eigen::Success) return false;
+  }
+  return true;
+}
+
+bool same_grid(const ScanContext& a, const ScanContext& b) {
+  return a.num_rings == b.num_rings && a.num_sectors == b.num_sectors;
 }
 
 std::vector<std::uint32_t> searchable_indices(const RobotMap& map) {
@@ -91,68 +105,93 @@ std::vector<Message> Agent::meet(RobotId peer) const { return {to(peer, hello())
 
 std::vector<Message> Agent::on(const Message& message) {
   ADIT_CHECK(message.to == map_->id, "an agent gets its own messages only");
+  if (message.from == map_->id) return {};  // an echo; answering it would never end
   return std::visit([&](const auto& body) { return on(message.from, body); }, message.body);
 }
 
 Agent::Replies Agent::on(RobotId from, const Hello& theirs) {
   Replies replies;
+  const auto append = [&](const Replies& more) { replies.insert(replies.end(), more.begin(), more.end()); };
   if (!theirs.answer) {
     Hello mine = hello();
     mine.answer = true;
     replies.push_back(to(from, std::move(mine)));
   }
-  const auto known_to_peer = [&](RobotId robot) {
-    const auto known = std::ranges::find(theirs.known, robot, &Hello::Known::robot);
-    return known == theirs.known.end() ? Hello::Known{robot, 0, 0} : *known;
-  };
+  append(graph_news(from, theirs));
+  if (theirs.num_loops != known_.loops.size()) {
+    std::vector<LoopClosure> loops;
+    for (const auto& [ends, loop] : known_.loops) loops.push_back(loop);
+    append(in_messages(from, loops));
+  }
+  // Clouds that were asked for in an earlier meeting and never came are asked for again.
+  append(searches(from) ? cloud_requests(from) : place_news(from, theirs));
+  return replies;
+}
+
+Agent::Replies Agent::graph_news(RobotId peer, const Hello& theirs) const {
+  Replies replies;
   for (const auto& [robot, graph] : known_.robots) {
-    const std::size_t has = std::min<std::size_t>(known_to_peer(robot).num_nodes, graph.nodes.size());
+    const auto known = std::ranges::find(theirs.known, robot, &Hello::Known::robot);
+    if (known == theirs.known.end() && graph.nodes.empty()) {  // nothing to send but that it exists
+      replies.push_back(to(peer, GraphPart{robot, graph.name, 0, {}}));
+    }
+    const std::size_t has =
+        known == theirs.known.end() ? 0 : std::min<std::size_t>(known->num_nodes, graph.nodes.size());
     const std::vector<GraphNode> rest(graph.nodes.begin() + static_cast<std::ptrdiff_t>(has),
                                       graph.nodes.end());
     in_parts(rest, kNodesPerMessage, [&](std::size_t begin, std::vector<GraphNode> nodes) {
       replies.push_back(
-          to(from, GraphPart{robot, graph.name, static_cast<std::uint32_t>(has + begin), std::move(nodes)}));
+          to(peer, GraphPart{robot, graph.name, static_cast<std::uint32_t>(has + begin), std::move(nodes)}));
     });
-  }
-  if (theirs.num_loops != known_.loops.size()) {
-    std::vector<LoopClosure> loops;
-    for (const auto& [ends, loop] : known_.loops) loops.push_back(loop);
-    in_parts(loops, kLoopsPerMessage, [&](std::size_t, std::vector<LoopClosure> part) {
-      replies.push_back(to(from, Loops{std::move(part)}));
-    });
-  }
-  if (map_->id > from) {  // the robot with the smaller id searches
-    std::vector<std::uint32_t> indices = searchable_indices(*map_);
-    const std::uint32_t has =
-        std::min(known_to_peer(map_->id).num_places, static_cast<std::uint32_t>(indices.size()));
-    indices.erase(indices.begin(), indices.begin() + has);
-    in_parts(indices, kPlacesPerMessage, [&](std::size_t begin, const std::vector<std::uint32_t>& part) {
-      Places places;
-      places.first = has + static_cast<std::uint32_t>(begin);
-      for (const std::uint32_t k : part) places.places.push_back({k, map_->places[k]});
-      places.last = begin + part.size() == indices.size();
-      replies.push_back(to(from, std::move(places)));
-    });
-  } else {  // clouds that were asked for in an earlier meeting and never came
-    const Replies again = cloud_requests(from);
-    replies.insert(replies.end(), again.begin(), again.end());
   }
   return replies;
 }
 
+Agent::Replies Agent::place_news(RobotId peer, const Hello& theirs) const {
+  std::vector<std::uint32_t> indices = searchable_indices(*map_);
+  const auto known = std::ranges::find(theirs.known, map_->id, &Hello::Known::robot);
+  const std::uint32_t has = known == theirs.known.end()
+                                ? 0
+                                : std::min(known->num_places, static_cast<std::uint32_t>(indices.size()));
+  indices.erase(indices.begin(), indices.begin() + has);
+  Replies replies;
+  in_parts(indices, kPlacesPerMessage, [&](std::size_t begin, const std::vector<std::uint32_t>& part) {
+    Places places;
+    places.first = has + static_cast<std::uint32_t>(begin);
+    for (const std::uint32_t k : part) places.places.push_back({k, map_->places[k]});
+    places.last = begin + part.size() == indices.size();
+    replies.push_back(to(peer, std::move(places)));
+  });
+  return replies;
+}
+
+Agent::Replies Agent::in_messages(RobotId peer, const std::vector<LoopClosure>& loops) const {
+  Replies replies;
+  in_parts(loops, kLoopsPerMessage, [&](std::size_t, std::vector<LoopClosure> part) {
+    replies.push_back(to(peer, Loops{std::move(part)}));
+  });
+  return replies;
+}
+
 Agent::Replies Agent::on(RobotId /*from*/, const GraphPart& part) {
-  if (part.owner == map_->id) return {};
+  if (part.owner == map_->id || !is_usable(part)) return {};
+  const auto known = known_.robots.find(part.owner);
+  const std::size_t has = known == known_.robots.end() ? 0 : known->second.nodes.size();
+  if (part.first_index > has) return {};  // a part before it was lost; the next Hello asks for it
   RobotGraph& graph = known_.robots[part.owner];
   graph.name = part.name;
-  if (part.first_index > graph.nodes.size())
-    return {};  // a part before it was lost; the next Hello asks for it
-  for (std::size_t i = graph.nodes.size() - part.first_index; i < part.nodes.size(); ++i) {
+  for (std::size_t i = has - part.first_index; i < part.nodes.size(); ++i) {
     graph.nodes.push_back(part.nodes[i]);
   }
   return {};
 }
 
 Agent::Replies Agent::on(RobotId from, const Places& part) {
+  // Contexts of another grid cannot be compared with ours: a robot configured otherwise shares no places.
+  const bool comparable = std::ranges::all_of(part.places, [&](const Places::Place& place) {
+    return !map_->places.empty() && same_grid(place.context, map_->places.front());
+  });
+  if (!searches(from) || !comparable) return {};
   Peer& peer = peers_[from];
   if (part.first > peer.places.size()) return {};
   for (const Places::Place& place : part.places) peer.places.emplace(place.index, place.context);
@@ -246,15 +285,14 @@ Agent::Replies Agent::on(RobotId from, const Clouds& clouds) {
   parallel_for_each(jobs.size(),
                     [&](std::size_t i) { found.loops[i] = verify(jobs[i].first, theirs[jobs[i].second]); });
   for (const LoopClosure& loop : found.loops) known_.loops.try_emplace({loop.from, loop.to}, loop);
-  Replies replies;
-  in_parts(found.loops, kLoopsPerMessage, [&](std::size_t, std::vector<LoopClosure> part) {
-    replies.push_back(to(from, Loops{std::move(part)}));
-  });
-  return replies;
+  return in_messages(from, found.loops);
 }
 
 Agent::Replies Agent::on(RobotId /*from*/, const Loops& loops) {
-  for (const LoopClosure& loop : loops.loops) known_.loops.try_emplace({loop.from, loop.to}, loop);
+  for (const LoopClosure& loop : loops.loops) {
+    // The graph that a loop's ends belong to may still be on its way; `solve` leaves the loop out until then.
+    if (loop.from.robot < loop.to.robot) known_.loops.try_emplace({loop.from, loop.to}, loop);
+  }
   return {};
 }
 

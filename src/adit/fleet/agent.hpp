@@ -39,7 +39,8 @@ class FeatureStore {
 ///
 /// Of two robots that meet, the one with the smaller id searches: it receives the other's descriptors, asks
 /// for the clouds of promising matches, registers them and shares the loops. Messages may be repeated or
-/// lost; a later meeting sends what is missing.
+/// lost; a later meeting sends what is missing. What makes no sense (loops between keyframes that do not
+/// exist, descriptors on another grid, covariances that are none) is left out and stops nobody.
 class Agent {
  public:
   /// `features` may be shared between agents that were made from the same map.
@@ -65,6 +66,8 @@ class Agent {
   };
 
   [[nodiscard]] Hello hello() const;
+  /// Of two robots the one with the smaller id searches.
+  [[nodiscard]] bool searches(RobotId peer) const { return map_->id < peer; }
   Replies on(RobotId from, const Hello& hello);
   Replies on(RobotId from, const GraphPart& part);
   Replies on(RobotId from, const Places& places);
@@ -72,6 +75,9 @@ class Agent {
   Replies on(RobotId from, const Clouds& clouds);
   Replies on(RobotId from, const Loops& loops);
 
+  [[nodiscard]] Replies graph_news(RobotId peer, const Hello& theirs) const;
+  [[nodiscard]] Replies place_news(RobotId peer, const Hello& theirs) const;
+  [[nodiscard]] Replies in_messages(RobotId peer, const std::vector<LoopClosure>& loops) const;
   void find_candidates(RobotId peer_id);
   [[nodiscard]] Replies cloud_requests(RobotId peer_id) const;
   [[nodiscard]] LoopClosure verify(const LoopCandidate& candidate, const Features& match) const;

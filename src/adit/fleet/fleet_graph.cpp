@@ -192,6 +192,11 @@ std::string refusal(const FleetGraph& fleet, const PairOutcome& pair, std::size_
   return format("only {} of {} loops agree with the odometries of both robots", num_used, pair.num_loops);
 }
 
+bool knows(const FleetGraph& fleet, KeyframeId id) {
+  const auto robot = fleet.robots.find(id.robot);
+  return robot != fleet.robots.end() && id.index < robot->second.nodes.size();
+}
+
 std::vector<PairOutcome> all_pairs(const FleetGraph& fleet) {
   std::vector<PairOutcome> pairs;
   for (auto a = fleet.robots.begin(); a != fleet.robots.end(); ++a) {
@@ -310,7 +315,8 @@ Fields fields_of(BackEndConfig& c) {
 FleetSolution solve(const FleetGraph& fleet, const BackEndConfig& config) {
   FleetSolution solution;
   for (const auto& [ends, loop] : fleet.loops) {
-    if (loop.verdict == LoopVerdict::accepted) solution.loops.push_back({loop, false, 0.0});
+    if (loop.verdict != LoopVerdict::accepted || !knows(fleet, loop.from) || !knows(fleet, loop.to)) continue;
+    solution.loops.push_back({loop, false, 0.0});
   }
   solution.pairs = all_pairs(fleet);
   run_pcm(fleet, config, solution);

@@ -80,7 +80,8 @@ struct FleetSolution {
 };
 
 /// PCM per pair of robots, then GNC per connected component with odometry as known inliers.
-/// A robot without loops is a component of its own, at its odometry.
+/// A robot without loops is a component of its own, at its odometry. Loops whose keyframes are not (yet)
+/// known take no part.
 [[nodiscard]] FleetSolution solve(const FleetGraph& fleet, const BackEndConfig& config);
 
 }  // namespace adit

@@ -117,8 +117,30 @@ TEST(FleetGraph, RobotWithoutKeyframesStopsNobody) {
   EXPECT_EQ(solution.T_world_keyframe.at({2}).size(), kNodes);
   for (const PairOutcome& pair : solution.pairs) {
     EXPECT_EQ(pair.merged, pair.a == RobotId{0} && pair.b == RobotId{2});
-    if (!pair.merged) EXPECT_NE(pair.refused_reason.find("left no keyframe of robot_1"), std::string::npos);
+    const bool said = pair.refused_reason.find("left no keyframe of robot_1") != std::string::npos;
+    EXPECT_NE(pair.merged, said) << pair.refused_reason;
   }
+}
+
+TEST(FleetGraph, LoopsOfKeyframesThatAreNotKnownYetWaitForThem) {
+  FleetGraph whole = robots_without_loops(3);
+  for (std::uint32_t k = 5; k < 35; k += 5) {
+    add_loop(whole, {{0}, k}, {{1}, k});
+    add_loop(whole, {{1}, k}, {{2}, k});
+  }
+  FleetGraph early = whole;
+  early.robots.at({1}).nodes.resize(12);  // of six loops to it, those of keyframes 5 and 10 can be used
+  early.robots.erase({2});
+  const FleetSolution first = solve(early, {});
+  ASSERT_EQ(first.loops.size(), 2U);
+  ASSERT_EQ(first.components.size(), 1U);
+  EXPECT_TRUE(first.pairs[0].merged) << first.pairs[0].refused_reason;
+  EXPECT_EQ(first.T_world_keyframe.at({1}).size(), 12U);
+
+  early.robots = whole.robots;  // the rest arrives
+  const FleetSolution second = solve(early, {});
+  EXPECT_EQ(second.loops.size(), 12U);
+  EXPECT_LT(largest_error(second, second.components.at(0)), 0.05);
 }
 
 }  // namespace

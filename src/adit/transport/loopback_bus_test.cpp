@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <deque>
+
+#include "adit/core/rng.hpp"
 #include "support/box_world.hpp"
+#include "support/wire.hpp"
 
 namespace adit {
 namespace {
@@ -14,6 +18,7 @@ std::vector<Agent> robots_on_a_street(int num) {
   const test::BoxWorld world(11);
   AgentConfig config;
   config.place.max_distance = 0.4;
+  config.registration.voxel_size = 0.6;  // coarse, for speed: boxes of metres
   std::vector<Agent> agents;
   agents.reserve(static_cast<std::size_t>(num));
   for (int r = 0; r < num; ++r) {
@@ -84,6 +89,43 @@ TEST(LoopbackBus, NewsTravelOverARobotInBetween) {
   EXPECT_EQ(known.robots.at({2}).nodes.size(), 12U);
   const FleetSolution solution = agents[0].solve({});
   EXPECT_EQ(solution.components.size(), 1U);
+}
+
+/// All messages of one meeting, in order, as bytes.
+std::vector<std::vector<std::byte>> recorded_meeting(std::vector<Agent>& agents) {
+  std::vector<std::vector<std::byte>> recorded;
+  std::deque<Message> queue;
+  const auto post = [&](const std::vector<Message>& messages) {
+    queue.insert(queue.end(), messages.begin(), messages.end());
+  };
+  post(agents[0].meet({1}));
+  for (; !queue.empty(); queue.pop_front()) {
+    recorded.push_back(encode(queue.front()));
+    post(agents[queue.front().to.value].on(queue.front()));
+  }
+  return recorded;
+}
+
+TEST(LoopbackBus, NonsenseInAValidMessageNeverStopsAnAgent) {
+  std::vector<Agent> sane = robots_on_a_street(2);
+  const std::vector<std::vector<std::byte>> messages = recorded_meeting(sane);
+  std::vector<Agent> agents = robots_on_a_street(2);
+  Rng rng(8);
+  int num_taken = 0;
+  for (int trial = 0; trial < 8; ++trial) {
+    for (std::vector<std::byte> bytes : messages) {
+      for (int i = 0; i < 3; ++i) {
+        const std::size_t at = 3 + rng.below(std::min<std::size_t>(bytes.size() - 11, 400));
+        bytes[at] = static_cast<std::byte>(rng.below(256));
+      }
+      const Result<Message> nonsense = decode(test::resealed(bytes));
+      if (!nonsense.has_value()) continue;
+      ++num_taken;
+      EXPECT_NO_THROW((void)agents[nonsense->to.value].on(*nonsense));
+    }
+  }
+  EXPECT_GT(num_taken, 30);
+  for (const Agent& agent : agents) EXPECT_NO_THROW((void)agent.solve({}));
 }
 
 TEST(LoopbackBus, UnknownRobotIsAnError) {

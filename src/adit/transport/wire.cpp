@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "adit/transport/wire.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -10,6 +11,7 @@
 #include <string>
 
 #include "adit/core/format.hpp"
+#include "adit/core/rng.hpp"
 
 namespace adit {
 namespace {
@@ -279,26 +281,43 @@ std::vector<std::byte> encode(const Message& message) {
   out.scalar(message.to.value);
   out.scalar(static_cast<std::uint8_t>(message.body.index()));
   std::visit([&](const auto& body) { put(out, body); }, message.body);
-  return out.take();
+  std::vector<std::byte> bytes = out.take();
+  const std::uint64_t hash = checksum(bytes);
+  const auto* begin = reinterpret_cast<const std::byte*>(&hash);
+  bytes.insert(bytes.end(), begin, begin + sizeof(hash));
+  return bytes;
+}
+
+std::uint64_t checksum(std::span<const std::byte> bytes) {
+  std::uint64_t hash = mix64(bytes.size());
+  for (std::size_t at = 0; at < bytes.size(); at += sizeof(hash)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + at, std::min(sizeof(word), bytes.size() - at));
+    hash = mix64(hash, word);
+  }
+  return hash;
 }
 
 Result<Message> decode(std::span<const std::byte> bytes) {
-  Reader in(bytes);
-  const auto version = in.scalar<std::uint8_t>();
+  if (bytes.empty()) return fail("message without a byte");
+  const auto version = static_cast<std::uint8_t>(bytes.front());
   if (version != kProtocolVersion) {
     return fail(format("message of protocol version {}, this adit speaks {}", version, kProtocolVersion));
   }
+  constexpr std::size_t kTail = sizeof(std::uint64_t);
+  const std::span<const std::byte> content = bytes.first(bytes.size() - std::min(bytes.size(), kTail));
+  if (content.empty() || Reader(bytes.last(kTail)).scalar<std::uint64_t>() != checksum(content)) {
+    return fail(format("message of {} bytes is cut or damaged: its checksum does not fit", bytes.size()));
+  }
+  Reader in(content.subspan(1));
   Message message;
   message.from.value = in.scalar<std::uint8_t>();
   message.to.value = in.scalar<std::uint8_t>();
   const std::size_t kind = in.scalar<std::uint8_t>();
   std::optional<Body> body = body_of(in, kind);
   if (!body) return fail(format("message of unknown kind {}", kind));
-  if (!in.ok())
-    return fail(
-        format("message of kind {} is cut or damaged near byte {} of {}", kind, in.at(), bytes.size()));
-  if (!in.at_end())
-    return fail(format("message of kind {} has {} bytes too many", kind, bytes.size() - in.at()));
+  if (!in.ok()) return fail(format("message of kind {} makes no sense near byte {}", kind, in.at() + 1));
+  if (!in.at_end()) return fail(format("message of kind {} has more bytes than it needs", kind));
   message.body = std::move(*body);
   return message;
 }

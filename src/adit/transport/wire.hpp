@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,10 +12,13 @@
 
 namespace adit {
 
-/// The bytes of a message: little-endian, a version byte first. Numbers travel exactly, but for cloud points
-/// (16-bit steps of 5 mm, so at most 163 m away; farther ones are left out) and descriptor cells (a byte
-/// each).
+/// The bytes of a message: little-endian, a version byte first, a checksum last. Numbers travel exactly, but
+/// for cloud points (16-bit steps of 5 mm, so at most 163 m away; farther ones are left out) and descriptor
+/// cells (a byte each).
 [[nodiscard]] std::vector<std::byte> encode(const Message& message);
+
+/// What the last eight bytes of a message hold: a hash of all bytes before them. It finds damage, not malice.
+[[nodiscard]] std::uint64_t checksum(std::span<const std::byte> bytes);
 
 /// Reads what `encode` wrote; cut, foreign or damaged bytes are an error that names the place, never a crash.
 [[nodiscard]] Result<Message> decode(std::span<const std::byte> bytes);
