@@ -25,6 +25,7 @@ constexpr double kNoise = 1e-16;
 // Lambda of LM. It is 0, plain Gauss-Newton, until a step fails: damping slows the long waves of a chain
 // most, and these are what loops correct.
 constexpr double kFirstLambda = 1e-6;
+constexpr double kSmallestLambda = 1e-11;
 constexpr double kLargestLambda = 1e8;
 
 template <class P>
@@ -148,7 +149,7 @@ class Minimizer {
     return out;
   }
 
-  static double lower(double lambda) { return lambda <= kFirstLambda ? 0.0 : lambda * 0.1; }
+  static double lower(double lambda) { return lambda <= kSmallestLambda ? 0.0 : lambda * 0.1; }
 
   static void converge(Solution<P>& s, const char* why) {
     s.status = SolveStatus::converged;
