@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "command_line.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
@@ -12,6 +13,10 @@ namespace adit::app {
 
 Program::Program() : cli_("Multi-robot LiDAR SLAM for tunnels, mines and caves", "adit") {
   cli_.require_subcommand(1);
+  cli_.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return std::string("adit: ") + error.what() +
+           "; 'adit --help' and 'adit COMMAND --help' list what there is\n";
+  });
   cli_.set_version_flag("--version", std::string(version()));
   cli_.add_flag("--json", common_.json, "Print the result as JSON on stdout, alone");
   cli_.add_option("--threads", common_.threads, "Threads to use (default: all cores)")
@@ -36,8 +41,20 @@ CLI::App* Program::add_command(const std::string& name, const std::string& descr
   return command;
 }
 
+// CLI11 would only say that a command is missing.
+void Program::check_command(const std::string& name) const {
+  if (name.starts_with('-')) return;
+  std::vector<std::string> known;
+  for (const CLI::App* command : cli_.get_subcommands({})) known.push_back(command->get_name());
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  const std::string nearest = nearest_key(known, name);
+  usage_error("unknown command '" + name + "'" +
+              (nearest.empty() ? "" : ", did you mean '" + nearest + "'?"));
+}
+
 int Program::run(int argc, char** argv) {
   try {
+    if (argc > 1) check_command(argv[1]);
     cli_.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return cli_.exit(error) == 0 ? 0 : 2;

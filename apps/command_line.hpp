@@ -33,6 +33,8 @@ class Program {
   int run(int argc, char** argv);
 
  private:
+  void check_command(const std::string& name) const;
+
   CLI::App cli_;
   Common common_;
   int exit_code_ = 0;

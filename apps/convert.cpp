@@ -10,13 +10,12 @@
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/g2o.hpp"
 #include "adit/io/kitti.hpp"
-#include "adit/io/mcap.hpp"
 #include "adit/io/mesh_files.hpp"
 #include "adit/io/recording_files.hpp"
-#include "adit/io/scan_folder.hpp"
 #include "adit/io/text.hpp"
 #include "adit/io/tum.hpp"
 #include "command_line.hpp"
+#include "recording_output.hpp"
 
 namespace adit::app {
 namespace {
@@ -73,11 +72,14 @@ Result<> convert_trajectory(const fs::path& in, const fs::path& out) {
   return write_trajectory(out, *trajectory);
 }
 
-/// A PLY with faces is a mesh and stays one where the output can hold it.
+Result<> convert_mesh(const fs::path& in, const fs::path& out) {
+  return read_mesh(in).and_then([&](const TriangleMesh& mesh) { return write_mesh(out, mesh); });
+}
+
+/// A PLY with faces is a mesh and stays one where the output can hold it; elsewhere its vertices are the
+/// cloud.
 Result<> convert_cloud(const fs::path& in, const fs::path& out) {
-  if (extension_of(in) == ".ply" && extension_of(out) == ".ply") {
-    if (const Result<TriangleMesh> mesh = read_mesh(in)) return write_mesh(out, *mesh);
-  }
+  if (is_ply_mesh(in) && extension_of(out) == ".ply") return convert_mesh(in, out);
   return read_cloud(in).and_then([&](const PointCloud& cloud) { return write_cloud(out, cloud); });
 }
 
@@ -89,38 +91,32 @@ Result<> convert_graph(const fs::path& in, const fs::path& out) {
   });
 }
 
-Result<> write_recording_to(const Recording& recording, const std::string& in, const fs::path& out) {
-  switch (kind_of(out.string())) {
-    case Kind::recording:
-      return extension_of(out) == ".mcap" ? write_recording(out, recording)
-                                          : write_scan_folder(out, recording);
-    case Kind::trajectory: {
-      // Ground truth where there is one, as nobody else can compute it; the wheels' odometry otherwise.
-      const Trajectory& poses = recording.truth.empty() ? recording.wheel : recording.truth;
-      if (poses.empty())
-        return fail(in + ": has neither ground truth nor wheel odometry; 'adit odometry' computes poses");
-      return write_trajectory(out, poses);
-    }
-    default:
-      return fail(out.string() +
-                  ": a recording becomes .mcap, a folder of clouds, or a trajectory (.tum, .csv, .kitti)");
-  }
+/// Ground truth where there is one, as nobody else can compute it; the wheels' odometry otherwise.
+Result<> convert_poses(const Recording& recording, const std::string& in, const fs::path& out) {
+  const Trajectory& poses = recording.truth.empty() ? recording.wheel : recording.truth;
+  if (!poses.empty()) return write_trajectory(out, poses);
+  return fail(in + ": has neither ground truth nor wheel odometry; 'adit odometry' computes poses");
+}
+
+Result<> convert_recording(const std::string& in, const fs::path& out) {
+  return open_recording(in).and_then([&](const Recording& recording) -> Result<> {
+    if (kind_of(out.string()) == Kind::trajectory) return convert_poses(recording, in, out);
+    Progress progress("scans", recording.num_scans());
+    return write_recording_to(out, recording, progress);
+  });
 }
 
 Result<> convert(const std::string& in, const std::string& out) {
   const Kind from = kind_of(in);
   const Kind to = kind_of(out);
-  if (from == Kind::recording) {
-    return open_recording(in).and_then(
-        [&](const Recording& recording) { return write_recording_to(recording, in, out); });
-  }
-  if (from == Kind::mesh && extension_of(out) == ".ply") {
-    return read_mesh(fs::path(in)).and_then([&](const TriangleMesh& mesh) { return write_mesh(out, mesh); });
-  }
+  catch_interrupts();
+  if (from == Kind::recording && (to == Kind::recording || to == Kind::trajectory))
+    return convert_recording(in, out);
+  if (from == Kind::mesh && extension_of(out) == ".ply") return convert_mesh(in, out);
   if (from == Kind::cloud && to == Kind::cloud) return convert_cloud(in, out);
   if (from == Kind::trajectory && to == Kind::trajectory) return convert_trajectory(in, out);
   if (from == Kind::graph && to == Kind::graph) return convert_graph(in, out);
-  return fail(in + " cannot become " + out + "; 'adit convert --help' lists the pairs");
+  usage_error(in + " cannot become " + out + ", see 'adit convert --help'");
 }
 
 }  // namespace
@@ -138,7 +134,8 @@ void add_convert(Program& program) {
   command->add_option("OUT", paths->out, "What to write; its extension says the format")->required();
   command->footer(
       "recording (.mcap, folder of clouds, FOLDER@even) -> .mcap, folder, or its poses (.tum .csv .kitti)\n"
-      "cloud (.pcd .ply .bin) -> cloud; mesh (.obj .stl .dae .glb .ply) -> .ply\n"
+      "cloud (.pcd .ply .bin) -> cloud; mesh (.obj .stl .dae .glb .ply) -> .ply, and of a .ply the vertices "
+      "-> cloud\n"
       "trajectory (.tum .csv) -> .tum .csv .kitti; graph (.g2o) -> .g2o, rewritten");
 }
 

@@ -60,10 +60,7 @@ Result<Json> mesh_info(const fs::path& path) {
 }
 
 /// A PLY with faces is a mesh, one without a cloud.
-Result<Json> ply_info(const fs::path& path) {
-  Result<Json> mesh = mesh_info(path);
-  return mesh ? mesh : cloud_info(path);
-}
+Result<Json> ply_info(const fs::path& path) { return is_ply_mesh(path) ? mesh_info(path) : cloud_info(path); }
 
 Result<Json> trajectory_info(const fs::path& path) {
   return read_tum(path).map([](const Trajectory& poses) {

@@ -8,10 +8,10 @@
 
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
-#include "adit/io/mcap.hpp"
 #include "adit/io/tum.hpp"
 #include "inputs.hpp"
 #include "progress.hpp"
+#include "recording_output.hpp"
 #include "run_config.hpp"
 
 namespace adit::app {
@@ -45,22 +45,15 @@ Result<std::vector<Recording>> chosen(std::vector<Recording> recordings, const s
   return fail("no robot is called '" + robot + "'; the routes have " + names);
 }
 
-// Both files appear whole or not at all; after Ctrl-C the next scan fails, and with it the file.
-Result<> write(const Options& options, Recording recording, Progress& progress) {
-  recording.read_scan = [cast = std::move(recording.read_scan)](std::size_t i) -> Result<Scan> {
-    if (interrupted()) return fail("interrupted");
-    return cast(i);
-  };
-  const auto count = [&](std::size_t) { progress.advance(); };
-  if (const Result<> done = write_recording(recording_file(options, recording), recording, count); !done) {
-    return done;
-  }
-  return write_tum(truth_file(options, recording), recording.truth);
+Result<> write(const Options& options, const Recording& recording, Progress& progress) {
+  return write_recording_to(recording_file(options, recording), recording, progress).and_then([&] {
+    return write_tum(truth_file(options, recording), recording.truth);
+  });
 }
 
 Result<> write_all(const Options& options, const std::vector<Recording>& recordings) {
   std::error_code error;
-  std::filesystem::create_directories(options.out, error);
+  const bool is_new = std::filesystem::create_directories(options.out, error);
   if (error) return fail(options.out + ": cannot make this folder: " + error.message());
   std::size_t num_scans = 0;
   for (const Recording& recording : recordings) num_scans += recording.num_scans();
@@ -69,7 +62,10 @@ Result<> write_all(const Options& options, const std::vector<Recording>& recordi
   parallel_for_each(recordings.size(),
                     [&](std::size_t i) { written[i] = write(options, recordings[i], progress); });
   const auto failed = std::ranges::find_if(written, [](const Result<>& done) { return !done; });
-  return failed == written.end() ? Result<>() : *failed;
+  if (failed == written.end()) return {};
+  // Recordings that were complete stay; a new folder without any goes.
+  if (is_new) std::filesystem::remove(options.out, error);
+  return *failed;
 }
 
 void print(const Options& options, const std::vector<Recording>& recordings, const Common& common) {

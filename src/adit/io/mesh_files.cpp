@@ -150,6 +150,12 @@ Result<TriangleMesh> read_mesh(std::string_view bytes, const std::string& extens
   return known_extension(extension).and_then(read).and_then(checked);
 }
 
+bool is_ply_mesh(const std::filesystem::path& path) {
+  if (lower_case(path.extension().string()) != ".ply") return false;
+  const Result<std::string> bytes = read_bytes(path);
+  return bytes && ply_has_faces(*bytes);
+}
+
 Result<> write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
   if (Result<> checked = check_mesh(mesh); !checked) return fail(path.string(), checked.error());
   if (lower_case(path.extension().string()) != ".ply")

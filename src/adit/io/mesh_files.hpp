@@ -30,6 +30,9 @@ Result<TriangleMesh> read_mesh(const std::filesystem::path& path);
 /// The same from bytes; `extension` says the format: "ply", "obj", "stl", "dae", "glb".
 Result<TriangleMesh> read_mesh(std::string_view bytes, const std::string& extension);
 
+/// Whether the file is a PLY whose header announces faces; false also when it cannot be read.
+[[nodiscard]] bool is_ply_mesh(const std::filesystem::path& path);
+
 /// Writes a binary PLY; the file appears whole or not at all. The mesh must pass `check_mesh`.
 Result<> write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
 

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+
+#include "adit/core/records.hpp"
+#include "progress.hpp"
+
+namespace adit::app {
+
+/// Writes an .mcap file, or a folder of clouds where `path` has another ending. One step of `progress` a
+/// scan. After Ctrl-C the next scan is an error, so that nothing appears at `path`.
+Result<> write_recording_to(const std::filesystem::path& path, Recording recording, Progress& progress);
+
+}  // namespace adit::app
