@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "adit/posegraph/test_graphs.hpp"
+#include "support/graphs.hpp"
 
 namespace adit {
 namespace {

@@ -26,8 +26,10 @@ double lower_gamma(double a, double x) {
 constexpr double kSmallestMu =
     1e-6;                           // below, loops weigh too little to tie anything down in double precision
 constexpr double kLargestMu = 1e3;  // above, the surrogate is the truncated cost itself
-constexpr double kNear = 4.0;       // chi2 over the bound: twice its standard deviations
 constexpr int kMaxRounds = 20;      // of settling; a few are the rule
+constexpr int kMaxRestarts = 2;
+// An odometry edge whose chi2 is this many bounds, twice as many standard deviations, is bent.
+constexpr double kBent = 4.0;
 
 template <class P>
 std::size_t num_rejected(const Solution<P>& s) {
@@ -101,14 +103,27 @@ class Search {
     return s;
   }
 
+  [[nodiscard]] Solution<P> run(Solution<P> start) const { return settle(graduate(std::move(start))); }
+
   // Alternates between the poses for these loops and the loops for these poses; both lower the objective, so
   // that it ends. True loops that were lost on the way come back.
-  [[nodiscard]] Solution<P> settle(const Solution<P>& graduated) const {
-    Solution<P> settled = alternate(graduated, bound_);
-    // A loop outside the bound may lie inside once it takes part: those near it get a second chance.
-    Solution<P> generous = alternate(settled, kNear * bound_);
-    settled.iterations = generous.iterations;
-    return generous.ok() && objective(generous) < objective(settled) ? generous : settled;
+  [[nodiscard]] Solution<P> settle(Solution<P> s) const {
+    OptimizerConfig warm = config_.optimizer;
+    warm.initialization = "none";
+    for (int round = 0; s.ok() && round < kMaxRounds; ++round) {
+      const auto weights = weights_of(graph_, edge_costs(graph_, s.poses),
+                                      [&](double chi2) { return chi2 <= bound_ ? 1.0 : 0.0; });
+      if (round > 0 && weights == s.edge_weights) break;
+      Solution<P> next = continued(s, s.poses, warm, weights);
+      if (round == 0) {
+        // A chain that false loops have bent beyond what the solver straightens is found anew.
+        Solution<P> anew = continued(next, poses_of(graph_), config_.optimizer, weights);
+        next.iterations = anew.iterations;
+        if (anew.ok() && anew.cost_final < next.cost_final) next = std::move(anew);
+      }
+      s = std::move(next);
+    }
+    return s;
   }
 
   // The truncated least-squares objective.
@@ -130,7 +145,7 @@ class Search {
     for (std::size_t e = 0; e < costs.size(); ++e) {
       if (graph_.edges[e].kind == EdgeKind::loop)
         ++num_loops;
-      else if (costs[e] > kNear * bound_)
+      else if (costs[e] > kBent * bound_)
         return false;
     }
     return 10 * num_rejected(s) <= num_loops && connected_components(graph_, s.edge_weights).anchors.size() ==
@@ -138,27 +153,6 @@ class Search {
   }
 
  private:
-  // Loops within `first_bound` take part in the first round, those within the bound in the others.
-  [[nodiscard]] Solution<P> alternate(Solution<P> s, double first_bound) const {
-    OptimizerConfig warm = config_.optimizer;
-    warm.initialization = "none";
-    for (int round = 0; s.ok() && round < kMaxRounds; ++round) {
-      const double bound = round == 0 ? first_bound : bound_;
-      const auto weights = weights_of(graph_, edge_costs(graph_, s.poses),
-                                      [&](double chi2) { return chi2 <= bound ? 1.0 : 0.0; });
-      if (round > 0 && weights == s.edge_weights) break;
-      Solution<P> next = continued(s, s.poses, warm, weights);
-      if (round == 0) {
-        // A chain that false loops have bent beyond what the solver straightens is found anew.
-        Solution<P> anew = continued(next, poses_of(graph_), config_.optimizer, weights);
-        next.iterations = anew.iterations;
-        if (anew.ok() && anew.cost_final < next.cost_final) next = std::move(anew);
-      }
-      s = std::move(next);
-    }
-    return s;
-  }
-
   // One more solve, counted on top of those before.
   [[nodiscard]] Solution<P> continued(const Solution<P>& before, const std::vector<P>& start,
                                       const OptimizerConfig& config,
@@ -196,14 +190,21 @@ Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config
   none.max_iterations = 0;
   const Solution<P> given = optimize(graph, none);
   if (!given.ok()) return given;
-  Solution<P> best = search.settle(search.graduate(given));
-  if (!search.is_clearly_fine(best)) {
-    Solution<P> other = optimize(graph, config.optimizer);
-    if (other.ok()) other = search.settle(search.graduate(std::move(other)));
-    const int iterations = best.iterations + other.iterations;
-    if (other.ok() && (!best.ok() || search.objective(other) < search.objective(best)))
-      best = std::move(other);
-    best.iterations = iterations;
+  Solution<P> best = search.run(given);
+  const auto improve_from = [&](Solution<P> start) {
+    Solution<P> other = start.ok() ? search.run(std::move(start)) : std::move(start);
+    other.iterations += best.iterations;
+    const bool better = other.ok() && (!best.ok() || search.objective(other) < search.objective(best));
+    best.iterations = other.iterations;
+    if (better) best = std::move(other);
+    return better;
+  };
+  if (!search.is_clearly_fine(best)) improve_from(optimize(graph, config.optimizer));
+  // Loops that hold only together are found from where the others have brought the poses.
+  for (int i = 0; i < kMaxRestarts && best.ok() && !search.is_clearly_fine(best); ++i) {
+    Solution<P> again = best;
+    again.iterations = 0;
+    if (!improve_from(std::move(again))) break;
   }
   best.cost_initial = given.cost_initial;
   if (const std::size_t rejected = num_rejected(best); rejected > 0)

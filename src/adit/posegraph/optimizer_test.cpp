@@ -10,9 +10,8 @@
 #include "adit/core/check.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/posegraph/chordal.hpp"
-#include "adit/posegraph/gnc.hpp"
 #include "adit/posegraph/marginals.hpp"
-#include "adit/posegraph/test_graphs.hpp"
+#include "support/graphs.hpp"
 
 namespace adit {
 namespace {
@@ -197,13 +196,6 @@ TEST(Marginals, OfOneEdgeAreItsCovariance) {
   ASSERT_TRUE(marginals);
   const Matrix6 covariance = information.inverse();
   EXPECT_LT((marginals->relative(1, 2) - covariance).norm(), 1e-9 * covariance.norm());
-}
-
-TEST(Gnc, QuantilesOfChiSquare) {
-  EXPECT_NEAR(chi2_quantile(0.99, 6), 16.811893829770927, 1e-9);
-  EXPECT_NEAR(chi2_quantile(0.99, 3), 11.344866730144373, 1e-9);
-  EXPECT_NEAR(chi2_quantile(0.9999, 6), 27.856340829937715, 1e-6);
-  EXPECT_NEAR(chi2_quantile(0.5, 2), 1.3862943611198906, 1e-12);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "adit/posegraph/test_graphs.hpp"
+#include "support/graphs.hpp"
 
 namespace adit {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Small random graphs for the tests of this folder.
+/// Small random graphs with known truth.
 #pragma once
 
 #include <cmath>
