@@ -28,6 +28,8 @@ OdometryStep KissIcp::register_scan(const Scan& scan) {
   const Pose T_prediction = motion_ ? T_odom_base_ * motion_->T_start_end : T_odom_base_;
   cloud_ = preprocess(scan.cloud, {config_.min_range, config_.max_range}, T_base_lidar_,
                       config_.deskew ? motion_ : std::nullopt);
+  irregular_ =
+      config_.irregular_steps == "on" || (config_.irregular_steps == "auto" && !scan.cloud.has_times());
   const ThinnedScan thin = thinned(cloud_.points, config_.voxel_size);
   OdometryStep step = map_.empty() ? first_step(thin, T_prediction, config_) : registered(thin, T_prediction);
   step.stamp = scan.stamp;
@@ -38,16 +40,18 @@ OdometryStep KissIcp::register_scan(const Scan& scan) {
   return step;
 }
 
+Alignment KissIcp::align(const ThinnedScan& scan, const Pose& T_prediction) const {
+  Alignment predicted = align_rigid(scan.source, map_, T_prediction, threshold_.sigma(), config_);
+  if (!irregular_) return predicted;
+  Alignment rival = align_rigid(scan.source, map_, T_odom_base_, threshold_.sigma(), config_);
+  if (rival.status != StepStatus::ok) return predicted;
+  if (predicted.status != StepStatus::ok) return rival;
+  return misfit(rival, scan, map_) < misfit(predicted, scan, map_) ? rival : predicted;
+}
+
 OdometryStep KissIcp::registered(const ThinnedScan& scan, const Pose& T_prediction) {
   const double sigma = threshold_.sigma();
-  Alignment alignment = align_rigid(scan.source, map_, T_prediction, sigma, config_);
-  if (config_.irregular_steps) {
-    const Alignment rival = align_rigid(scan.source, map_, T_odom_base_, sigma, config_);
-    const bool better =
-        rival.status == StepStatus::ok &&
-        (alignment.status != StepStatus::ok || misfit(rival, scan, map_) < misfit(alignment, scan, map_));
-    if (better) alignment = rival;
-  }
+  const Alignment alignment = align(scan, T_prediction);
   if (alignment.status == StepStatus::ok)
     threshold_.add(T_prediction.inverse() * alignment.T_map_base);
   else

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "adit/core/config.hpp"
 #include "adit/core/records.hpp"
@@ -16,7 +17,7 @@ namespace adit {
 struct KissIcpConfig : ScanToMapConfig {
   double initial_threshold = 2.0;
   double min_motion = 0.1;
-  bool irregular_steps = false;
+  std::string irregular_steps = "auto";
 };
 
 inline Fields fields_of(KissIcpConfig& c) {
@@ -25,14 +26,25 @@ inline Fields fields_of(KissIcpConfig& c) {
       {"initial_threshold", &c.initial_threshold, "m", 0.01, 100.0, "first sigma of the motion model"});
   fields.push_back({"min_motion", &c.min_motion, "m", 0.0, 10.0, "smaller deviations do not train sigma"});
   fields.push_back(
-      {"irregular_steps", &c.irregular_steps, "", 0, 1,
-       "for scans at irregular intervals: also start from the last pose and keep the better fit"});
+      {"irregular_steps",
+       &c.irregular_steps,
+       "",
+       0,
+       0,
+       "also start from the last pose and keep the better fit, for scans that do not come at a steady pace; "
+       "auto: where points carry no times",
+       {"auto", "on", "off"}});
   return fields;
 }
 
 /// LiDAR-only odometry: I. Vizzo, T. Guadagnino, B. Mersch, L. Wiesmann, J. Behley, C. Stachniss, "KISS-ICP:
 /// In Defense of Point-to-Point ICP - Simple, Accurate, and Robust Registration If Done the Right Way", RA-L
 /// 2023. It works in the base frame: T_odom_base starts at identity.
+///
+/// Beyond the paper: its constant-velocity prediction presumes scans at a steady pace. Scans without
+/// per-point times have often been picked or thinned from a drive, and their steps then vary; so with
+/// `irregular_steps` each such scan is also aligned from the last pose, and the better fit counts
+/// (docs/decisions/0003-irregular-steps.md).
 ///
 /// A step is `degenerate` when the scene leaves a direction open. That is a diagnosis only: the method has no
 /// such notion, and as in the paper the scan enters the map (in a smooth tunnel it slips, which is what is to
@@ -51,12 +63,14 @@ class KissIcp {
 
  private:
   [[nodiscard]] OdometryStep registered(const ThinnedScan& scan, const Pose& T_prediction);
+  [[nodiscard]] Alignment align(const ThinnedScan& scan, const Pose& T_prediction) const;
 
   KissIcpConfig config_;
   Pose T_base_lidar_;
   LocalMap map_;
   AdaptiveThreshold threshold_;
   Pose T_odom_base_;
+  bool irregular_ = false;  ///< The last scan is treated as one of irregular steps.
   std::optional<Stamp> stamp_;
   std::optional<ConstantVelocity> motion_;  ///< From the scan before the last to the last.
   PointCloud cloud_;
