@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/robot/robot_slam.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/synthetic_scan.hpp"
+
+namespace adit {
+namespace {
+
+const Pose kBaseLidar = Pose::translation_of(0.0, 0.0, 0.9);
+constexpr int kScans = 60;
+
+test::Drive straight_drive() {
+  test::Drive drive;
+  drive.T_world_start = Pose::planar(-4.0, 0.0, 0.0);
+  drive.velocity[0] = 1.5;
+  return drive;
+}
+
+RobotSlamConfig config_of(const std::string& method) {
+  RobotSlamConfig config;
+  config.odometry.method = method;
+  config.odometry.kiss_icp.voxel_size = config.odometry.kinematic_icp.voxel_size = 0.5;
+  return config;
+}
+
+test::Lidar dense_lidar() {
+  test::Lidar lidar;
+  lidar.rows = 64;
+  lidar.columns = 512;
+  lidar.jitter = 0.5;
+  return lidar;
+}
+
+/// 6 s through a furnished room, about 7.5 m.
+Recording room_recording(bool with_wheels) {
+  Recording recording;
+  recording.name = "walker";
+  recording.T_base_lidar = kBaseLidar;
+  const test::Lidar lidar = dense_lidar();
+  Trajectory truth;
+  for (int i = 0; i < kScans; ++i) {
+    recording.scan_stamps.push_back(Stamp{lidar.period.count() * i});
+    truth.push_back({recording.scan_stamps.back(), straight_drive().at(0.1 * i)});
+  }
+  recording.read_scan = [lidar](std::size_t i) {
+    return test::scan_of(test::furnished_room(), lidar, kBaseLidar, straight_drive(), static_cast<int>(i));
+  };
+  if (with_wheels) recording.wheel = truth;
+  recording.truth = std::move(truth);
+  return recording;
+}
+
+void expect_sound(const RobotMap& map, const Recording& recording) {
+  EXPECT_EQ(map.odometry.size(), recording.num_scans());
+  ASSERT_GE(map.keyframes.size(), 5U);
+  EXPECT_EQ(map.places.size(), map.keyframes.size());
+  EXPECT_EQ(map.tunnel.size(), map.keyframes.size());
+  EXPECT_EQ(map.searchable.size(), map.keyframes.size());
+  ASSERT_EQ(map.step_covariances.size(), map.keyframes.size());
+  EXPECT_TRUE(map.step_covariances[0].isZero());
+  const Pose T_odom_world = recording.truth.front().T_world_body.inverse();
+  for (std::uint32_t k = 0; k < map.keyframes.size(); ++k) {
+    const Keyframe& keyframe = map.keyframes[k];
+    EXPECT_EQ(keyframe.id, (KeyframeId{{7}, k}));
+    EXPECT_FALSE(keyframe.cloud->empty());
+    EXPECT_FALSE(keyframe.cloud->has_times());
+    const Pose T_true = T_odom_world * pose_at(recording.truth, keyframe.stamp).value();
+    EXPECT_LT((T_true.translation() - keyframe.T_odom_base.translation()).norm(), 0.1) << k;
+    if (k == 0) continue;
+    const Pose step = map.keyframes[k - 1].T_odom_base.inverse() * keyframe.T_odom_base;
+    EXPECT_GE(step.translation().norm(), KeyframePolicyConfig{}.distance_m - 1e-9);
+    EXPECT_EQ(map.step_covariances[k], odometry_covariance({}, step.translation().norm()));
+  }
+}
+
+TEST(RobotSlam, MapsARoomWithEitherOdometry) {
+  for (const char* method : {"kiss-icp", "kinematic-icp"}) {
+    const Recording recording = room_recording(true);
+    const Result<RobotMap> map = map_recording(recording, {7}, config_of(method));
+    ASSERT_TRUE(map.has_value()) << map.error().message;
+    SCOPED_TRACE(method);
+    expect_sound(*map, recording);
+    EXPECT_EQ(map->num_refused, 0);
+  }
+}
+
+TEST(RobotSlam, KeyframeCloudsLieInTheBaseFrame) {
+  const Recording recording = room_recording(false);
+  const Result<RobotMap> map = map_recording(recording, {7}, config_of("kiss-icp"));
+  ASSERT_TRUE(map.has_value()) << map.error().message;
+  for (const Keyframe& keyframe : map->keyframes) {
+    float lowest = 1e9F;
+    for (const Eigen::Vector3f& p : keyframe.cloud->points) lowest = std::min(lowest, p.z());
+    EXPECT_NEAR(lowest, -1.0F, 0.15F);  // the room's floor, in a frame whose origin drives 1 m above it
+  }
+}
+
+TEST(RobotSlam, KinematicIcpWithoutWheelsIsRefusedWithTheRemedy) {
+  const Result<RobotMap> map = map_recording(room_recording(false), {0}, config_of("kinematic-icp"));
+  ASSERT_FALSE(map.has_value());
+  EXPECT_NE(map.error().message.find("walker"), std::string::npos);
+  EXPECT_NE(map.error().message.find("kiss-icp"), std::string::npos);
+}
+
+TEST(RobotSlam, UnreadableScanNamesTheRobot) {
+  Recording recording = room_recording(false);
+  recording.read_scan = [](std::size_t) -> Result<Scan> { return fail("0003.pcd: no such file"); };
+  const Result<RobotMap> map = map_recording(recording, {0}, config_of("kiss-icp"));
+  ASSERT_FALSE(map.has_value());
+  EXPECT_EQ(map.error().message, "walker: 0003.pcd: no such file");
+}
+
+TEST(RobotSlam, ScansWithoutPointsBecomeNoKeyframe) {
+  Recording recording = room_recording(false);
+  recording.read_scan = [stamps = recording.scan_stamps](std::size_t i) { return Scan{stamps[i], {}}; };
+  const Result<RobotMap> map = map_recording(recording, {0}, config_of("kiss-icp"));
+  ASSERT_FALSE(map.has_value());
+  EXPECT_NE(map.error().message.find("too few points"), std::string::npos);
+}
+
+TEST(RobotSlam, ObserverCountsAndStops) {
+  std::size_t last = 0;
+  const Result<RobotMap> map =
+      map_recording(room_recording(false), {0}, config_of("kiss-icp"), [&](std::size_t num_done) {
+        last = num_done;
+        return num_done < 5;
+      });
+  ASSERT_FALSE(map.has_value());
+  EXPECT_EQ(last, 5U);
+  EXPECT_NE(map.error().message.find("interrupted"), std::string::npos);
+}
+
+TEST(RobotSlam, ConfigOutOfRangeIsABug) {
+  RobotSlamConfig config = config_of("kiss-icp");
+  config.cloud_voxel = -1.0;
+  EXPECT_THROW(RobotSlam({0}, "walker", config, kBaseLidar), ContractViolation);
+}
+
+TEST(WheelBefore, NoneForTheFirstScanAndWithoutWheels) {
+  const Recording with = room_recording(true);
+  EXPECT_FALSE(wheel_before(with, 0).value().has_value());
+  EXPECT_FALSE(wheel_before(room_recording(false), 3).value().has_value());
+  const std::optional<WheelDelta> delta = wheel_before(with, 30).value();
+  ASSERT_TRUE(delta.has_value());
+  EXPECT_EQ(delta->duration, std::chrono::milliseconds(100));
+  EXPECT_GT(delta->T_base0_base1.translation().x(), 0.1);
+}
+
+}  // namespace
+}  // namespace adit

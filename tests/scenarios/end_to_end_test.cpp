@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Two simulated robots on a stretch of tunnel that they share: from scans to one map.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "adit/core/parallel.hpp"
+#include "adit/evaluation/ate.hpp"
+#include "adit/io/g2o.hpp"
+#include "adit/io/scan_folder.hpp"
+#include "adit/io/tum.hpp"
+#include "examples/simulated.hpp"
+#include "support/files.hpp"
+#include "support/meeting.hpp"
+
+namespace adit {
+namespace {
+
+std::vector<Recording> two_robots() {
+  Result<std::vector<Recording>> robots = example::two_robots_of_zab();
+  EXPECT_TRUE(robots.has_value()) << robots.error().message;
+  return robots.value_or(std::vector<Recording>{});
+}
+
+/// The joint map as the files that `adit slam` would write.
+std::string as_text(const test::Joint& joint, const std::filesystem::path& folder) {
+  std::string text;
+  for (const Trajectory& trajectory : test::joint_trajectories(joint)) {
+    EXPECT_TRUE(write_tum(folder / "trajectory.tum", trajectory).has_value());
+    text += test::get_file(folder / "trajectory.tum");
+  }
+  EXPECT_TRUE(write_g2o(folder / "graph.g2o", joint.solution.optimized).has_value());
+  return text + test::get_file(folder / "graph.g2o");
+}
+
+TEST(EndToEnd, TwoRobotsMergeByCorrectLoopsIntoAnAccurateMap) {
+  const std::vector<Recording> recordings = two_robots();
+  ASSERT_EQ(recordings.size(), 2U);
+  const test::Joint joint = test::map_and_meet(recordings, {});
+  ASSERT_EQ(joint.solution.components.size(), 1U) << joint.solution.pairs.at(0).refused_reason;
+  const LoopCounts loops = test::loops_in_use(joint, recordings);
+  EXPECT_GE(loops.total, 5);
+  EXPECT_EQ(loops.wrong(), 0);
+
+  const std::vector<Trajectory> estimates = test::joint_trajectories(joint);
+  const auto errors = joint_ate(estimates, std::vector{recordings[0].truth, recordings[1].truth});
+  ASSERT_TRUE(errors.has_value()) << errors.error().message;
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_GT(path_length(estimates[i]), 50.0);
+    EXPECT_LT((*errors)[i].max_m, 0.01 * path_length(estimates[i])) << recordings[i].name;
+  }
+
+  // The same bytes with another number of threads.
+  const test::TemporaryFolder folder;
+  const int threads_before = num_threads();
+  set_num_threads(threads_before == 1 ? 2 : 1);
+  const test::Joint again = test::map_and_meet(recordings, {});
+  set_num_threads(threads_before);
+  EXPECT_EQ(as_text(joint, folder.path()), as_text(again, folder.path()));
+}
+
+TEST(EndToEnd, TheProgramMapsAFolderOfScansIntoASession) {
+  const test::TemporaryFolder folder;
+  std::vector<Recording> recordings = two_robots();
+  ASSERT_EQ(recordings.size(), 2U);
+  std::string command = std::string(ADIT_PROGRAM) + " slam";
+  for (Recording& recording : recordings) {
+    const Recording few = example::part_of(recording, 0, 12);
+    const std::filesystem::path scans = folder / recording.name;
+    ASSERT_TRUE(write_scan_folder(scans, few).has_value());
+    command += " " + scans.string();
+  }
+  command += " --out " + (folder / "session").string() + " > " + (folder / "log").string() + " 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << test::get_file(folder / "log");
+  for (const char* file : {"session.toml", "loops.csv", "map.ply", "graph_initial.g2o", "graph_pcm.g2o",
+                           "graph_optimized.g2o", "robot_1/trajectory.tum", "robot_3/odometry.tum"}) {
+    EXPECT_GT(test::get_file(folder / "session" / file).size(), 20U) << file;
+  }
+  EXPECT_NE(std::system((command + " --no-such-option").c_str()), 0);
+}
+
+}  // namespace
+}  // namespace adit

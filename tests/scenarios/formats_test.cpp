@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// `adit convert`, `adit info` and `adit simulate` on files, as a user runs them.
+#include <gtest/gtest.h>
+#include <sys/types.h>
+
+#include <csignal>
+#include <cstdio>
+#include <vector>
+
+#include "adit/io/cloud_files.hpp"
+#include "adit/io/ply.hpp"
+#include "adit/io/recording_files.hpp"
+#include "adit/io/tum.hpp"
+#include "support/data.hpp"
+#include "support/hall.hpp"
+#include "support/program.hpp"
+
+namespace adit {
+namespace {
+
+using test::expect_done;
+using test::get_file;
+using test::put_file;
+
+PointCloud cloud_in(const std::filesystem::path& path) {
+  const Result<PointCloud> cloud = read_cloud(path);
+  EXPECT_TRUE(cloud) << cloud.error().message;
+  return cloud.value_or(PointCloud{});
+}
+
+TEST(Convert, CloudFormatsKeepEveryBitOfThePoints) {
+  ADIT_NEED_DATA("registration/kitti_pair/source.ply");
+  const test::TemporaryFolder folder;
+  const std::string base = (folder / "cloud").string();
+  const std::string source = test::shared_data("registration/kitti_pair/source.ply").string();
+  expect_done("convert " + source + " " + base + ".pcd");
+  expect_done("convert " + base + ".pcd " + base + ".bin");
+  expect_done("convert " + base + ".bin " + base + ".ply");
+  EXPECT_EQ(cloud_in(base + ".pcd").points, cloud_in(source).points);
+  EXPECT_EQ(cloud_in(base + ".ply").points, cloud_in(source).points);
+}
+
+TEST(Convert, AFolderOfScansToARecordingAndBack) {
+  ADIT_NEED_DATA("scans/nclt/0000.pcd");
+  const test::TemporaryFolder folder;
+  const std::filesystem::path source = test::shared_data("scans/nclt");
+  const std::string mcap = (folder / "nclt.mcap").string();
+  const std::string back = (folder / "back").string();
+  expect_done("convert " + source.string() + " " + mcap);
+  expect_done("convert " + mcap + " " + back);
+  const Recording a = open_recording(source.string()).value();
+  const Recording b = open_recording(back).value();
+  ASSERT_EQ(a.scan_stamps, b.scan_stamps);
+  for (const std::size_t i : {std::size_t{0}, std::size_t{17}, a.num_scans() - 1})
+    EXPECT_EQ(a.read_scan(i).value().cloud.points, b.read_scan(i).value().cloud.points) << i;
+  EXPECT_EQ(tum_text(a.truth), tum_text(b.truth));
+}
+
+TEST(Convert, TrajectoriesKeepEveryBit) {
+  const test::TemporaryFolder folder;
+  const std::string base = (folder / "poses").string();
+  put_file(base + ".tum", "0.100000001 1 2 3 0 0 0 1\n1699999999.123456789 0.1 -0.2 1e-9 0.6 0 0 0.8\n");
+  expect_done("convert " + base + ".tum " + base + ".csv");
+  EXPECT_TRUE(get_file(base + ".csv").starts_with("stamp_s,x,y,z,qx,qy,qz,qw\n0.100000001,1,2,3,0,0,0,1\n"));
+  expect_done("convert " + base + ".csv " + base + "_back.tum");
+  expect_done("convert " + base + ".tum " + base + "_again.tum");
+  EXPECT_EQ(get_file(base + "_back.tum"), get_file(base + "_again.tum"));
+  expect_done("convert " + base + ".tum " + base + ".kitti");
+  EXPECT_TRUE(get_file(base + ".kitti").starts_with("1 0 0 1 0 1 0 2 0 0 1 3\n"));
+}
+
+TEST(Convert, AGraphIsRewrittenBitForBit) {
+  ADIT_NEED_DATA("g2o/single/sphere2500.g2o");
+  const test::TemporaryFolder folder;
+  const std::string base = (folder / "graph").string();
+  expect_done("convert " + test::shared_data("g2o/single/sphere2500.g2o").string() + " " + base + "1.g2o");
+  expect_done("convert " + base + "1.g2o " + base + "2.g2o");
+  EXPECT_EQ(get_file(base + "1.g2o"), get_file(base + "2.g2o"));
+  EXPECT_FALSE(get_file(base + "1.g2o").empty());
+}
+
+TEST(Convert, AMeshStaysAMeshAndItsVerticesAreACloud) {
+  const test::TemporaryFolder folder;
+  test::put_hall(folder.path());
+  const std::string mesh = (folder / "hall.ply").string();
+  expect_done("convert " + mesh + " " + (folder / "copy.ply").string());
+  EXPECT_EQ(get_file(folder / "copy.ply"), write_ply(read_mesh(mesh).value()));
+  expect_done("convert " + mesh + " " + (folder / "hall.pcd").string());
+  EXPECT_EQ(cloud_in(folder / "hall.pcd").points, read_mesh(mesh)->vertices);
+  // Cut in its faces it is a damaged mesh, not a cloud.
+  const std::string bytes = get_file(mesh);
+  put_file(folder / "cut.ply", bytes.substr(0, bytes.size() - 5));
+  test::expect_refused("convert " + (folder / "cut.ply").string() + " " + (folder / "out.ply").string(), 1,
+                       "truncated");
+  EXPECT_FALSE(std::filesystem::exists(folder / "out.ply"));
+}
+
+TEST(Info, SaysWhatAFileHolds) {
+  const test::TemporaryFolder folder;
+  test::put_hall(folder.path());
+  test::put_route(folder / "routes.yaml", 3, 8);
+  const std::string recordings = (folder / "recordings").string();
+  expect_done("simulate --routes " + (folder / "routes.yaml").string() + " --lidar vlp-16 --out " +
+              recordings);
+  const auto expect_kind = [](const std::filesystem::path& path, const std::string& kind) {
+    const test::ProgramRun run = test::run_adit("info " + path.string());
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_TRUE(run.out.starts_with("kind: " + kind + "\n")) << run.out;
+  };
+  expect_kind(folder / "hall.ply", "mesh");
+  expect_kind(folder / "routes.yaml", "routes");
+  expect_kind(folder / "recordings/alpha.mcap", "recording");
+  expect_kind(folder / "recordings/alpha_truth.tum", "trajectory");
+  expect_done("convert " + recordings + "/alpha.mcap " + (folder / "scans").string());
+  expect_kind(folder / "scans", "recording");
+  expect_kind(folder / "scans/000000.pcd", "cloud");
+}
+
+TEST(Info, OfSharedFiles) {
+  ADIT_NEED_DATA("recordings/mcap_small/wbag_0.mcap");
+  const test::ProgramRun mcap =
+      test::run_adit("info --json " + test::shared_data("recordings/mcap_small/wbag_0.mcap").string());
+  EXPECT_EQ(mcap.exit_code, 0) << mcap.err;
+  EXPECT_NE(mcap.out.find("\"messages\": 1246"), std::string::npos) << mcap.out;
+  const test::ProgramRun graph =
+      test::run_adit("info " + test::shared_data("g2o/single/sphere2500.g2o").string());
+  EXPECT_NE(graph.out.find("nodes: 2500\nedges: 4949\n"), std::string::npos) << graph.out;
+}
+
+bool holds_partial_output(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.path().filename().string().find(".partial-") != std::string::npos) return true;
+  return false;
+}
+
+/// Starts the program and sends one SIGINT as soon as partial output shows in `folder`; returns the exit
+/// code.
+int interrupt_while_writing(std::vector<std::string> arguments, const std::filesystem::path& folder) {
+  const pid_t child = fork();
+  if (child == 0) {
+    std::vector<char*> argv;
+    arguments.insert(arguments.begin(), "adit");
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    if (std::freopen("/dev/null", "w", stderr) != nullptr) execv(ADIT_PROGRAM, argv.data());
+    _exit(127);
+  }
+  int status = 0;
+  for (bool is_sent = false; waitpid(child, &status, WNOHANG) == 0; usleep(2000)) {
+    if (is_sent || !holds_partial_output(folder)) continue;
+    kill(child, SIGINT);
+    is_sent = true;
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(Interrupt, SimulateLeavesNothingBehind) {
+  const test::TemporaryFolder folder;
+  test::put_hall(folder.path());
+  test::put_route(folder / "routes.yaml", 3, 37);
+  const std::filesystem::path out = folder / "out";
+  const std::string routes = (folder / "routes.yaml").string();
+  EXPECT_EQ(interrupt_while_writing({"simulate", "--routes", routes, "--out", out.string()}, out), 1);
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST(Interrupt, ConvertWritesAllOrNothing) {
+  const test::TemporaryFolder folder;
+  test::put_hall(folder.path());
+  test::put_route(folder / "routes.yaml", 3, 37);
+  expect_done("simulate --routes " + (folder / "routes.yaml").string() + " --lidar os2-32 --out " +
+              (folder / "recordings").string());
+  const std::string recording = (folder / "recordings/alpha.mcap").string();
+  for (const char* name : {"copy.mcap", "scans"}) {
+    const int exit_code =
+        interrupt_while_writing({"convert", recording, (folder / name).string()}, folder.path());
+    // It may have been faster than the signal.
+    EXPECT_TRUE(exit_code == 0 || exit_code == 1) << exit_code;
+    EXPECT_EQ(std::filesystem::exists(folder / name), exit_code == 0) << name;
+    EXPECT_FALSE(holds_partial_output(folder.path())) << name;
+  }
+}
+
+}  // namespace
+}  // namespace adit
