@@ -15,7 +15,7 @@ Program::Program() : cli_("Multi-robot LiDAR SLAM for tunnels, mines and caves",
   cli_.require_subcommand(1);
   cli_.failure_message([](const CLI::App*, const CLI::Error& error) {
     return std::string("adit: ") + error.what() +
-           "; 'adit --help' and 'adit COMMAND --help' list what there is\n";
+           " ('adit --help' and 'adit COMMAND --help' say what there is)\n";
   });
   cli_.set_version_flag("--version", std::string(version()));
   cli_.add_flag("--json", common_.json, "Print the result as JSON on stdout, alone");

@@ -116,7 +116,7 @@ Result<> convert(const std::string& in, const std::string& out) {
   if (from == Kind::cloud && to == Kind::cloud) return convert_cloud(in, out);
   if (from == Kind::trajectory && to == Kind::trajectory) return convert_trajectory(in, out);
   if (from == Kind::graph && to == Kind::graph) return convert_graph(in, out);
-  usage_error(in + " cannot become " + out + ", see 'adit convert --help'");
+  usage_error(in + " cannot become " + out);
 }
 
 }  // namespace

@@ -176,6 +176,11 @@ Result<Json> info_of(const std::string& input) {
   if (extension == ".tum" || extension == ".txt") return trajectory_info(path);
   if (extension == ".g2o") return graph_info(path);
   if (extension == ".yaml" || extension == ".yml") return routes_info(path);
+  if (fs::is_regular_file(path)) {
+    return fail(input +
+                ": of no kind that adit knows; these are .mcap, clouds and meshes (.pcd .ply .bin .obj .stl "
+                ".dae .glb), .tum, .g2o, routes (.yaml) and folders of scans or of a session");
+  }
   return open_recording(input).map(recording_json);
 }
 

@@ -129,8 +129,8 @@ TEST_F(BadInput, WorldsAndRoutes) {
   test::put_route(path("outside.yaml"), 30, 60);
   expect_refused(simulate + path("outside.yaml"), 1, "alpha");
   // A second hall beside the first, with their walls between.
-  TriangleMesh two = test::room({0, -4, 0}, {10, 4, 4});
-  append(two, test::room({10, -4, 0}, {20, 4, 4}));
+  TriangleMesh two = test::room({0, -4, 0}, {10.5, 4, 4});
+  append(two, test::room({10.5, -4, 0}, {20, 4, 4}));
   ASSERT_TRUE(write_mesh(path("hall.ply"), two));
   test::put_route(path("wall.yaml"), 3, 17);
   expect_refused(simulate + path("wall.yaml"), 1, "wall");
