@@ -24,6 +24,7 @@ std::string pair_name(const std::array<std::string, 2>& robots) {
 std::string policy_title(const std::string& keyframes) {
   if (keyframes == "all") return "All KF";
   if (keyframes == "tunnel_filter") return "Tunnel-filtered KF";
+  if (keyframes == "tunnel_filter_keep") return "Filtered, kept in graph";
   if (keyframes == "adaptive") return "Adaptive KF";
   return keyframes + " KF";
 }
