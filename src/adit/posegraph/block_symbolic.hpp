@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What a factorization knows before it sees a number: order of elimination, tree of supernodes, and where
+/// each block of the matrix goes. Private to this folder.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "adit/posegraph/block_cholesky.hpp"
+
+namespace adit {
+
+/// Consecutive columns of the factor with (nearly) the same rows, held as one dense front. All in blocks.
+struct Supernode {
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  /// Where a block of the matrix goes in the front.
+  struct Scatter {
+    std::size_t block;
+    std::size_t row;
+    std::size_t column;
+    bool transposed;
+  };
+  std::size_t first = 0;  ///< Columns [first, first + width) in the order of elimination.
+  std::size_t width = 0;
+  std::vector<std::size_t> below;      ///< Rows under the square, ascending.
+  std::vector<std::size_t> in_parent;  ///< Where each of these rows lies in the parent's front.
+  std::size_t parent = kNone;
+  std::vector<std::size_t> children;  ///< Ascending.
+  std::vector<Scatter> scatter;
+  std::size_t factor_offset = 0;  ///< Of its columns in the factor, for block size 1.
+
+  [[nodiscard]] std::size_t height() const { return width + below.size(); }
+  [[nodiscard]] double work() const {
+    const auto h = static_cast<double>(height());
+    const auto b = static_cast<double>(below.size());
+    return (h * h * h - b * b * b) / 3.0;
+  }
+};
+
+class BlockSymbolic {
+ public:
+  explicit BlockSymbolic(const BlockPattern& pattern);
+
+  std::size_t size = 0;
+  std::size_t num_blocks = 0;
+  std::vector<std::size_t> new_of_old;  ///< Position of each variable in the order of elimination.
+  std::vector<std::size_t> old_of_new;
+  std::vector<Supernode> nodes;                    ///< Children before parents.
+  std::vector<std::vector<std::size_t>> subtrees;  ///< Independent, largest first; each in order.
+  std::vector<std::size_t> top;                    ///< The supernodes above all subtrees, in order.
+  std::size_t factor_size = 0;
+  double work = 0.0;
+
+ private:
+  void link_supernodes();
+  void place_blocks(const BlockPattern& pattern);
+  void cut_subtrees();
+};
+
+}  // namespace adit
