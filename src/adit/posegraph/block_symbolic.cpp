@@ -44,6 +44,7 @@ Adjacency adjacency_of(const BlockPattern& pattern, const std::vector<Index>& ne
 // Position in the order of elimination for each block, by approximate minimum degree.
 std::vector<Index> minimum_degree(const BlockPattern& pattern) {
   const Index n = pattern.size();
+  if (n == 0) return {};
   std::vector<Eigen::Triplet<char, int>> entries;
   entries.reserve(pattern.num_blocks());
   for (Index j = 0; j < n; ++j) {

@@ -68,8 +68,9 @@ double first_mu(double largest_chi2, double bound) {
   return largest_chi2 > bound ? std::max(kSmallestMu, bound / (2.0 * largest_chi2 - bound)) : kLargestMu;
 }
 
+// Exactly: outside the band of mu, where a larger mu changes nothing. At a small mu true loops weigh little.
 bool all_binary(const std::vector<double>& weights) {
-  return std::ranges::all_of(weights, [](double w) { return w < 1e-4 || w > 1.0 - 1e-4; });
+  return std::ranges::all_of(weights, [](double w) { return w == 0.0 || w == 1.0; });
 }
 
 template <class P>
@@ -188,7 +189,7 @@ Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config
   OptimizerConfig none = config.optimizer;
   none.initialization = "none";
   none.max_iterations = 0;
-  const Solution<P> given = optimize(graph, none);
+  Solution<P> given = optimize(graph, none);
   if (!given.ok()) return given;
   Solution<P> best = search.run(given);
   const auto improve_from = [&](Solution<P> start) {
