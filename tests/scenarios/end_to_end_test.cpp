@@ -39,7 +39,9 @@ std::string as_text(const test::Joint& joint, const std::filesystem::path& folde
 TEST(EndToEnd, TwoRobotsMergeByCorrectLoopsIntoAnAccurateMap) {
   const std::vector<Recording> recordings = two_robots();
   ASSERT_EQ(recordings.size(), 2U);
-  const RobotSlamConfig config;
+  RobotSlamConfig config;
+  config.odometry.kinematic_icp.voxel_size =
+      0.5;  // with the default of 1 m the odometry slips by 2 m at the start
   const test::Joint joint = test::map_and_meet(recordings, config);
   ASSERT_EQ(joint.solution.components.size(), 1U) << joint.solution.pairs.at(0).refused_reason;
   const LoopCounts loops = test::loops_in_use(joint, recordings);
