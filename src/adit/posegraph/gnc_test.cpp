@@ -60,9 +60,10 @@ Spoiled<P> grid(Rng& rng, std::size_t side, const std::vector<P>& truth) {
 Spoiled<Pose2> grid_in_the_plane(Rng& rng, std::size_t side) {
   std::vector<Pose2> truth;
   for (std::size_t i = 0; i < side * side; ++i) {
-    const bool back = (i / side) % 2 == 1;
+    const std::size_t row = i / side;
+    const bool back = row % 2 == 1;
     const std::size_t x = back ? side - 1 - i % side : i % side;
-    truth.emplace_back(static_cast<double>(x), static_cast<double>(i / side), back ? M_PI : 0.0);
+    truth.emplace_back(static_cast<double>(x), static_cast<double>(row), back ? M_PI : 0.0);
   }
   return grid(rng, side, truth);
 }
@@ -71,10 +72,11 @@ Spoiled<Pose2> grid_in_the_plane(Rng& rng, std::size_t side) {
 Spoiled<Pose> sphere(Rng& rng, std::size_t side) {
   std::vector<Pose> truth;
   for (std::size_t i = 0; i < side * side; ++i) {
-    const bool back = (i / side) % 2 == 1;
+    const std::size_t ring = i / side;
+    const bool back = ring % 2 == 1;
     const auto x = static_cast<double>(back ? side - 1 - i % side : i % side);
     const double azimuth = 2.0 * M_PI * x / static_cast<double>(side);
-    const double polar = M_PI * (static_cast<double>(i / side) + 0.5) / static_cast<double>(side);
+    const double polar = M_PI * (static_cast<double>(ring) + 0.5) / static_cast<double>(side);
     const Vector3 position = 5.0 * Vector3(std::sin(polar) * std::cos(azimuth),
                                            std::sin(polar) * std::sin(azimuth), std::cos(polar));
     truth.emplace_back(so3::exp(Vector3(0.0, 0.0, azimuth)) * so3::exp(Vector3(0.0, polar, 0.0)), position);
