@@ -161,7 +161,8 @@ TEST_F(SolveFile, FreeNodeIsNamed) {
 TEST_F(SolveFile, NothingToReadIsAnError) {
   test::expect_refused(file(""), 1, "graph.g2o");
   test::expect_refused("solve " + (folder_ / "absent.g2o").string(), 1, "absent.g2o");
-  test::expect_refused(file(edge(0, 1) + "EDGE_SE3:QUAT 1 2 1 0 nan 0 0 0 1" + kUnit), 1, "graph.g2o: line 2");
+  test::expect_refused(file(edge(0, 1) + "EDGE_SE3:QUAT 1 2 1 0 nan 0 0 0 1" + kUnit), 1,
+                       "graph.g2o: line 2");
 }
 
 TEST_F(SolveFile, OneResultOnlyGoesToOneFile) {
