@@ -91,7 +91,7 @@ Result<> simulate_command(const Options& options, const Common& common) {
   if (const Result<> known = choose_lidar(options.lidar, config.simulation); !known) {
     usage_error(known.error().message);
   }
-  if (const Result<> configured = configure(fields_of(config), common); !configured) return configured;
+  if (Result<> configured = configure(fields_of(config), common); !configured) return configured;
   if (options.seed) config.simulation.seed = *options.seed;
   const auto recordings =
       load_world(options.world, options.routes)
@@ -99,7 +99,7 @@ Result<> simulate_command(const Options& options, const Common& common) {
           .and_then([&](const std::vector<Recording>& all) { return chosen(all, options.robot); });
   if (!recordings) return tl::unexpected(recordings.error());
   catch_interrupts();
-  if (const Result<> written = write_all(options, *recordings); !written) return written;
+  if (Result<> written = write_all(options, *recordings); !written) return written;
   print(options, *recordings, common);
   return {};
 }
