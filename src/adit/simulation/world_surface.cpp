@@ -112,7 +112,7 @@ std::vector<int> points_between(const std::vector<Vector3>& points, const PointG
   const double length = (b - a).norm();
   const Vector3 along = (b - a) / length;
   std::vector<std::pair<double, int>> between;
-  const Vector3 reach = Vector3::Constant(kSame);
+  const Vector3 reach = Vector3::Constant(2.0 * kSame);
   grid.visit(a.cwiseMin(b) - reach, a.cwiseMax(b) + reach, [&](int i) {
     const Vector3 d = points[static_cast<std::size_t>(i)] - a;
     const double s = d.dot(along);
