@@ -238,9 +238,10 @@ TEST(World, ZabHasAFlatFloorAndSmoothWalls) {
   std::size_t num_floor = 0;
   for (const Eigen::Vector3i& t : world.mesh.triangles) {
     const auto corner = [&](int k) { return world.mesh.vertices[static_cast<std::size_t>(t[k])]; };
-    const Eigen::Vector3f normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
-    if (normal.z() < 0.99F || corner(0).z() > 0.1F) continue;  // Niches begin 0.12 m above the floor.
-    // At the foot of a wall the floor's rim moves with the wall's relief, by a millimetre or two.
+    const Eigen::Vector3f normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+    const bool is_sliver = normal.norm() < 1e-3F;  // Its direction means nothing.
+    const bool is_floor = normal.normalized().z() > 0.99F && corner(0).z() < 0.1F;  // Niches begin at 0.12 m.
+    if (is_sliver || !is_floor) continue;
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(corner(k).z(), 0.0F, 4e-3F);
     ++num_floor;
   }
