@@ -30,10 +30,11 @@ bool KeyframePolicy::accepts(const OdometryStep& step) {
 
 bool KeyframePolicy::far_enough(const OdometryStep& step) const {
   if (config_.policy == "time") return step.stamp - last_->stamp >= from_seconds(config_.period_s);
-  const Pose T_last_now = last_->T_world_body.inverse() * step.T_odom_base;
-  if (T_last_now.translation().norm() >= config_.distance_m) return true;
-  return config_.policy == "distance_angle" &&
-         T_last_now.angle() >= config_.angle_deg * std::numbers::pi / 180.0;
+  // The plain difference of positions: turning it into the last frame would only round it.
+  const Vector3 moved = step.T_odom_base.translation() - last_->T_world_body.translation();
+  if (moved.norm() >= config_.distance_m) return true;
+  return config_.policy == "distance_angle" && (last_->T_world_body.inverse() * step.T_odom_base).angle() >=
+                                                   config_.angle_deg * std::numbers::pi / 180.0;
 }
 
 }  // namespace adit
