@@ -60,7 +60,8 @@ void add_wall(Plan& plan, const Triangle& t, double area) {
 /// The 99th percentile of the cells with ink: a few crowded cells must not make all others pale.
 float crowded(std::vector<float> counts) {
   std::erase(counts, 0.0F);
-  const auto at = counts.begin() + static_cast<std::ptrdiff_t>(std::ceil(0.99 * static_cast<double>(counts.size() - 1)));
+  const auto at =
+      counts.begin() + static_cast<std::ptrdiff_t>(std::ceil(0.99 * static_cast<double>(counts.size() - 1)));
   std::nth_element(counts.begin(), at, counts.end());
   return *at;
 }

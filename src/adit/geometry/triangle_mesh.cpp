@@ -59,7 +59,8 @@ EdgeStatistics edge_statistics(const TriangleMesh& mesh) {
     ++statistics.num_edges;
     if (end - begin == 1) ++statistics.num_boundary;
     if (end - begin > 2) ++statistics.num_over_shared;
-    if (end - begin == 2 && edges[begin].ascending == edges[begin + 1].ascending) ++statistics.num_inconsistent;
+    if (end - begin == 2 && edges[begin].ascending == edges[begin + 1].ascending)
+      ++statistics.num_inconsistent;
     begin = end;
   }
   return statistics;

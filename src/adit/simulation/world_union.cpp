@@ -11,7 +11,7 @@ namespace {
 
 using Corners = std::vector<Vector3>;
 
-constexpr double kOnPlane = 1e-9;  ///< Metres; coordinates of some 1e3 m round to 1e-13.
+constexpr double kOnPlane = 1e-9;   ///< Metres; coordinates of some 1e3 m round to 1e-13.
 constexpr double kMinArea = 1e-10;  ///< Square metres; what is smaller only touches.
 
 enum class Side { behind, ahead };
