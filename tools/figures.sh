@@ -13,4 +13,3 @@ take merged_map merged_map
 take graph_robot_0_robot_1_all_initial graph_initial
 take graph_robot_0_robot_1_all_optimized graph_optimized
 take ate_robot_1_robot_3_tunnel_filter ate_pair
-cp "$study/tables.md" docs/tables_zab.md

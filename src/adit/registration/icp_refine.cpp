@@ -138,7 +138,7 @@ std::vector<Pose> starts_around(const Pose& T_a_b) {
 
 }  // namespace
 
-Pose refine_point_to_plane(const Features& a, const KdTree& tree_a, const Features& b, Pose T_a_b,
+Pose refine_point_to_plane(const Features& a, const KdTree& tree_a, const Features& b, const Pose& T_a_b,
                            const RegistrationConfig& config) {
   // The rings of a spinning sensor lock onto one another in narrow false minima; several starts and the best
   // fit get out of them.

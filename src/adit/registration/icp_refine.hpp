@@ -38,6 +38,6 @@ struct PointPair {
 /// Gauss-Newton. Damped, so that along a direction that the surfaces leave open the pose stays where the
 /// guess put it.
 [[nodiscard]] Pose refine_point_to_plane(const Features& a, const KdTree& tree_a, const Features& b,
-                                         Pose T_a_b, const RegistrationConfig& config);
+                                         const Pose& T_a_b, const RegistrationConfig& config);
 
 }  // namespace adit
