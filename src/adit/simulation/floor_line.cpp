@@ -45,10 +45,14 @@ Result<std::vector<Vector3>> snapped_waypoints(const Raycaster& raycaster, const
 }
 
 bool wall_between(const Raycaster& raycaster, const Vector3& a, const Vector3& b) {
-  const Vector3 eye = a + Vector3(0.0, 0.0, kWallHeight);
+  // Each ray begins a little before its segment: a wall that stands exactly on a point is then inside one of
+  // the rays.
+  constexpr double kOverlap = 0.02;
   const Vector3 way = b - a;
   if (way.norm() < 1e-3) return false;
-  return raycaster.cast({eye.cast<float>(), way.normalized().cast<float>()}, static_cast<float>(way.norm()))
+  const Vector3 eye = a + Vector3(0.0, 0.0, kWallHeight) - kOverlap * way.normalized();
+  return raycaster
+      .cast({eye.cast<float>(), way.normalized().cast<float>()}, static_cast<float>(way.norm() + kOverlap))
       .hit();
 }
 

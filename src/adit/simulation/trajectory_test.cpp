@@ -180,6 +180,12 @@ TEST(Drive, names_the_waypoint_before_a_wall) {
   EXPECT_EQ(error_of(mesh, route_of({{0, 0, 0}, {5, 0, 0}, {5, 10, 0}, {20, 10, 0}})), "");
 }
 
+TEST(Drive, sees_a_wall_that_stands_exactly_on_a_waypoint) {
+  TriangleMesh mesh = flat();
+  test::add_quad(mesh, {10, -5, 0}, {10, 5, 0}, {10, 5, 3}, {10, -5, 3});
+  expect_words(error_of(mesh, route_of({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}})), {"robot_0", "wall"});
+}
+
 TEST(Drive, refuses_to_turn_back_on_the_spot) {
   expect_words(error_of(flat(), route_of({{0, 0, 0}, {10, 0, 0}, {0, 0, 0}})), {"robot_0", "turns back"});
 }
