@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What a benchmark is made of. A case is one piece of work that two or more sides do on the same input: adit,
+/// and a peer or a plain oracle. Each side runs in a process of its own (its peak memory is its own), does one
+/// untimed preparation, and then one timed run whenever the driver asks; the driver takes turns between the
+/// sides, so that both see the same noise.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace adit::bench {
+
+/// What a run found beside the time: accuracy, costs, sizes. Names end in their unit (`ate_m`, `chi2`).
+using Figures = std::map<std::string, double>;
+
+/// One timed run. It may be called many times and does the same work each time.
+using Work = std::function<Figures()>;
+
+/// Thrown by a preparation that lacks its input or its library; the table then says SKIPPED and why.
+struct Skipped {
+  std::string why;
+};
+
+/// Loads or makes the input (untimed) and returns the work.
+using Prepare = std::function<Work()>;
+
+/// A row of the table.
+struct CaseInfo {
+  std::string name;    ///< topic/what, e.g. "posegraph/sphere2500".
+  std::string work;    ///< What one run does, in a few words; shown in the table.
+  std::string peer;    ///< The side the ratio is taken against: "ceres", "embree", "reference", "kiss-icp", ...
+  double aim = 0.0;    ///< Wanted: time of the peer over time of adit. 0: no aim, growth or context only.
+  std::string note;    ///< Roofline-style: least operations and bytes the work needs. May be empty.
+  double per_run = 1;  ///< Units (scans, queries) that one run handles; times are shown for one unit.
+  std::string unit;    ///< Name of the unit; empty: the whole run.
+};
+
+/// Static objects of these types in `*_cases.cpp` fill the table.
+struct Case {
+  explicit Case(CaseInfo info);
+};
+struct Side {
+  /// `side` is "adit" for ours.
+  Side(const std::string& case_name, const std::string& side, Prepare prepare);
+};
+
+/// A curve of cost over size: adit alone, one process a size, drawn into docs/figures/.
+struct Growth {
+  Growth(const std::string& name, const std::string& title, const std::string& size_label,
+         std::vector<double> sizes, std::function<Work(double size)> prepare);
+};
+
+/// Writes the inputs of a topic (scans, clouds, graphs) into a folder, for programs outside this repository
+/// that take part as further sides: `adit_bench export FOLDER`.
+struct Export {
+  Export(const std::string& topic, std::function<void(const std::filesystem::path& folder)> write);
+};
+
+/// The shared data folder; throws Skipped when `relative` is not in it.
+std::filesystem::path shared_data(const std::filesystem::path& relative);
+
+}  // namespace adit::bench
