@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// What a benchmark is made of. A case is one piece of work that two or more sides do on the same input: adit,
-/// and a peer or a plain oracle. Each side runs in a process of its own (its peak memory is its own), does one
-/// untimed preparation, and then one timed run whenever the driver asks; the driver takes turns between the
-/// sides, so that both see the same noise.
+/// What a benchmark is made of. A case is one piece of work that two or more sides do on the same input:
+/// adit, and a peer or a plain oracle. Each side runs in a process of its own (its peak memory is its own),
+/// does one untimed preparation, and then one timed run whenever the driver asks; the driver takes turns
+/// between the sides, so that both see the same noise.
 #pragma once
 
 #include <filesystem>
@@ -30,13 +30,13 @@ using Prepare = std::function<Work()>;
 
 /// A row of the table.
 struct CaseInfo {
-  std::string name;    ///< topic/what, e.g. "posegraph/sphere2500".
-  std::string work;    ///< What one run does, in a few words; shown in the table.
-  std::string peer;    ///< The side the ratio is taken against: "ceres", "embree", "reference", "kiss-icp", ...
-  double aim = 0.0;    ///< Wanted: time of the peer over time of adit. 0: no aim, growth or context only.
-  std::string note;    ///< Roofline-style: least operations and bytes the work needs. May be empty.
+  std::string name;  ///< topic/what, e.g. "posegraph/sphere2500".
+  std::string work;  ///< What one run does, in a few words; shown in the table.
+  std::string peer;  ///< The side the ratio is taken against: "ceres", "embree", "reference", "kiss-icp", ...
+  double aim = 0.0;  ///< Wanted: time of the peer over time of adit. 0: no aim, growth or context only.
+  std::string note{};  ///< Roofline-style: least operations and bytes the work needs. May be empty.
   double per_run = 1;  ///< Units (scans, queries) that one run handles; times are shown for one unit.
-  std::string unit;    ///< Name of the unit; empty: the whole run.
+  std::string unit{};  ///< Name of the unit; empty: the whole run.
 };
 
 /// Static objects of these types in `*_cases.cpp` fill the table.

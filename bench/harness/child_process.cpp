@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "harness/child_process.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+namespace adit::bench {
+
+ChildProcess::ChildProcess(const std::vector<std::string>& command) {
+  std::array<int, 2> down{};
+  std::array<int, 2> up{};
+  // Closed on exec: a later child must not hold an earlier one's pipe open, which would never see its end.
+  if (pipe2(down.data(), O_CLOEXEC) != 0 || pipe2(up.data(), O_CLOEXEC) != 0)
+    throw std::runtime_error("no pipe: " + std::string(std::strerror(errno)));
+  std::vector<char*> arguments;
+  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  signal(SIGPIPE, SIG_IGN);  // a child that died is seen by its missing answer
+  pid_ = fork();
+  if (pid_ == 0) {
+    dup2(down[0], STDIN_FILENO);
+    dup2(up[1], STDOUT_FILENO);
+    execv(arguments[0], arguments.data());
+    _exit(127);
+  }
+  close(down[0]);
+  close(up[1]);
+  if (pid_ < 0) throw std::runtime_error("no process for " + command.front());
+  to_ = fdopen(down[1], "w");
+  from_ = fdopen(up[0], "r");
+}
+
+ChildProcess::~ChildProcess() {
+  std::fclose(to_);
+  std::fclose(from_);
+  waitpid(pid_, nullptr, 0);
+}
+
+void ChildProcess::write_line(const std::string& line) {
+  std::fputs((line + "\n").c_str(), to_);
+  std::fflush(to_);
+}
+
+std::optional<std::string> ChildProcess::read_line() {
+  std::string line;
+  for (int c = std::fgetc(from_); c != EOF; c = std::fgetc(from_)) {
+    if (c == '\n') return line;
+    line += static_cast<char>(c);
+  }
+  return std::nullopt;
+}
+
+double ChildProcess::peak_mb() const {
+  std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+  for (std::string word; status >> word;) {
+    double kilobytes = 0.0;
+    if (word == "VmHWM:" && status >> kilobytes) return kilobytes / 1024.0;
+  }
+  return 0.0;
+}
+
+}  // namespace adit::bench

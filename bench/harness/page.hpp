@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What people read: the table on the terminal, docs/performance.md, and the curves.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "harness/compare.hpp"
+
+namespace adit::bench {
+
+struct Results {
+  std::string version;  ///< What was measured.
+  std::string machine;
+  std::string date;
+  std::vector<CaseResult> cases;
+  std::vector<GrowthResult> growths;
+};
+[[nodiscard]] nlohmann::json json_of(const Results& results);
+/// Throws nlohmann::json::exception when the file is no such document.
+[[nodiscard]] Results results_from(const nlohmann::json& document);
+
+/// `now` with the cases and curves that only `before` has: a run of a few cases keeps the others' rows.
+[[nodiscard]] Results merged(Results now, const Results& before);
+
+/// One line a case. `recorded` holds the last recorded version.
+[[nodiscard]] std::string table_head();
+[[nodiscard]] std::string table_row(const CaseResult& result, const Results& recorded);
+
+/// Markdown: tables by topic, each case's note, growth curves as pictures in `figures/growth_NAME.svg`.
+[[nodiscard]] std::string markdown(const Results& results, const Results& recorded);
+[[nodiscard]] std::string plot_growth(const GrowthResult& growth);
+/// File name of the picture.
+[[nodiscard]] std::string figure_name(const GrowthResult& growth);
+
+}  // namespace adit::bench
