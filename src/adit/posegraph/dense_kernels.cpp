@@ -6,54 +6,108 @@
 #include <cmath>
 #include <cstring>
 
-// One binary, the widest vectors of the machine it runs on. Sanitizers do not survive the resolver functions
-// that run before them.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define ADIT_WIDEST_VECTORS __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define ADIT_WIDEST_VECTORS
-#endif
-
 namespace adit::dense {
 namespace {
 
-constexpr std::size_t kTileColumns = 6;    // 6 x 8 sums fit the 16 registers of AVX2
 constexpr std::size_t kPanelColumns = 24;  // columns that are factorized together before the rest is updated
 
-using Strip =
-    double __attribute__((vector_size(kStrip * sizeof(double)), aligned(alignof(double)), may_alias));
-
-// sum[j] = the products of one strip of A with row j of B, for kTileColumns rows of B that may cross two
-// strips.
-struct TileColumn {
-  const double* b;  // element of the first depth; the next ones follow kStrip apart
+template <std::size_t kWidth>
+struct VectorOf {
+  // Not `using`: GCC 12 then drops the size.
+  typedef double Type  // NOLINT(modernize-use-using)
+      __attribute__((vector_size(kWidth * sizeof(double)), aligned(alignof(double)), may_alias));
 };
 
-ADIT_WIDEST_VECTORS void multiply_tile(const double* a, const TileColumn* columns, std::size_t depth,
-                                       double* out) {
-  Strip sum[kTileColumns] = {};
-  for (std::size_t k = 0; k < depth; ++k) {
-    const Strip strip = *reinterpret_cast<const Strip*>(a + k * kStrip);
-    for (std::size_t j = 0; j < kTileColumns; ++j) sum[j] += strip * columns[j].b[k * kStrip];
+// Written once, compiled for several vector widths: always inlined into a function of each instruction set.
+#define ADIT_INLINE [[gnu::always_inline]] static inline
+
+// C -= A B^T for one strip of kStrip rows and kColumns columns. `b` points at the first of the columns inside
+// its strip. The sums stay in registers: kStrip * kColumns / kWidth of them, eight for each instruction set,
+// which hides the latency of the additions.
+template <std::size_t kWidth, std::size_t kColumns>
+ADIT_INLINE void update_columns(double* c, std::size_t stride, const double* a, const double* b,
+                                std::size_t depth) {
+  using Vector = typename VectorOf<kWidth>::Type;
+  constexpr std::size_t kVectors = kStrip / kWidth;
+  Vector sum[kColumns][kVectors] = {};
+  for (std::size_t k = 0; k < depth; ++k, a += kStrip, b += kStrip) {
+    const Vector* row = reinterpret_cast<const Vector*>(a);
+    for (std::size_t j = 0; j < kColumns; ++j) {
+      for (std::size_t v = 0; v < kVectors; ++v) sum[j][v] += row[v] * b[j];
+    }
   }
-  for (std::size_t j = 0; j < kTileColumns; ++j) *reinterpret_cast<Strip*>(out + j * kStrip) = sum[j];
+  for (std::size_t j = 0; j < kColumns; ++j) {
+    Vector* to = reinterpret_cast<Vector*>(c + j * stride);
+    for (std::size_t v = 0; v < kVectors; ++v) to[v] -= sum[j][v];
+  }
 }
 
-ADIT_WIDEST_VECTORS void subtract_scaled(double* y, const double* x, double factor, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) y[i] -= factor * x[i];
+// A tile of kStrip x kStrip elements.
+template <std::size_t kWidth, std::size_t kColumns>
+ADIT_INLINE void update_tile(double* c, std::size_t stride, const double* a, const double* b,
+                             std::size_t depth) {
+  for (std::size_t j = 0; j < kStrip; j += kColumns)
+    update_columns<kWidth, kColumns>(c + j * stride, stride, a, b + j, depth);
 }
 
-ADIT_WIDEST_VECTORS void subtract_scaled_4(double* y, const double* x, std::size_t stride,
-                                           const double* factor, std::size_t n) {
+// y -= X f for four columns of X, `stride` apart, with the factors f as far apart.
+template <std::size_t kWidth>
+ADIT_INLINE void subtract_four_columns(double* y, const double* x, std::size_t stride, const double* factor,
+                                       std::size_t n) {
+  using Vector = typename VectorOf<kWidth>::Type;
   const double f0 = factor[0];
   const double f1 = factor[stride];
   const double f2 = factor[2 * stride];
   const double f3 = factor[3 * stride];
-  for (std::size_t i = 0; i < n; ++i) {
-    y[i] = (((y[i] - f0 * x[i]) - f1 * x[i + stride]) - f2 * x[i + 2 * stride]) - f3 * x[i + 3 * stride];
+  std::size_t i = 0;
+  for (; i + kWidth <= n; i += kWidth, x += kWidth) {
+    Vector& to = *reinterpret_cast<Vector*>(y + i);
+    to = (((to - f0 * *reinterpret_cast<const Vector*>(x)) -
+           f1 * *reinterpret_cast<const Vector*>(x + stride)) -
+          f2 * *reinterpret_cast<const Vector*>(x + 2 * stride)) -
+         f3 * *reinterpret_cast<const Vector*>(x + 3 * stride);
   }
+  for (; i < n; ++i, ++x)
+    y[i] = (((y[i] - f0 * x[0]) - f1 * x[stride]) - f2 * x[2 * stride]) - f3 * x[3 * stride];
 }
+
+struct Kernels {
+  void (*tile)(double* c, std::size_t stride, const double* a, const double* b, std::size_t depth);
+  void (*four_columns)(double* y, const double* x, std::size_t stride, const double* factor, std::size_t n);
+};
+
+#if defined(__x86_64__)
+[[gnu::target("avx2")]] void tile_avx2(double* c, std::size_t stride, const double* a, const double* b,
+                                       std::size_t depth) {
+  update_tile<4, 4>(c, stride, a, b, depth);
+}
+[[gnu::target("avx2")]] void four_columns_avx2(double* y, const double* x, std::size_t stride,
+                                               const double* factor, std::size_t n) {
+  subtract_four_columns<4>(y, x, stride, factor, n);
+}
+[[gnu::target("avx512f")]] void tile_avx512(double* c, std::size_t stride, const double* a, const double* b,
+                                            std::size_t depth) {
+  update_tile<8, 8>(c, stride, a, b, depth);
+}
+#endif
+void tile_baseline(double* c, std::size_t stride, const double* a, const double* b, std::size_t depth) {
+  update_tile<2, 2>(c, stride, a, b, depth);
+}
+void four_columns_baseline(double* y, const double* x, std::size_t stride, const double* factor,
+                           std::size_t n) {
+  subtract_four_columns<2>(y, x, stride, factor, n);
+}
+
+// One binary, the widest vectors of the machine it runs on.
+Kernels widest_kernels() {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512f")) return {tile_avx512, four_columns_avx2};
+  if (__builtin_cpu_supports("avx2")) return {tile_avx2, four_columns_avx2};
+#endif
+  return {tile_baseline, four_columns_baseline};
+}
+const Kernels kKernels = widest_kernels();
 
 // Columns [first, last) of the panel, everything left of `first` having been subtracted already.
 std::size_t factorize_columns(double* a, std::size_t stride, std::size_t rows, std::size_t first,
@@ -63,11 +117,12 @@ std::size_t factorize_columns(double* a, std::size_t stride, std::size_t rows, s
     std::size_t p = first;
     for (; p + 4 <= j; p += 4) {
       const double* x = a + p * stride + j;
-      subtract_scaled_4(column, x, stride, x, rows - j);
+      kKernels.four_columns(column, x, stride, x, rows - j);
     }
     for (; p < j; ++p) {
       const double* x = a + p * stride + j;
-      subtract_scaled(column, x, *x, rows - j);
+      const double factor = *x;
+      for (std::size_t i = 0; i < rows - j; ++i) column[i] -= factor * x[i];
     }
     if (!(*column > min_pivot[j])) return j;
     const double pivot = std::sqrt(*column);
@@ -101,25 +156,22 @@ void PackedPanel::pack(const double* a, std::size_t stride, std::size_t rows, st
 
 void subtract_outer_product(double* c, std::size_t stride, const PackedPanel& a, std::size_t begin,
                             std::size_t end) {
-  alignas(64) double tile[kTileColumns * kStrip];
-  TileColumn columns[kTileColumns];
-  for (std::size_t j = begin; j < end; j += kTileColumns) {
-    const std::size_t width = std::min(kTileColumns, end - j);
-    for (std::size_t q = 0; q < kTileColumns; ++q) {
-      const std::size_t row = std::min(j + q, end - 1);
-      columns[q].b = a.strip(row / kStrip) + row % kStrip;
-    }
+  const auto update = [&](double* to, std::size_t to_stride, std::size_t s, std::size_t j) {
+    kKernels.tile(to, to_stride, a.strip(s), a.strip(j / kStrip), a.depth());
+  };
+  for (std::size_t j = begin; j < end; j += kStrip) {
+    const std::size_t width = std::min(kStrip, end - j);
     for (std::size_t s = j / kStrip; s * kStrip < a.rows(); ++s) {
-      multiply_tile(a.strip(s), columns, a.depth(), tile);
+      double* to = c + j * stride + s * kStrip;
       const std::size_t height = std::min(kStrip, a.rows() - s * kStrip);
+      if (width == kStrip && height == kStrip) {
+        update(to, stride, s, j);
+        continue;
+      }
+      double tile[kStrip * kStrip] = {};
+      update(tile, kStrip, s, j);
       for (std::size_t q = 0; q < width; ++q) {
-        double* to = c + (j + q) * stride + s * kStrip;
-        const double* from = tile + q * kStrip;
-        if (height == kStrip) {
-          for (std::size_t i = 0; i < kStrip; ++i) to[i] -= from[i];
-        } else {
-          for (std::size_t i = 0; i < height; ++i) to[i] -= from[i];
-        }
+        for (std::size_t i = 0; i < height; ++i) to[q * stride + i] += tile[q * kStrip + i];
       }
     }
   }

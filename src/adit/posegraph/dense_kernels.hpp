@@ -31,8 +31,8 @@ class PackedPanel {
 };
 
 /// Lower trapezoid of C -= A B^T, where B is the first `columns` rows of A: columns [begin, end) of it, rows
-/// from the strip that holds the diagonal downwards. A few elements just above the diagonal are overwritten
-/// as well.
+/// from the strip that holds the diagonal downwards; `begin` is a multiple of kStrip. A few elements just
+/// above the diagonal are overwritten as well.
 void subtract_outer_product(double* c, std::size_t stride, const PackedPanel& a, std::size_t begin,
                             std::size_t end);
 
