@@ -18,46 +18,40 @@ constexpr Index kNone = Supernode::kNone;
 
 constexpr double kMinPivot = 1e-13;  // relative to the diagonal element that the pivot started from
 
-// One supernode's part of a factorization.
+// One supernode's part of a factorization. Its own columns lie in the factor, what is left for its parent in
+// the update; each lower trapezoid counts.
 class Front {
  public:
-  Front(const Supernode& node, Index d, double* factor)
-      : node_(node),
+  Front(const BlockSymbolic& symbolic, const Supernode& node, Index d, std::vector<double>& factor,
+        std::vector<double>& updates)
+      : symbolic_(symbolic),
+        node_(node),
         d_(d),
         rows_(node.height() * d),
         columns_(node.width * d),
         below_(node.below.size() * d),
-        factor_(factor) {}
-
-  // Columns of the square go to the factor, the others to the update.
-  void assemble(const std::vector<double>& values, std::vector<std::vector<double>>& updates,
-                const std::vector<Supernode>& nodes, std::vector<double>& update) const {
-    std::fill(factor_, factor_ + rows_ * columns_, 0.0);
-    update.assign(below_ * below_, 0.0);
-    for (const Supernode::Scatter& s : node_.scatter) place(values.data() + s.block * d_ * d_, s);
-    for (const Index child : node_.children) {
-      extend_add(nodes[child], updates[child], update);
-      std::vector<double>().swap(updates[child]);
-    }
-  }
+        factor_(factor.data() + node.factor_offset * d * d),
+        updates_(updates.data()),
+        update_(updates_ + node.update_offset * d * d) {}
 
   // Column of the front that is not positive definite, or kNone.
-  [[nodiscard]] Index eliminate(const std::vector<double>& min_pivot, std::vector<double>& update) const {
-    const Index done = dense::factorize_panel(factor_, rows_, rows_, columns_, min_pivot.data());
+  [[nodiscard]] Index run(const std::vector<double>& values) const {
+    std::fill(factor_, factor_ + rows_ * columns_, 0.0);
+    for (const Supernode::Scatter& s : node_.scatter) place(values.data() + s.block * d_ * d_, s);
+    for (const Index child : node_.children) add_square(symbolic_.nodes[child]);
+    const Index done = dense::factorize_panel(factor_, rows_, rows_, columns_, least_pivots(values).data());
     if (done < columns_) return done;
     if (below_ == 0) return kNone;
     dense::PackedPanel packed;
     packed.pack(factor_ + columns_, rows_, below_, columns_);
-    // A wide front is shared between threads by columns; each element is still one sum in one order.
-    parallel_for(below_, kStripe, [&](Index begin, Index end) {
-      dense::subtract_outer_product(update.data(), below_, packed, begin, end);
+    parallel_for(below_, dense::kStripe, [&](Index begin, Index end) {
+      dense::subtract_outer_product(update_, below_, packed, begin, end, dense::Into::replace);
     });
+    for (const Index child : node_.children) add_rest(symbolic_.nodes[child]);
     return kNone;
   }
 
  private:
-  static constexpr Index kStripe = 96;
-
   void place(const double* block, const Supernode::Scatter& s) const {
     for (Index j = 0; j < d_; ++j) {
       double* to = factor_ + (s.column * d_ + j) * rows_ + s.row * d_;
@@ -65,52 +59,56 @@ class Front {
     }
   }
 
-  void extend_add(const Supernode& child, const std::vector<double>& from,
-                  std::vector<double>& update) const {
+  // The least pivot that counts as positive, for each column.
+  [[nodiscard]] std::vector<double> least_pivots(const std::vector<double>& values) const {
+    std::vector<double> least(columns_, 0.0);
+    for (const Supernode::Scatter& s : node_.scatter) {
+      if (s.row != s.column) continue;
+      for (Index i = 0; i < d_; ++i)
+        least[s.column * d_ + i] = kMinPivot * values[s.block * d_ * d_ + i * d_ + i];
+    }
+    return least;
+  }
+
+  // A child's update goes to two places: columns of the square, which come first, and the update.
+  void add_square(const Supernode& child) const {
+    Index bj = 0;
+    for (; bj < child.below.size() && child.in_parent[bj] < node_.width; ++bj)
+      add_columns(child, bj, factor_ + child.in_parent[bj] * d_ * rows_, rows_);
+  }
+  void add_rest(const Supernode& child) const {
+    for (Index bj = child.below.size(); bj-- > 0 && child.in_parent[bj] >= node_.width;)
+      add_columns(child, bj, update_ + (child.in_parent[bj] - node_.width) * d_ * below_ - columns_, below_);
+  }
+  void add_columns(const Supernode& child, Index bj, double* to, Index to_stride) const {
     const Index height = child.below.size();
-    const Index stride = height * d_;
-    for (Index bj = 0; bj < height; ++bj) {
-      const Index column = child.in_parent[bj];
-      for (Index j = 0; j < d_; ++j) {
-        const double* source = from.data() + (bj * d_ + j) * stride;
-        const bool in_square = column < node_.width;
-        double* to = in_square ? factor_ + (column * d_ + j) * rows_
-                               : update.data() + ((column - node_.width) * d_ + j) * below_ - columns_;
-        for (Index bi = bj; bi < height; ++bi) {
-          double* t = to + child.in_parent[bi] * d_;
-          const double* x = source + bi * d_;
-          for (Index i = 0; i < d_; ++i) t[i] += x[i];
-        }
+    const double* from = updates_ + child.update_offset * d_ * d_ + bj * d_ * height * d_;
+    for (Index j = 0; j < d_; ++j, to += to_stride, from += height * d_) {
+      for (Index bi = bj; bi < height; ++bi) {
+        double* t = to + child.in_parent[bi] * d_;
+        const double* x = from + bi * d_;
+        for (Index i = 0; i < d_; ++i) t[i] += x[i];
       }
     }
   }
 
+  const BlockSymbolic& symbolic_;
   const Supernode& node_;
   Index d_;
   Index rows_;
   Index columns_;
   Index below_;
   double* factor_;
+  double* updates_;
+  double* update_;
 };
-
-// The least pivot that counts as positive, for each column of a supernode.
-std::vector<double> least_pivots(const Supernode& node, Index d, const std::vector<double>& values) {
-  std::vector<double> least(node.width * d, 0.0);
-  for (const Supernode::Scatter& s : node.scatter) {
-    if (s.row != s.column) continue;
-    for (Index i = 0; i < d; ++i) {
-      least[s.column * d + i] = kMinPivot * values[s.block * d * d + i * d + i];
-    }
-  }
-  return least;
-}
 
 }  // namespace
 
 BlockCholesky::BlockCholesky(std::shared_ptr<const BlockSymbolic> symbolic, std::size_t block_size)
     : symbolic_(std::move(symbolic)), block_size_(block_size) {
   factor_.resize(symbolic_->factor_size * block_size * block_size);
-  updates_.resize(symbolic_->nodes.size());
+  updates_.resize(symbolic_->update_room * block_size * block_size);
 }
 
 std::optional<std::size_t> BlockCholesky::factorize(const std::vector<double>& values) {
@@ -119,9 +117,7 @@ std::optional<std::size_t> BlockCholesky::factorize(const std::vector<double>& v
   ADIT_CHECK(values.size() == sym.num_blocks * d * d, "one value for each element of the pattern's blocks");
   const auto eliminate = [&](Index s) -> Index {
     const Supernode& node = sym.nodes[s];
-    const Front front(node, d, factor_.data() + node.factor_offset * d * d);
-    front.assemble(values, updates_, sym.nodes, updates_[s]);
-    const Index column = front.eliminate(least_pivots(node, d, values), updates_[s]);
+    const Index column = Front(sym, node, d, factor_, updates_).run(values);
     return column == kNone ? kNone : sym.old_of_new[node.first + column / d];
   };
   const auto eliminate_all = [&](const std::vector<Index>& list) {
@@ -135,13 +131,10 @@ std::optional<std::size_t> BlockCholesky::factorize(const std::vector<double>& v
   Index first = kNone;
   for (const Index variable : failed) first = std::min(first, variable);
   if (first == kNone) first = eliminate_all(sym.top);
-  for (std::vector<double>& update : updates_) update.clear();
   return first == kNone ? std::nullopt : std::optional(first);
 }
 
 Eigen::MatrixXd BlockCholesky::solve(const Eigen::Ref<const Eigen::MatrixXd>& right_sides) const {
-  using Eigen::Map;
-  using Stride = Eigen::OuterStride<>;
   const BlockSymbolic& sym = *symbolic_;
   const auto d = static_cast<Eigen::Index>(block_size_);
   const auto at = [d](Index i) { return static_cast<Eigen::Index>(i) * d; };
@@ -150,30 +143,52 @@ Eigen::MatrixXd BlockCholesky::solve(const Eigen::Ref<const Eigen::MatrixXd>& ri
   Eigen::MatrixXd x(right_sides.rows(), sides);
   for (Index i = 0; i < sym.size; ++i)
     x.middleRows(at(sym.new_of_old[i]), d) = right_sides.middleRows(at(i), d);
-  Eigen::MatrixXd below;
-  const auto panel_of = [&](const Supernode& node) {
-    const double* a = factor_.data() + node.factor_offset * block_size_ * block_size_;
-    return Map<const Eigen::MatrixXd, 0, Stride>(a, at(node.height()), at(node.width),
-                                                 Stride(at(node.height())));
+
+  // What each supernode's rows below owe to its columns: added up by the parent, so that subtrees stay apart.
+  Eigen::MatrixXd owed(at(sym.below_size), sides);
+  const auto forward = [&](const Supernode& node) {
+    Eigen::MatrixXd t = Eigen::MatrixXd::Zero(at(node.height()), sides);
+    t.topRows(at(node.width)) = x.middleRows(at(node.first), at(node.width));
+    for (const Index c : node.children) {
+      const Supernode& child = sym.nodes[c];
+      for (Index i = 0; i < child.below.size(); ++i)
+        t.middleRows(at(child.in_parent[i]), d) += owed.middleRows(at(child.below_offset + i), d);
+    }
+    const double* column = factor_.data() + node.factor_offset * block_size_ * block_size_;
+    for (Eigen::Index j = 0; j < at(node.width); ++j, column += t.rows()) {
+      for (Eigen::Index side = 0; side < sides; ++side) {
+        t(j, side) /= column[j];
+        dense::subtract_scaled(&t(j, side) + 1, column + j + 1, t(j, side),
+                               static_cast<std::size_t>(t.rows() - j - 1));
+      }
+    }
+    x.middleRows(at(node.first), at(node.width)) = t.topRows(at(node.width));
+    owed.middleRows(at(node.below_offset), at(node.below.size())) = t.bottomRows(at(node.below.size()));
   };
-  for (const Supernode& node : sym.nodes) {
-    const auto panel = panel_of(node);
-    auto own = x.middleRows(at(node.first), at(node.width));
-    panel.topRows(at(node.width)).triangularView<Eigen::Lower>().solveInPlace(own);
-    below.noalias() = panel.bottomRows(at(node.below.size())) * own;
+  const auto backward = [&](const Supernode& node) {
+    Eigen::MatrixXd t(at(node.height()), sides);
+    t.topRows(at(node.width)) = x.middleRows(at(node.first), at(node.width));
     for (Index i = 0; i < node.below.size(); ++i)
-      x.middleRows(at(node.below[i]), d) -= below.middleRows(at(i), d);
-  }
-  for (Index s = sym.nodes.size(); s-- > 0;) {
-    const Supernode& node = sym.nodes[s];
-    const auto panel = panel_of(node);
-    auto own = x.middleRows(at(node.first), at(node.width));
-    below.resize(at(node.below.size()), sides);
-    for (Index i = 0; i < node.below.size(); ++i)
-      below.middleRows(at(i), d) = x.middleRows(at(node.below[i]), d);
-    own.noalias() -= panel.bottomRows(at(node.below.size())).transpose() * below;
-    panel.topRows(at(node.width)).triangularView<Eigen::Lower>().transpose().solveInPlace(own);
-  }
+      t.middleRows(at(node.width + i), d) = x.middleRows(at(node.below[i]), d);
+    const double* column = factor_.data() + node.factor_offset * block_size_ * block_size_;
+    for (Eigen::Index j = at(node.width); j-- > 0;) {
+      const double* below = column + j * t.rows() + j + 1;
+      for (Eigen::Index side = 0; side < sides; ++side) {
+        t(j, side) -= dense::dot(below, &t(j, side) + 1, static_cast<std::size_t>(t.rows() - j - 1));
+        t(j, side) /= below[-1];
+      }
+    }
+    x.middleRows(at(node.first), at(node.width)) = t.topRows(at(node.width));
+  };
+  parallel_for_each(sym.subtrees.size(), [&](Index t) {
+    for (const Index s : sym.subtrees[t]) forward(sym.nodes[s]);
+  });
+  for (const Index s : sym.top) forward(sym.nodes[s]);
+  for (Index i = sym.top.size(); i-- > 0;) backward(sym.nodes[sym.top[i]]);
+  parallel_for_each(sym.subtrees.size(), [&](Index t) {
+    for (Index i = sym.subtrees[t].size(); i-- > 0;) backward(sym.nodes[sym.subtrees[t][i]]);
+  });
+
   Eigen::MatrixXd out(right_sides.rows(), sides);
   for (Index i = 0; i < sym.size; ++i) out.middleRows(at(i), d) = x.middleRows(at(sym.new_of_old[i]), d);
   return out;

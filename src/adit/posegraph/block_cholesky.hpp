@@ -52,9 +52,8 @@ class BlockCholesky {
  private:
   std::shared_ptr<const BlockSymbolic> symbolic_;
   std::size_t block_size_;
-  std::vector<double> factor_;  // the supernodes' columns, one after another
-  std::vector<std::vector<double>>
-      updates_;  // what each supernode hands to its parent; empty between factorizations
+  std::vector<double> factor_;   // the supernodes' columns, one after another
+  std::vector<double> updates_;  // room for what supernodes hand to their parents
 };
 
 }  // namespace adit

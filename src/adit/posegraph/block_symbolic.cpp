@@ -184,6 +184,7 @@ BlockSymbolic::BlockSymbolic(const BlockPattern& pattern)
   link_supernodes();
   place_blocks(pattern);
   cut_subtrees();
+  place_updates();
 }
 
 void BlockSymbolic::link_supernodes() {
@@ -195,6 +196,8 @@ void BlockSymbolic::link_supernodes() {
     Supernode& node = nodes[s];
     node.factor_offset = factor_size;
     factor_size += node.height() * node.width;
+    node.below_offset = below_size;
+    below_size += node.below.size();
     work += node.work();
     if (node.below.empty()) continue;
     node.parent = node_of[node.below.front()];
@@ -266,6 +269,35 @@ void BlockSymbolic::cut_subtrees() {
     std::vector<Index>& subtree = subtrees.emplace_back(root - first[root] + 1);
     std::iota(subtree.begin(), subtree.end(), first[root]);
   }
+}
+
+// Each update lives from its supernode to its parent. Subtrees run at the same time, so that each has a room
+// of its own; within one the order is known, and an update takes the first gap that is wide enough.
+void BlockSymbolic::place_updates() {
+  struct Piece {
+    Index begin;
+    Index end;
+    Index node;
+  };
+  std::vector<Piece> handed_up;  // by the roots of the subtrees
+  const auto run = [&](const std::vector<Index>& list, std::vector<Piece> live, Index base) {
+    for (const Index s : list) {
+      const Index room = nodes[s].below.size() * nodes[s].below.size();
+      Index begin = base;
+      auto at = live.begin();
+      for (; at != live.end() && at->begin < begin + room; ++at) begin = std::max(begin, at->end);
+      nodes[s].update_offset = begin;
+      live.insert(at, {begin, begin + room, s});
+      update_room = std::max(update_room, begin + room);
+      std::erase_if(live, [&](const Piece& piece) { return nodes[piece.node].parent == s; });
+    }
+    return live;
+  };
+  for (const std::vector<Index>& subtree : subtrees) {
+    const std::vector<Piece> left = run(subtree, {}, update_room);
+    handed_up.insert(handed_up.end(), left.begin(), left.end());
+  }
+  run(top, std::move(handed_up), 0);
 }
 
 Index BlockPattern::block(Index i, Index j) const {

@@ -30,6 +30,8 @@ struct Supernode {
   std::vector<std::size_t> children;  ///< Ascending.
   std::vector<Scatter> scatter;
   std::size_t factor_offset = 0;  ///< Of its columns in the factor, for block size 1.
+  std::size_t update_offset = 0;  ///< Of what it hands to its parent in the room for updates, the same.
+  std::size_t below_offset = 0;   ///< Of its rows below in a vector of all supernodes' rows below.
 
   [[nodiscard]] std::size_t height() const { return width + below.size(); }
   [[nodiscard]] double work() const {
@@ -51,12 +53,15 @@ class BlockSymbolic {
   std::vector<std::vector<std::size_t>> subtrees;  ///< Independent, largest first; each in order.
   std::vector<std::size_t> top;                    ///< The supernodes above all subtrees, in order.
   std::size_t factor_size = 0;
+  std::size_t below_size = 0;
+  std::size_t update_room = 0;  ///< All updates that live at one time find room in this, for block size 1.
   double work = 0.0;
 
  private:
   void link_supernodes();
   void place_blocks(const BlockPattern& pattern);
   void cut_subtrees();
+  void place_updates();
 };
 
 }  // namespace adit

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "adit/posegraph/normal_equations.hpp"
+#include "adit/core/parallel.hpp"
 
 namespace adit {
 namespace {
@@ -18,7 +18,18 @@ using Rotation = Eigen::Matrix<double, kDim<P>, kDim<P>>;
 template <class P>
 using Point = Eigen::Matrix<double, kDim<P>, 1>;
 
+// Newton's iteration for the polar factor, X <- (X + X^-T) / 2, keeps the sign of the determinant and doubles
+// the correct digits each time (Higham, "Functions of Matrices", section 8.3); what is far from a rotation or
+// turned inside out takes the decomposition.
 Matrix3 nearest_rotation(const Matrix3& m) {
+  constexpr int kRounds = 8;
+  Matrix3 X = m;
+  for (int i = 0; i < kRounds && X.determinant() > 0.1; ++i) {
+    const Matrix3 next = 0.5 * (X + X.inverse().transpose());
+    const double change = (next - X).squaredNorm();
+    X = next;
+    if (change < 1e-26) return X;
+  }
   const Eigen::JacobiSVD<Matrix3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Matrix3 U = svd.matrixU();
   if ((U * svd.matrixV().transpose()).determinant() < 0.0) U.col(2) *= -1.0;
@@ -28,6 +39,8 @@ Eigen::Matrix2d nearest_rotation(const Eigen::Matrix2d& m) {
   const double angle = std::atan2(m(1, 0) - m(0, 1), m(0, 0) + m(1, 1));
   return Eigen::Rotation2Dd(angle).toRotationMatrix();
 }
+
+constexpr std::size_t kGrain = 256;  // nodes that one thread takes at a time
 
 Pose pose_of(const Matrix3& R, const Vector3& t) { return {R, t}; }
 Pose2 pose_of(const Eigen::Matrix2d& R, const Eigen::Vector2d& t) {
@@ -42,35 +55,45 @@ double rotation_weight(const typename BasicPoseGraph<P>::Edge& edge) {
 }
 
 // Both least-squares problems read: sum over edges of |x_to - M x_from - b|^2 in the metric W, unknowns of
-// kDim rows. Each fills in M, b and W of an edge; anchors' values move to the right side.
-template <class P, class EdgeModel>
-Result<std::vector<Eigen::MatrixXd>> solve_linear(const BasicPoseGraph<P>& graph,
-                                                  const GraphStructure& structure,
-                                                  const std::shared_ptr<const BlockSymbolic>& symbolic,
-                                                  std::vector<Eigen::MatrixXd> x, const EdgeModel& model) {
+// kDim rows and kSides columns.
+template <int kDim, int kSides>
+struct EdgeModel {
+  Eigen::Matrix<double, kDim, kDim> M;
+  Eigen::Matrix<double, kDim, kSides> b;
+  Eigen::Matrix<double, kDim, kDim> W;
+};
+
+// `x` holds the anchors' values, which move to the right side; `model` gives the EdgeModel of an edge.
+template <class P, int kSides, class Model>
+Result<std::vector<Eigen::Matrix<double, kDim<P>, kSides>>> solve_linear(
+    const BasicPoseGraph<P>& graph, const GraphStructure& structure,
+    const std::shared_ptr<const BlockSymbolic>& symbolic,
+    std::vector<Eigen::Matrix<double, kDim<P>, kSides>> x, const Model& model) {
   constexpr int D = kDim<P>;
-  const Eigen::Index sides = x.front().cols();
+  using Unknown = Eigen::Matrix<double, D, kSides>;
   std::vector<EdgeTerms<D>> terms(structure.active_edges.size());
-  Eigen::MatrixXd right(static_cast<Eigen::Index>(structure.node_of_variable.size()) * D, sides);
+  Eigen::MatrixXd right(static_cast<Eigen::Index>(structure.node_of_variable.size()) * D, kSides);
   right.setZero();
   for (std::size_t a = 0; a < terms.size(); ++a) {
     const std::size_t e = structure.active_edges[a];
     const auto& edge = graph.edges[e];
-    const auto [M, b, W] = model(e);
-    const Rotation<P> WM = W * M;
-    terms[a].from_from = M.transpose() * WM;
-    terms[a].to_to = W;
+    const EdgeModel<D, kSides> m = model(e);
+    const Rotation<P> WM = m.W * m.M;
+    terms[a].from_from = m.M.transpose() * WM;
+    terms[a].to_to = m.W;
     terms[a].from_to = -WM.transpose();
     const std::size_t from = structure.variable_of_node[edge.from];
     const std::size_t to = structure.variable_of_node[edge.to];
-    const auto at = [&](std::size_t v) { return right.middleRows(static_cast<Eigen::Index>(v) * D, D); };
+    const auto at = [&](std::size_t v) {
+      return right.template middleRows<D>(static_cast<Eigen::Index>(v) * D);
+    };
     if (from == GraphStructure::kFixed) {
-      at(to) += W * (b + M * x[edge.from]);
+      at(to) += m.W * (m.b + m.M * x[edge.from]);
     } else if (to == GraphStructure::kFixed) {
-      at(from) += WM.transpose() * (x[edge.to] - b);
+      at(from) += WM.transpose() * Unknown(x[edge.to] - m.b);
     } else {
-      at(to) += W * b;
-      at(from) -= WM.transpose() * b;
+      at(to) += m.W * m.b;
+      at(from) -= WM.transpose() * m.b;
     }
   }
   BlockCholesky cholesky(symbolic, D);
@@ -80,7 +103,7 @@ Result<std::vector<Eigen::MatrixXd>> solve_linear(const BasicPoseGraph<P>& graph
   }
   const Eigen::MatrixXd solution = cholesky.solve(right);
   for (std::size_t v = 0; v < structure.node_of_variable.size(); ++v) {
-    x[structure.node_of_variable[v]] = solution.middleRows(static_cast<Eigen::Index>(v) * D, D);
+    x[structure.node_of_variable[v]] = solution.template middleRows<D>(static_cast<Eigen::Index>(v) * D);
   }
   return x;
 }
@@ -90,53 +113,59 @@ Result<std::vector<Eigen::MatrixXd>> solve_linear(const BasicPoseGraph<P>& graph
 template <class P>
 Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph,
                                      const std::vector<double>& edge_weights) {
-  constexpr int D = kDim<P>;
-  if (graph.nodes.empty()) return std::vector<P>{};
   const GraphStructure structure =
       structure_of(graph, connected_components(graph, edge_weights), edge_weights);
-  const auto symbolic = analyze(structure.pattern);
+  return chordal_poses(graph, edge_weights, structure, analyze(structure.pattern));
+}
+
+template <class P>
+Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph, const std::vector<double>& edge_weights,
+                                     const GraphStructure& structure,
+                                     const std::shared_ptr<const BlockSymbolic>& symbolic) {
+  constexpr int D = kDim<P>;
   const auto weight = [&](std::size_t e) { return edge_weights.empty() ? 1.0 : edge_weights[e]; };
-  struct Model {
-    Rotation<P> M;
-    Eigen::MatrixXd b;
-    Rotation<P> W;
-  };
 
   // R_to = R_from Z, transposed so that the unknowns stand on the right: R_to^T = Z^T R_from^T.
-  std::vector<Eigen::MatrixXd> x;
+  std::vector<Rotation<P>> x;
   for (const auto& node : graph.nodes) x.push_back(node.pose.rotation_matrix().transpose());
-  const auto rotation_model = [&](std::size_t e) -> Model {
+  const auto rotation_model = [&](std::size_t e) -> EdgeModel<D, D> {
     const auto& edge = graph.edges[e];
-    return {edge.T_from_to.rotation_matrix().transpose(), Eigen::MatrixXd::Zero(D, D),
+    return {edge.T_from_to.rotation_matrix().transpose(), Rotation<P>::Zero(),
             weight(e) * rotation_weight<P>(edge) * Rotation<P>::Identity()};
   };
-  auto transposed = solve_linear(graph, structure, symbolic, std::move(x), rotation_model);
+  auto transposed = solve_linear<P, D>(graph, structure, symbolic, std::move(x), rotation_model);
   if (!transposed) return tl::unexpected(transposed.error());
-  std::vector<Rotation<P>> rotations;
-  for (const Eigen::MatrixXd& m : *transposed) {
-    rotations.push_back(nearest_rotation(Rotation<P>(m.transpose())));
-  }
+  std::vector<Rotation<P>>& rotations = *transposed;
+  parallel_for_each(
+      rotations.size(),
+      [&](std::size_t i) { rotations[i] = nearest_rotation(Rotation<P>(rotations[i].transpose())); }, kGrain);
 
   // t_to = t_from + R_from t_Z, in the metric of the residual: r_t = (R_from Z)^T (t_to - t_from - R_from
   // t_Z).
-  x.clear();
-  for (const auto& node : graph.nodes) x.emplace_back(node.pose.translation());
-  const auto translation_model = [&](std::size_t e) -> Model {
+  std::vector<Point<P>> t;
+  for (const auto& node : graph.nodes) t.push_back(node.pose.translation());
+  const auto translation_model = [&](std::size_t e) -> EdgeModel<D, 1> {
     const auto& edge = graph.edges[e];
     const Rotation<P> R = rotations[edge.from] * edge.T_from_to.rotation_matrix();
     const Rotation<P> information = edge.information.template topLeftCorner<D, D>();
     return {Rotation<P>::Identity(), rotations[edge.from] * edge.T_from_to.translation(),
             weight(e) * R * information * R.transpose()};
   };
-  const auto translations = solve_linear(graph, structure, symbolic, std::move(x), translation_model);
+  const auto translations = solve_linear<P, 1>(graph, structure, symbolic, std::move(t), translation_model);
   if (!translations) return tl::unexpected(translations.error());
   std::vector<P> poses = poses_of(graph);
   for (const std::size_t node : structure.node_of_variable) {
-    poses[node] = pose_of(rotations[node], Point<P>((*translations)[node]));
+    poses[node] = pose_of(rotations[node], (*translations)[node]);
   }
   return poses;
 }
 
+template Result<std::vector<Pose>> chordal_poses(const PoseGraph&, const std::vector<double>&,
+                                                 const GraphStructure&,
+                                                 const std::shared_ptr<const BlockSymbolic>&);
+template Result<std::vector<Pose2>> chordal_poses(const PoseGraph2&, const std::vector<double>&,
+                                                  const GraphStructure&,
+                                                  const std::shared_ptr<const BlockSymbolic>&);
 template Result<std::vector<Pose>> chordal_poses(const PoseGraph&, const std::vector<double>&);
 template Result<std::vector<Pose2>> chordal_poses(const PoseGraph2&, const std::vector<double>&);
 

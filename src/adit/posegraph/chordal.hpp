@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "adit/core/result.hpp"
+#include "adit/posegraph/normal_equations.hpp"
 #include "adit/posegraph/pose_graph.hpp"
 
 namespace adit {
@@ -16,5 +18,12 @@ namespace adit {
 template <class P>
 [[nodiscard]] Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph,
                                                    const std::vector<double>& edge_weights = {});
+
+/// The same for a graph whose structure (with these weights) is known already.
+template <class P>
+[[nodiscard]] Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph,
+                                                   const std::vector<double>& edge_weights,
+                                                   const GraphStructure& structure,
+                                                   const std::shared_ptr<const BlockSymbolic>& symbolic);
 
 }  // namespace adit

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "adit/core/parallel.hpp"
+
 namespace adit::dense {
 namespace {
 
@@ -24,7 +26,7 @@ struct VectorOf {
 // C -= A B^T for one strip of kStrip rows and kColumns columns. `b` points at the first of the columns inside
 // its strip. The sums stay in registers: kStrip * kColumns / kWidth of them, eight for each instruction set,
 // which hides the latency of the additions.
-template <std::size_t kWidth, std::size_t kColumns>
+template <std::size_t kWidth, std::size_t kColumns, Into kInto>
 ADIT_INLINE void update_columns(double* c, std::size_t stride, const double* a, const double* b,
                                 std::size_t depth) {
   using Vector = typename VectorOf<kWidth>::Type;
@@ -38,16 +40,17 @@ ADIT_INLINE void update_columns(double* c, std::size_t stride, const double* a, 
   }
   for (std::size_t j = 0; j < kColumns; ++j) {
     Vector* to = reinterpret_cast<Vector*>(c + j * stride);
-    for (std::size_t v = 0; v < kVectors; ++v) to[v] -= sum[j][v];
+    for (std::size_t v = 0; v < kVectors; ++v)
+      to[v] = kInto == Into::replace ? -sum[j][v] : to[v] - sum[j][v];
   }
 }
 
 // A tile of kStrip x kStrip elements.
-template <std::size_t kWidth, std::size_t kColumns>
+template <std::size_t kWidth, std::size_t kColumns, Into kInto>
 ADIT_INLINE void update_tile(double* c, std::size_t stride, const double* a, const double* b,
                              std::size_t depth) {
   for (std::size_t j = 0; j < kStrip; j += kColumns)
-    update_columns<kWidth, kColumns>(c + j * stride, stride, a, b + j, depth);
+    update_columns<kWidth, kColumns, kInto>(c + j * stride, stride, a, b + j, depth);
 }
 
 // y -= X f for four columns of X, `stride` apart, with the factors f as far apart.
@@ -71,27 +74,29 @@ ADIT_INLINE void subtract_four_columns(double* y, const double* x, std::size_t s
     y[i] = (((y[i] - f0 * x[0]) - f1 * x[stride]) - f2 * x[2 * stride]) - f3 * x[3 * stride];
 }
 
-struct Kernels {
-  void (*tile)(double* c, std::size_t stride, const double* a, const double* b, std::size_t depth);
-  void (*four_columns)(double* y, const double* x, std::size_t stride, const double* factor, std::size_t n);
-};
+using Tile = void (*)(double* c, std::size_t stride, const double* a, const double* b, std::size_t depth);
+using FourColumns = void (*)(double* y, const double* x, std::size_t stride, const double* factor,
+                             std::size_t n);
 
 #if defined(__x86_64__)
+template <Into kInto>
 [[gnu::target("avx2")]] void tile_avx2(double* c, std::size_t stride, const double* a, const double* b,
                                        std::size_t depth) {
-  update_tile<4, 4>(c, stride, a, b, depth);
+  update_tile<4, 4, kInto>(c, stride, a, b, depth);
 }
 [[gnu::target("avx2")]] void four_columns_avx2(double* y, const double* x, std::size_t stride,
                                                const double* factor, std::size_t n) {
   subtract_four_columns<4>(y, x, stride, factor, n);
 }
+template <Into kInto>
 [[gnu::target("avx512f")]] void tile_avx512(double* c, std::size_t stride, const double* a, const double* b,
                                             std::size_t depth) {
-  update_tile<8, 8>(c, stride, a, b, depth);
+  update_tile<8, 8, kInto>(c, stride, a, b, depth);
 }
 #endif
+template <Into kInto>
 void tile_baseline(double* c, std::size_t stride, const double* a, const double* b, std::size_t depth) {
-  update_tile<2, 2>(c, stride, a, b, depth);
+  update_tile<2, 2, kInto>(c, stride, a, b, depth);
 }
 void four_columns_baseline(double* y, const double* x, std::size_t stride, const double* factor,
                            std::size_t n) {
@@ -99,13 +104,19 @@ void four_columns_baseline(double* y, const double* x, std::size_t stride, const
 }
 
 // One binary, the widest vectors of the machine it runs on.
+struct Kernels {
+  Tile tile[2];  // by Into
+  FourColumns four_columns;
+};
 Kernels widest_kernels() {
 #if defined(__x86_64__)
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f")) return {tile_avx512, four_columns_avx2};
-  if (__builtin_cpu_supports("avx2")) return {tile_avx2, four_columns_avx2};
+  if (__builtin_cpu_supports("avx512f"))
+    return {{tile_avx512<Into::subtract>, tile_avx512<Into::replace>}, four_columns_avx2};
+  if (__builtin_cpu_supports("avx2"))
+    return {{tile_avx2<Into::subtract>, tile_avx2<Into::replace>}, four_columns_avx2};
 #endif
-  return {tile_baseline, four_columns_baseline};
+  return {{tile_baseline<Into::subtract>, tile_baseline<Into::replace>}, four_columns_baseline};
 }
 const Kernels kKernels = widest_kernels();
 
@@ -121,8 +132,7 @@ std::size_t factorize_columns(double* a, std::size_t stride, std::size_t rows, s
     }
     for (; p < j; ++p) {
       const double* x = a + p * stride + j;
-      const double factor = *x;
-      for (std::size_t i = 0; i < rows - j; ++i) column[i] -= factor * x[i];
+      subtract_scaled(column, x, *x, rows - j);
     }
     if (!(*column > min_pivot[j])) return j;
     const double pivot = std::sqrt(*column);
@@ -155,23 +165,26 @@ void PackedPanel::pack(const double* a, std::size_t stride, std::size_t rows, st
 }
 
 void subtract_outer_product(double* c, std::size_t stride, const PackedPanel& a, std::size_t begin,
-                            std::size_t end) {
-  const auto update = [&](double* to, std::size_t to_stride, std::size_t s, std::size_t j) {
-    kKernels.tile(to, to_stride, a.strip(s), a.strip(j / kStrip), a.depth());
-  };
+                            std::size_t end, Into into) {
+  const Tile whole_tile = kKernels.tile[static_cast<int>(into)];
+  const Tile into_copy = kKernels.tile[static_cast<int>(Into::replace)];
   for (std::size_t j = begin; j < end; j += kStrip) {
     const std::size_t width = std::min(kStrip, end - j);
+    const double* b = a.strip(j / kStrip);
     for (std::size_t s = j / kStrip; s * kStrip < a.rows(); ++s) {
       double* to = c + j * stride + s * kStrip;
       const std::size_t height = std::min(kStrip, a.rows() - s * kStrip);
       if (width == kStrip && height == kStrip) {
-        update(to, stride, s, j);
+        whole_tile(to, stride, a.strip(s), b, a.depth());
         continue;
       }
-      double tile[kStrip * kStrip] = {};
-      update(tile, kStrip, s, j);
+      double tile[kStrip * kStrip];
+      into_copy(tile, kStrip, a.strip(s), b, a.depth());
       for (std::size_t q = 0; q < width; ++q) {
-        for (std::size_t i = 0; i < height; ++i) to[q * stride + i] += tile[q * kStrip + i];
+        for (std::size_t i = 0; i < height; ++i) {
+          double& element = to[q * stride + i];
+          element = (into == Into::replace ? 0.0 : element) + tile[q * kStrip + i];
+        }
       }
     }
   }
@@ -186,9 +199,26 @@ std::size_t factorize_panel(double* a, std::size_t stride, std::size_t rows, std
     if (done < last) return done;
     if (last == columns) break;
     packed.pack(a + first * stride + last, stride, rows - last, last - first);
-    subtract_outer_product(a + last * stride + last, stride, packed, 0, columns - last);
+    // A wide front is shared between threads by columns; each element is still one sum in one order.
+    parallel_for(columns - last, kStripe, [&](std::size_t begin, std::size_t end) {
+      subtract_outer_product(a + last * stride + last, stride, packed, begin, end);
+    });
   }
   return columns;
+}
+
+void subtract_scaled(double* y, const double* x, double factor, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) y[i] -= factor * x[i];
+}
+
+double dot(const double* x, const double* y, std::size_t n) {
+  double sum[8] = {};
+  std::size_t i = 0;
+  for (; i + 8 <= n; i += 8) {
+    for (std::size_t q = 0; q < 8; ++q) sum[q] += x[i + q] * y[i + q];
+  }
+  for (; i < n; ++i) sum[0] += x[i] * y[i];
+  return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
 }
 
 }  // namespace adit::dense

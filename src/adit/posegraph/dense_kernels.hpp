@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// The three dense operations of a multifrontal Cholesky factorization. Matrices are column-major: element
-/// (i, j) of A is a[i + j * stride].
+/// The dense operations of a multifrontal Cholesky factorization and of solving with it. Matrices are
+/// column-major: element (i, j) of A is a[i + j * stride].
 ///
 /// Each output element is one sum taken in a fixed order with separate multiplication and addition, whatever
 /// the vector width, so that machines with and without AVX give the same bytes.
@@ -14,6 +14,8 @@ namespace adit::dense {
 
 /// Rows are packed in strips of this many, as the update kernel reads them.
 constexpr std::size_t kStrip = 8;
+/// Columns that one thread takes at a time: a multiple of kStrip.
+constexpr std::size_t kStripe = 96;
 
 /// A panel of rows x depth, cut into strips of kStrip rows that each lie in memory depth by depth, padded
 /// with zeros.
@@ -30,16 +32,23 @@ class PackedPanel {
   std::size_t depth_ = 0;
 };
 
-/// Lower trapezoid of C -= A B^T, where B is the first `columns` rows of A: columns [begin, end) of it, rows
-/// from the strip that holds the diagonal downwards; `begin` is a multiple of kStrip. A few elements just
-/// above the diagonal are overwritten as well.
+/// Lower trapezoid of C -= A B^T, or of C = -A B^T, where B is the first `columns` rows of A: columns [begin,
+/// end) of it, rows from the strip that holds the diagonal downwards; `begin` is a multiple of kStrip. A few
+/// elements just above the diagonal are overwritten as well.
+enum class Into { subtract, replace };
 void subtract_outer_product(double* c, std::size_t stride, const PackedPanel& a, std::size_t begin,
-                            std::size_t end);
+                            std::size_t end, Into into = Into::subtract);
 
 /// Factorizes the first `columns` columns of a symmetric positive definite matrix of `rows` rows, given by
 /// its lower trapezoid: the top square becomes L11, what is below L21 = A21 L11^-T. Returns the first column
 /// whose pivot is not above `min_pivot[column]`, or `columns` when all is well.
 std::size_t factorize_panel(double* a, std::size_t stride, std::size_t rows, std::size_t columns,
                             const double* min_pivot);
+
+/// y -= factor * x.
+void subtract_scaled(double* y, const double* x, double factor, std::size_t n);
+
+/// Scalar product; eight partial sums in a fixed order.
+[[nodiscard]] double dot(const double* x, const double* y, std::size_t n);
 
 }  // namespace adit::dense

@@ -88,6 +88,27 @@ std::vector<double> sum_terms(const GraphStructure& structure, const std::vector
   return values;
 }
 
+template <int D>
+Eigen::VectorXd times(const BlockPattern& pattern, const std::vector<double>& values,
+                      const Eigen::VectorXd& x) {
+  using Vector = Eigen::Matrix<double, D, 1>;
+  using Block = Eigen::Map<const Eigen::Matrix<double, D, D>>;
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(x.size());
+  const auto at = [](std::size_t i) { return static_cast<Eigen::Index>(i * D); };
+  for (std::size_t j = 0; j < pattern.size(); ++j) {
+    const std::size_t diagonal = pattern.column_start[j];
+    const Vector own = x.segment<D>(at(j));
+    Vector sum = Block(values.data() + diagonal * D * D) * own;
+    for (std::size_t p = diagonal + 1; p < pattern.column_start[j + 1]; ++p) {
+      const Block block(values.data() + p * D * D);
+      out.segment<D>(at(pattern.row[p])) += block * own;
+      sum += block.transpose() * x.segment<D>(at(pattern.row[p]));
+    }
+    out.segment<D>(at(j)) += sum;
+  }
+  return out;
+}
+
 template <class P>
 NormalEquations linearize(const BasicPoseGraph<P>& graph, const GraphStructure& structure,
                           const std::vector<P>& poses, const std::vector<double>& edge_weights) {
@@ -137,6 +158,8 @@ template GraphStructure structure_of(const PoseGraph2&, const Components&, const
 template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<2>>&);
 template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<3>>&);
 template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<6>>&);
+template Eigen::VectorXd times<3>(const BlockPattern&, const std::vector<double>&, const Eigen::VectorXd&);
+template Eigen::VectorXd times<6>(const BlockPattern&, const std::vector<double>&, const Eigen::VectorXd&);
 template NormalEquations linearize(const PoseGraph&, const GraphStructure&, const std::vector<Pose>&,
                                    const std::vector<double>&);
 template NormalEquations linearize(const PoseGraph2&, const GraphStructure&, const std::vector<Pose2>&,

@@ -36,6 +36,10 @@ struct NormalEquations {
   std::vector<double> values;  ///< Blocks of H in the order of the pattern.
   Eigen::VectorXd gradient;    ///< g = sum of w J^T Omega r.
 };
+/// H x.
+template <int D>
+[[nodiscard]] Eigen::VectorXd times(const BlockPattern& pattern, const std::vector<double>& values,
+                                    const Eigen::VectorXd& x);
 template <class P>
 [[nodiscard]] NormalEquations linearize(const BasicPoseGraph<P>& graph, const GraphStructure& structure,
                                         const std::vector<P>& poses, const std::vector<double>& edge_weights);

@@ -6,6 +6,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "adit/core/check.hpp"
@@ -27,6 +29,11 @@ constexpr double kNoise = 1e-16;
 constexpr double kFirstLambda = 1e-6;
 constexpr double kSmallestLambda = 1e-11;
 constexpr double kLargestLambda = 1e8;
+
+// Of the steps by an earlier factor: residual left, of the linear system, and rounds after which a new factor
+// pays.
+constexpr double kForcing = 0.05;
+constexpr int kMaxRounds = 4;
 
 template <class P>
 double edge_cost(const typename BasicPoseGraph<P>::Edge& edge, const std::vector<P>& poses) {
@@ -58,16 +65,6 @@ bool is_indefinite(const Matrix& information) {
   return solver.eigenvalues().minCoeff() < -1e-9 * solver.eigenvalues().cwiseAbs().maxCoeff();
 }
 
-// The diagonal of H, as one vector.
-Eigen::VectorXd diagonal_of(const BlockPattern& pattern, const std::vector<double>& values, std::size_t d) {
-  Eigen::VectorXd diagonal(static_cast<Eigen::Index>(pattern.size() * d));
-  for (std::size_t v = 0; v < pattern.size(); ++v) {
-    const double* block = values.data() + pattern.column_start[v] * d * d;
-    for (std::size_t i = 0; i < d; ++i) diagonal[static_cast<Eigen::Index>(v * d + i)] = block[i * d + i];
-  }
-  return diagonal;
-}
-
 std::vector<double> damped(const BlockPattern& pattern, std::vector<double> values, std::size_t d,
                            double lambda) {
   for (std::size_t v = 0; v < pattern.size(); ++v) {
@@ -93,12 +90,12 @@ template <class P>
 class Minimizer {
  public:
   Minimizer(const BasicPoseGraph<P>& graph, const OptimizerConfig& config, const std::vector<double>& weights,
-            const Components& components)
+            const GraphStructure& structure, const std::shared_ptr<const BlockSymbolic>& symbolic)
       : graph_(graph),
         config_(config),
         weights_(weights),
-        structure_(structure_of(graph, components, weights)),
-        cholesky_(analyze(structure_.pattern), P::kDof),
+        structure_(structure),
+        cholesky_(symbolic, P::kDof),
         lambda_(config.method == "gn" ? 0.0 : config.initial_damping) {}
 
   void run(Solution<P>& solution) {
@@ -112,16 +109,17 @@ class Minimizer {
     if (!current_) equations_ = linearize(graph_, structure_, s.poses, weights_);
     current_ = true;
     ++s.iterations;
-    const auto free =
-        lambda_ > 0.0 ? cholesky_.factorize(damped(structure_.pattern, equations_.values, P::kDof, lambda_))
-                      : cholesky_.factorize(equations_.values);
-    if (free) return give_up(s, graph_.nodes[structure_.node_of_variable[*free]].key);
+    std::optional<Eigen::VectorXd> step = step_by_kept_factor();
+    if (!step) {
+      if (const auto free = factorize())
+        return give_up(s, graph_.nodes[structure_.node_of_variable[*free]].key);
+      step = cholesky_.solve(-equations_.gradient);
+    }
     if (s.cost_final <= kNoise * static_cast<double>(graph_.edges.size()))
       return converge(s, "the cost is zero");
-    const Eigen::VectorXd step = cholesky_.solve(-equations_.gradient);
-    const double predicted = predicted_decrease(step);
-    if (!step.allFinite()) return worsen(s);
-    std::vector<P> poses = stepped(s.poses, structure_, step);
+    const double predicted = predicted_decrease(*step);
+    if (!step->allFinite()) return worsen(s);
+    std::vector<P> poses = stepped(s.poses, structure_, *step);
     const double cost = total_cost(graph_, poses, weights_);
     const double decrease = s.cost_final - cost;
     // Near the minimum rounding decides the sign of the last decrease, so the model's word ends the search as
@@ -139,14 +137,45 @@ class Minimizer {
     worsen(s);
   }
 
-  // Of the quadratic model: -2 g.x - x.H x, where (H + lambda D) x = -g.
-  [[nodiscard]] double predicted_decrease(const Eigen::VectorXd& step) const {
-    double out = -equations_.gradient.dot(step);
-    if (lambda_ > 0.0) {
-      const Eigen::VectorXd diagonal = diagonal_of(structure_.pattern, equations_.values, P::kDof);
-      out += lambda_ * step.dot(diagonal.cwiseProduct(step));
+  // Variable that the matrix leaves free, or nothing.
+  [[nodiscard]] std::optional<std::size_t> factorize() {
+    const auto free =
+        lambda_ > 0.0 ? cholesky_.factorize(damped(structure_.pattern, equations_.values, P::kDof, lambda_))
+                      : cholesky_.factorize(equations_.values);
+    kept_ = !free && lambda_ == 0.0;
+    return free;
+  }
+
+  // Solves H x = -g by conjugate gradients, preconditioned by the factor of an earlier H: near the minimum H
+  // hardly changes, and two or three rounds cost a fraction of a factorization. Nothing when it takes more.
+  [[nodiscard]] std::optional<Eigen::VectorXd> step_by_kept_factor() {
+    if (!kept_ || lambda_ > 0.0) return std::nullopt;
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(equations_.gradient.size());
+    Eigen::VectorXd r = -equations_.gradient;
+    Eigen::VectorXd z = cholesky_.solve(r);
+    Eigen::VectorXd p = z;
+    double rz = r.dot(z);
+    const double enough = kForcing * kForcing * rz;
+    for (int round = 0; round < kMaxRounds; ++round) {
+      const Eigen::VectorXd Hp = times<P::kDof>(structure_.pattern, equations_.values, p);
+      const double curvature = p.dot(Hp);
+      if (!(curvature > 0.0)) break;
+      x += rz / curvature * p;
+      r -= rz / curvature * Hp;
+      z = cholesky_.solve(r);
+      const double next = r.dot(z);
+      if (next <= enough) return x;
+      p = z + next / rz * p;
+      rz = next;
     }
-    return out;
+    kept_ = false;
+    return std::nullopt;
+  }
+
+  // Of the quadratic model: -2 g.x - x.H x.
+  [[nodiscard]] double predicted_decrease(const Eigen::VectorXd& step) const {
+    return -2.0 * equations_.gradient.dot(step) -
+           step.dot(times<P::kDof>(structure_.pattern, equations_.values, step));
   }
 
   static double lower(double lambda) { return lambda <= kSmallestLambda ? 0.0 : lambda * 0.1; }
@@ -176,8 +205,9 @@ class Minimizer {
   const BasicPoseGraph<P>& graph_;
   const OptimizerConfig& config_;
   const std::vector<double>& weights_;
-  GraphStructure structure_;
+  const GraphStructure& structure_;
   BlockCholesky cholesky_;
+  bool kept_ = false;  // cholesky_ holds the factor of an H of some earlier poses
   NormalEquations equations_;
   bool current_ = false;  // equations_ belong to the present poses
   double lambda_;
@@ -186,9 +216,10 @@ class Minimizer {
 // Puts the start into `solution`; false when the configuration's start does not exist.
 template <class P>
 void choose_start(const BasicPoseGraph<P>& graph, const OptimizerConfig& config,
-                  const std::vector<double>& weights, Solution<P>& solution) {
+                  const std::vector<double>& weights, const GraphStructure& structure,
+                  const std::shared_ptr<const BlockSymbolic>& symbolic, Solution<P>& solution) {
   if (config.initialization == "none") return;
-  Result<std::vector<P>> chordal = chordal_poses(graph, weights);
+  Result<std::vector<P>> chordal = chordal_poses(graph, weights, structure, symbolic);
   if (!chordal) {
     solution.notes.push_back("no chordal initialization: " + chordal.error().message);
     return;
@@ -269,8 +300,10 @@ Solution<P> optimize(const BasicPoseGraph<P>& graph, const OptimizerConfig& conf
   }
   solution.status = SolveStatus::max_iterations;
   solution.reason = format("stopped after {} iterations", config.max_iterations);
-  choose_start(graph, config, edge_weights, solution);
-  Minimizer<P>(graph, config, edge_weights, components).run(solution);
+  const GraphStructure structure = structure_of(graph, components, edge_weights);
+  const auto symbolic = analyze(structure.pattern);
+  choose_start(graph, config, edge_weights, structure, symbolic, solution);
+  Minimizer<P>(graph, config, edge_weights, structure, symbolic).run(solution);
   return solution;
 }
 
