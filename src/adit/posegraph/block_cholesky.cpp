@@ -144,6 +144,9 @@ Eigen::MatrixXd BlockCholesky::solve(const Eigen::Ref<const Eigen::MatrixXd>& ri
   for (Index i = 0; i < sym.size; ++i)
     x.middleRows(at(sym.new_of_old[i]), d) = right_sides.middleRows(at(i), d);
 
+  const auto panel_of = [&](const Supernode& node) {
+    return factor_.data() + node.factor_offset * block_size_ * block_size_;
+  };
   // What each supernode's rows below owe to its columns: added up by the parent, so that subtrees stay apart.
   Eigen::MatrixXd owed(at(sym.below_size), sides);
   const auto forward = [&](const Supernode& node) {
@@ -154,14 +157,8 @@ Eigen::MatrixXd BlockCholesky::solve(const Eigen::Ref<const Eigen::MatrixXd>& ri
       for (Index i = 0; i < child.below.size(); ++i)
         t.middleRows(at(child.in_parent[i]), d) += owed.middleRows(at(child.below_offset + i), d);
     }
-    const double* column = factor_.data() + node.factor_offset * block_size_ * block_size_;
-    for (Eigen::Index j = 0; j < at(node.width); ++j, column += t.rows()) {
-      for (Eigen::Index side = 0; side < sides; ++side) {
-        t(j, side) /= column[j];
-        dense::subtract_scaled(&t(j, side) + 1, column + j + 1, t(j, side),
-                               static_cast<std::size_t>(t.rows() - j - 1));
-      }
-    }
+    for (Eigen::Index side = 0; side < sides; ++side)
+      dense::solve_lower(panel_of(node), static_cast<Index>(t.rows()), node.width * block_size_, &t(0, side));
     x.middleRows(at(node.first), at(node.width)) = t.topRows(at(node.width));
     owed.middleRows(at(node.below_offset), at(node.below.size())) = t.bottomRows(at(node.below.size()));
   };
@@ -170,14 +167,9 @@ Eigen::MatrixXd BlockCholesky::solve(const Eigen::Ref<const Eigen::MatrixXd>& ri
     t.topRows(at(node.width)) = x.middleRows(at(node.first), at(node.width));
     for (Index i = 0; i < node.below.size(); ++i)
       t.middleRows(at(node.width + i), d) = x.middleRows(at(node.below[i]), d);
-    const double* column = factor_.data() + node.factor_offset * block_size_ * block_size_;
-    for (Eigen::Index j = at(node.width); j-- > 0;) {
-      const double* below = column + j * t.rows() + j + 1;
-      for (Eigen::Index side = 0; side < sides; ++side) {
-        t(j, side) -= dense::dot(below, &t(j, side) + 1, static_cast<std::size_t>(t.rows() - j - 1));
-        t(j, side) /= below[-1];
-      }
-    }
+    for (Eigen::Index side = 0; side < sides; ++side)
+      dense::solve_lower_transposed(panel_of(node), static_cast<Index>(t.rows()), node.width * block_size_,
+                                    &t(0, side));
     x.middleRows(at(node.first), at(node.width)) = t.topRows(at(node.width));
   };
   parallel_for_each(sym.subtrees.size(), [&](Index t) {

@@ -17,13 +17,16 @@ template <class P>
 using Rotation = Eigen::Matrix<double, kDim<P>, kDim<P>>;
 template <class P>
 using Point = Eigen::Matrix<double, kDim<P>, 1>;
+using Scalar = Eigen::Matrix<double, 1, 1>;
 
 // Newton's iteration for the polar factor, X <- (X + X^-T) / 2, keeps the sign of the determinant and doubles
 // the correct digits each time (Higham, "Functions of Matrices", section 8.3); what is far from a rotation or
 // turned inside out takes the decomposition.
 Matrix3 nearest_rotation(const Matrix3& m) {
-  constexpr int kRounds = 8;
-  Matrix3 X = m;
+  constexpr int kRounds = 10;
+  // Least squares shrinks the matrices where the graph is loose; scaled to volume 1 they are near rotations.
+  const double volume = m.determinant();
+  Matrix3 X = volume > 0.0 ? Matrix3(m / std::cbrt(volume)) : m;
   for (int i = 0; i < kRounds && X.determinant() > 0.1; ++i) {
     const Matrix3 next = 0.5 * (X + X.inverse().transpose());
     const double change = (next - X).squaredNorm();
@@ -55,37 +58,37 @@ double rotation_weight(const typename BasicPoseGraph<P>::Edge& edge) {
 }
 
 // Both least-squares problems read: sum over edges of |x_to - M x_from - b|^2 in the metric W, unknowns of
-// kDim rows and kSides columns.
-template <int kDim, int kSides>
+// kRows rows and kSides columns.
+template <int kRows, int kSides>
 struct EdgeModel {
-  Eigen::Matrix<double, kDim, kDim> M;
-  Eigen::Matrix<double, kDim, kSides> b;
-  Eigen::Matrix<double, kDim, kDim> W;
+  Eigen::Matrix<double, kRows, kRows> M;
+  Eigen::Matrix<double, kRows, kSides> b;
+  Eigen::Matrix<double, kRows, kRows> W;
 };
 
 // `x` holds the anchors' values, which move to the right side; `model` gives the EdgeModel of an edge.
-template <class P, int kSides, class Model>
-Result<std::vector<Eigen::Matrix<double, kDim<P>, kSides>>> solve_linear(
+template <class P, int kRows, int kSides, class Model>
+Result<std::vector<Eigen::Matrix<double, kRows, kSides>>> solve_linear(
     const BasicPoseGraph<P>& graph, const GraphStructure& structure,
-    const std::shared_ptr<const BlockSymbolic>& symbolic,
-    std::vector<Eigen::Matrix<double, kDim<P>, kSides>> x, const Model& model) {
-  constexpr int D = kDim<P>;
-  using Unknown = Eigen::Matrix<double, D, kSides>;
-  std::vector<EdgeTerms<D>> terms(structure.active_edges.size());
-  Eigen::MatrixXd right(static_cast<Eigen::Index>(structure.node_of_variable.size()) * D, kSides);
+    const std::shared_ptr<const BlockSymbolic>& symbolic, std::vector<Eigen::Matrix<double, kRows, kSides>> x,
+    const Model& model) {
+  using Unknown = Eigen::Matrix<double, kRows, kSides>;
+  using Square = Eigen::Matrix<double, kRows, kRows>;
+  std::vector<EdgeTerms<kRows>> terms(structure.active_edges.size());
+  Eigen::MatrixXd right(static_cast<Eigen::Index>(structure.node_of_variable.size()) * kRows, kSides);
   right.setZero();
   for (std::size_t a = 0; a < terms.size(); ++a) {
     const std::size_t e = structure.active_edges[a];
     const auto& edge = graph.edges[e];
-    const EdgeModel<D, kSides> m = model(e);
-    const Rotation<P> WM = m.W * m.M;
+    const EdgeModel<kRows, kSides> m = model(e);
+    const Square WM = m.W * m.M;
     terms[a].from_from = m.M.transpose() * WM;
     terms[a].to_to = m.W;
     terms[a].from_to = -WM.transpose();
     const std::size_t from = structure.variable_of_node[edge.from];
     const std::size_t to = structure.variable_of_node[edge.to];
     const auto at = [&](std::size_t v) {
-      return right.template middleRows<D>(static_cast<Eigen::Index>(v) * D);
+      return right.template middleRows<kRows>(static_cast<Eigen::Index>(v) * kRows);
     };
     if (from == GraphStructure::kFixed) {
       at(to) += m.W * (m.b + m.M * x[edge.from]);
@@ -96,14 +99,15 @@ Result<std::vector<Eigen::Matrix<double, kDim<P>, kSides>>> solve_linear(
       at(from) -= WM.transpose() * m.b;
     }
   }
-  BlockCholesky cholesky(symbolic, D);
-  if (const auto variable = cholesky.factorize(sum_terms<D>(structure, terms))) {
+  BlockCholesky cholesky(symbolic, kRows);
+  if (const auto variable = cholesky.factorize(sum_terms<kRows>(structure, terms))) {
     const std::size_t node = structure.node_of_variable[*variable];
     return fail("the edges leave node " + std::to_string(graph.nodes[node].key) + " free to move");
   }
   const Eigen::MatrixXd solution = cholesky.solve(right);
   for (std::size_t v = 0; v < structure.node_of_variable.size(); ++v) {
-    x[structure.node_of_variable[v]] = solution.template middleRows<D>(static_cast<Eigen::Index>(v) * D);
+    x[structure.node_of_variable[v]] =
+        solution.template middleRows<kRows>(static_cast<Eigen::Index>(v) * kRows);
   }
   return x;
 }
@@ -133,29 +137,29 @@ Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph, const std::
     return {edge.T_from_to.rotation_matrix().transpose(), Rotation<P>::Zero(),
             weight(e) * rotation_weight<P>(edge) * Rotation<P>::Identity()};
   };
-  auto transposed = solve_linear<P, D>(graph, structure, symbolic, std::move(x), rotation_model);
+  auto transposed = solve_linear<P, D, D>(graph, structure, symbolic, std::move(x), rotation_model);
   if (!transposed) return tl::unexpected(transposed.error());
   std::vector<Rotation<P>>& rotations = *transposed;
   parallel_for_each(
       rotations.size(),
       [&](std::size_t i) { rotations[i] = nearest_rotation(Rotation<P>(rotations[i].transpose())); }, kGrain);
 
-  // t_to = t_from + R_from t_Z, in the metric of the residual: r_t = (R_from Z)^T (t_to - t_from - R_from
-  // t_Z).
-  std::vector<Point<P>> t;
-  for (const auto& node : graph.nodes) t.push_back(node.pose.translation());
-  const auto translation_model = [&](std::size_t e) -> EdgeModel<D, 1> {
+  // t_to = t_from + R_from t_Z, with the mean weight of all directions: then all coordinates share one matrix
+  // of numbers.
+  std::vector<Eigen::Matrix<double, 1, D>> t;
+  for (const auto& node : graph.nodes) t.push_back(node.pose.translation().transpose());
+  const auto translation_model = [&](std::size_t e) -> EdgeModel<1, D> {
     const auto& edge = graph.edges[e];
-    const Rotation<P> R = rotations[edge.from] * edge.T_from_to.rotation_matrix();
-    const Rotation<P> information = edge.information.template topLeftCorner<D, D>();
-    return {Rotation<P>::Identity(), rotations[edge.from] * edge.T_from_to.translation(),
-            weight(e) * R * information * R.transpose()};
+    const double mean = edge.information.template topLeftCorner<D, D>().trace() / D;
+    return {Scalar::Ones(), (rotations[edge.from] * edge.T_from_to.translation()).transpose(),
+            Scalar::Constant(weight(e) * mean)};
   };
-  const auto translations = solve_linear<P, 1>(graph, structure, symbolic, std::move(t), translation_model);
+  const auto translations =
+      solve_linear<P, 1, D>(graph, structure, symbolic, std::move(t), translation_model);
   if (!translations) return tl::unexpected(translations.error());
   std::vector<P> poses = poses_of(graph);
   for (const std::size_t node : structure.node_of_variable) {
-    poses[node] = pose_of(rotations[node], (*translations)[node]);
+    poses[node] = pose_of(rotations[node], Point<P>((*translations)[node].transpose()));
   }
   return poses;
 }

@@ -53,15 +53,15 @@ ADIT_INLINE void update_tile(double* c, std::size_t stride, const double* a, con
     update_columns<kWidth, kColumns, kInto>(c + j * stride, stride, a, b + j, depth);
 }
 
-// y -= X f for four columns of X, `stride` apart, with the factors f as far apart.
+// y -= X f for four columns of X, `stride` apart, with factors `step` apart.
 template <std::size_t kWidth>
 ADIT_INLINE void subtract_four_columns(double* y, const double* x, std::size_t stride, const double* factor,
-                                       std::size_t n) {
+                                       std::size_t step, std::size_t n) {
   using Vector = typename VectorOf<kWidth>::Type;
   const double f0 = factor[0];
-  const double f1 = factor[stride];
-  const double f2 = factor[2 * stride];
-  const double f3 = factor[3 * stride];
+  const double f1 = factor[step];
+  const double f2 = factor[2 * step];
+  const double f3 = factor[3 * step];
   std::size_t i = 0;
   for (; i + kWidth <= n; i += kWidth, x += kWidth) {
     Vector& to = *reinterpret_cast<Vector*>(y + i);
@@ -74,9 +74,35 @@ ADIT_INLINE void subtract_four_columns(double* y, const double* x, std::size_t s
     y[i] = (((y[i] - f0 * x[0]) - f1 * x[stride]) - f2 * x[2 * stride]) - f3 * x[3 * stride];
 }
 
+// Products of four columns of X with y; each sum in eight parts, so that every width takes the same order.
+template <std::size_t kWidth>
+ADIT_INLINE void dot_four_columns(double* out, const double* x, std::size_t stride, const double* y,
+                                  std::size_t n) {
+  using Vector = typename VectorOf<kWidth>::Type;
+  constexpr std::size_t kParts = 8 / kWidth;
+  for (std::size_t j = 0; j < 4; ++j, x += stride) {
+    Vector sum[kParts] = {};
+    std::size_t i = 0;
+    for (; i + 8 <= n; i += 8) {
+      for (std::size_t v = 0; v < kParts; ++v)
+        sum[v] += *reinterpret_cast<const Vector*>(x + i + v * kWidth) *
+                  *reinterpret_cast<const Vector*>(y + i + v * kWidth);
+    }
+    double rest = 0.0;
+    for (; i < n; ++i) rest += x[i] * y[i];
+    double parts[8];
+    for (std::size_t v = 0; v < kParts; ++v) {
+      for (std::size_t q = 0; q < kWidth; ++q) parts[v * kWidth + q] = sum[v][q];
+    }
+    out[j] = ((parts[0] + parts[1]) + (parts[2] + parts[3])) +
+             ((parts[4] + parts[5]) + (parts[6] + parts[7])) + rest;
+  }
+}
+
 using Tile = void (*)(double* c, std::size_t stride, const double* a, const double* b, std::size_t depth);
-using FourColumns = void (*)(double* y, const double* x, std::size_t stride, const double* factor,
-                             std::size_t n);
+using SubtractColumns = void (*)(double* y, const double* x, std::size_t stride, const double* factor,
+                                 std::size_t step, std::size_t n);
+using DotColumns = void (*)(double* out, const double* x, std::size_t stride, const double* y, std::size_t n);
 
 #if defined(__x86_64__)
 template <Into kInto>
@@ -84,9 +110,13 @@ template <Into kInto>
                                        std::size_t depth) {
   update_tile<4, 4, kInto>(c, stride, a, b, depth);
 }
-[[gnu::target("avx2")]] void four_columns_avx2(double* y, const double* x, std::size_t stride,
-                                               const double* factor, std::size_t n) {
-  subtract_four_columns<4>(y, x, stride, factor, n);
+[[gnu::target("avx2")]] void subtract_columns_avx2(double* y, const double* x, std::size_t stride,
+                                                   const double* factor, std::size_t step, std::size_t n) {
+  subtract_four_columns<4>(y, x, stride, factor, step, n);
+}
+[[gnu::target("avx2")]] void dot_columns_avx2(double* out, const double* x, std::size_t stride,
+                                              const double* y, std::size_t n) {
+  dot_four_columns<4>(out, x, stride, y, n);
 }
 template <Into kInto>
 [[gnu::target("avx512f")]] void tile_avx512(double* c, std::size_t stride, const double* a, const double* b,
@@ -98,25 +128,32 @@ template <Into kInto>
 void tile_baseline(double* c, std::size_t stride, const double* a, const double* b, std::size_t depth) {
   update_tile<2, 2, kInto>(c, stride, a, b, depth);
 }
-void four_columns_baseline(double* y, const double* x, std::size_t stride, const double* factor,
-                           std::size_t n) {
-  subtract_four_columns<2>(y, x, stride, factor, n);
+void subtract_columns_baseline(double* y, const double* x, std::size_t stride, const double* factor,
+                               std::size_t step, std::size_t n) {
+  subtract_four_columns<2>(y, x, stride, factor, step, n);
+}
+void dot_columns_baseline(double* out, const double* x, std::size_t stride, const double* y, std::size_t n) {
+  dot_four_columns<2>(out, x, stride, y, n);
 }
 
 // One binary, the widest vectors of the machine it runs on.
 struct Kernels {
   Tile tile[2];  // by Into
-  FourColumns four_columns;
+  SubtractColumns subtract_columns;
+  DotColumns dot_columns;
 };
 Kernels widest_kernels() {
 #if defined(__x86_64__)
   __builtin_cpu_init();
   if (__builtin_cpu_supports("avx512f"))
-    return {{tile_avx512<Into::subtract>, tile_avx512<Into::replace>}, four_columns_avx2};
+    return {
+        {tile_avx512<Into::subtract>, tile_avx512<Into::replace>}, subtract_columns_avx2, dot_columns_avx2};
   if (__builtin_cpu_supports("avx2"))
-    return {{tile_avx2<Into::subtract>, tile_avx2<Into::replace>}, four_columns_avx2};
+    return {{tile_avx2<Into::subtract>, tile_avx2<Into::replace>}, subtract_columns_avx2, dot_columns_avx2};
 #endif
-  return {{tile_baseline<Into::subtract>, tile_baseline<Into::replace>}, four_columns_baseline};
+  return {{tile_baseline<Into::subtract>, tile_baseline<Into::replace>},
+          subtract_columns_baseline,
+          dot_columns_baseline};
 }
 const Kernels kKernels = widest_kernels();
 
@@ -128,11 +165,12 @@ std::size_t factorize_columns(double* a, std::size_t stride, std::size_t rows, s
     std::size_t p = first;
     for (; p + 4 <= j; p += 4) {
       const double* x = a + p * stride + j;
-      kKernels.four_columns(column, x, stride, x, rows - j);
+      kKernels.subtract_columns(column, x, stride, x, stride, rows - j);
     }
     for (; p < j; ++p) {
       const double* x = a + p * stride + j;
-      subtract_scaled(column, x, *x, rows - j);
+      const double factor = *x;
+      for (std::size_t i = 0; i < rows - j; ++i) column[i] -= factor * x[i];
     }
     if (!(*column > min_pivot[j])) return j;
     const double pivot = std::sqrt(*column);
@@ -207,18 +245,40 @@ std::size_t factorize_panel(double* a, std::size_t stride, std::size_t rows, std
   return columns;
 }
 
-void subtract_scaled(double* y, const double* x, double factor, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) y[i] -= factor * x[i];
+void solve_lower(const double* panel, std::size_t rows, std::size_t columns, double* x) {
+  std::size_t j = 0;
+  for (; j + 4 <= columns; j += 4) {
+    const double* a = panel + j * rows;
+    for (std::size_t p = j; p < j + 4; ++p) {
+      for (std::size_t q = j; q < p; ++q) x[p] -= panel[q * rows + p] * x[q];
+      x[p] /= panel[p * rows + p];
+    }
+    kKernels.subtract_columns(x + j + 4, a + j + 4, rows, x + j, 1, rows - j - 4);
+  }
+  for (; j < columns; ++j) {
+    x[j] /= panel[j * rows + j];
+    for (std::size_t i = j + 1; i < rows; ++i) x[i] -= panel[j * rows + i] * x[j];
+  }
 }
 
-double dot(const double* x, const double* y, std::size_t n) {
-  double sum[8] = {};
-  std::size_t i = 0;
-  for (; i + 8 <= n; i += 8) {
-    for (std::size_t q = 0; q < 8; ++q) sum[q] += x[i + q] * y[i + q];
+void solve_lower_transposed(const double* panel, std::size_t rows, std::size_t columns, double* x) {
+  std::size_t j = columns;
+  for (; j % 4 != 0; --j) {
+    const double* a = panel + (j - 1) * rows;
+    for (std::size_t i = j; i < rows; ++i) x[j - 1] -= a[i] * x[i];
+    x[j - 1] /= a[j - 1];
   }
-  for (; i < n; ++i) sum[0] += x[i] * y[i];
-  return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+  for (; j > 0; j -= 4) {
+    const double* a = panel + (j - 4) * rows;
+    double sum[4];
+    kKernels.dot_columns(sum, a + j, rows, x + j, rows - j);
+    for (std::size_t p = 4; p-- > 0;) {
+      double& own = x[j - 4 + p];
+      own -= sum[p];
+      for (std::size_t q = p + 1; q < 4; ++q) own -= a[p * rows + j - 4 + q] * x[j - 4 + q];
+      own /= a[p * rows + j - 4 + p];
+    }
+  }
 }
 
 }  // namespace adit::dense

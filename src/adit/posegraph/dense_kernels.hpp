@@ -45,10 +45,11 @@ void subtract_outer_product(double* c, std::size_t stride, const PackedPanel& a,
 std::size_t factorize_panel(double* a, std::size_t stride, std::size_t rows, std::size_t columns,
                             const double* min_pivot);
 
-/// y -= factor * x.
-void subtract_scaled(double* y, const double* x, double factor, std::size_t n);
+/// x <- L^-1 x for the top square of a panel of `rows` rows as `factorize_panel` leaves it; what follows, the
+/// other rows of x, has L21 x subtracted.
+void solve_lower(const double* panel, std::size_t rows, std::size_t columns, double* x);
 
-/// Scalar product; eight partial sums in a fixed order.
-[[nodiscard]] double dot(const double* x, const double* y, std::size_t n);
+/// x <- L11^-T (x - L21^T y), where y are the rows of x below the square.
+void solve_lower_transposed(const double* panel, std::size_t rows, std::size_t columns, double* x);
 
 }  // namespace adit::dense

@@ -155,6 +155,7 @@ NormalEquations linearize(const BasicPoseGraph<P>& graph, const GraphStructure& 
 
 template GraphStructure structure_of(const PoseGraph&, const Components&, const std::vector<double>&);
 template GraphStructure structure_of(const PoseGraph2&, const Components&, const std::vector<double>&);
+template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<1>>&);
 template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<2>>&);
 template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<3>>&);
 template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<6>>&);
