@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace adit {
@@ -18,10 +19,18 @@ struct Neighbor {
   bool operator==(const Neighbor&) const = default;
 };
 
-/// A balanced tree over a copy of the points, stored flat (Bentley, "Multidimensional binary search trees",
-/// 1975). Answers are exact and unique: among equally near points the smaller index comes first. Points with
-/// a NaN or infinite coordinate are never found, and a query with one finds nothing. Immutable; searches are
-/// thread-safe.
+/// The nearest point, and how near any other one can be at most.
+struct NearestAlone {
+  std::uint32_t index = 0;
+  float squared_distance = 0.0F;
+  float others_squared_distance = 0.0F;  ///< The search's bound where no second point is nearer.
+  bool operator==(const NearestAlone&) const = default;
+};
+
+/// A balanced tree over a copy of the points, stored flat, with eight points a leaf that are compared at once
+/// (Bentley, "Multidimensional binary search trees", 1975). Answers are exact and unique: among equally near
+/// points the smaller index comes first. Points with a NaN or infinite coordinate are never found, and a
+/// query with one finds nothing. Immutable; searches are thread-safe.
 class KdTree {
  public:
   KdTree() = default;
@@ -30,31 +39,43 @@ class KdTree {
   /// The nearest point no farther than `max_distance` metres; none when there is none.
   [[nodiscard]] std::optional<Neighbor> nearest(
       const Eigen::Vector3f& query, float max_distance = std::numeric_limits<float>::infinity()) const;
+  /// The nearest point whose squared distance is at most `bound`, and how far the second nearest is; none
+  /// when no point is so near.
+  [[nodiscard]] std::optional<NearestAlone> nearest_alone(const Eigen::Vector3f& query, float bound) const;
   /// The `k` nearest points (fewer in a smaller cloud), nearest first.
   [[nodiscard]] std::vector<Neighbor> k_nearest(const Eigen::Vector3f& query, std::size_t k) const;
   /// All points no farther than `radius` metres, nearest first.
   [[nodiscard]] std::vector<Neighbor> within(const Eigen::Vector3f& query, float radius) const;
 
-  [[nodiscard]] std::size_t size() const { return points_.size(); }  ///< Finite points only.
+  [[nodiscard]] std::size_t size() const { return size_; }  ///< Finite points only.
 
  private:
+  static constexpr std::uint32_t kLeafSize = 8;
+  /// One vector register (a type of GCC and Clang on every processor).
+  using Lanes [[gnu::vector_size(16)]] = float;
+  struct Leaf {
+    Lanes x[2], y[2], z[2];  ///< NaN beyond the last point.
+    std::uint32_t index[kLeafSize];
+  };
+  /// Inner nodes in preorder: the left child of a node follows it, and as each subtree has one inner node
+  /// fewer than leaves, the right child follows as many places later as the left one has leaves.
   struct Node {
     float split = 0.0F;
-    std::int32_t axis = -1;  ///< -1: a leaf.
-    std::uint32_t begin =
-        0;  ///< Leaf: its range in points_. Inner node: `begin` is the right child; left is next.
-    std::uint32_t end = 0;
+    std::uint32_t axis = 0;
   };
-  void build(std::uint32_t begin, std::uint32_t end, const std::vector<Eigen::Vector3f>& points);
-  template <class Visitor>
-  void visit(std::uint32_t node, const Eigen::Vector3f& query, const Eigen::Vector3f& outside,
-             Visitor& visitor) const;
+  struct Item {
+    float coordinates[3];
+    std::uint32_t index;
+  };
+  void build(std::span<Item> items, std::uint32_t first_leaf, std::uint32_t last_leaf);
   template <class Visitor>
   void search(const Eigen::Vector3f& query, Visitor& visitor) const;
+  template <class Visitor>
+  void visit(const Leaf& leaf, const Eigen::Vector3f& query, Visitor& visitor) const;
 
+  std::size_t size_ = 0;
   std::vector<Node> nodes_;
-  std::vector<Eigen::Vector3f> points_;  ///< In the order of the leaves.
-  std::vector<std::uint32_t> indices_;   ///< Of points_ in the caller's cloud.
+  std::vector<Leaf> leaves_;
 };
 
 }  // namespace adit

@@ -57,6 +57,13 @@ void expect_same_as_brute_force(const Points& points, const Points& queries) {
     if (nearest) {
       EXPECT_EQ(*nearest, expected.front());
     }
+    const auto alone = tree.nearest_alone(query, 25.0F);
+    const bool is_near = !expected.empty() && expected[0].squared_distance <= 25.0F;
+    ASSERT_EQ(alone.has_value(), is_near);
+    if (alone) {
+      const float others = expected.size() > 1 ? std::min(expected[1].squared_distance, 25.0F) : 25.0F;
+      EXPECT_EQ(*alone, (NearestAlone{expected[0].index, expected[0].squared_distance, others}));
+    }
     const float radius = 2.0F;
     const auto within = tree.within(query, radius);
     const auto last = std::find_if(expected.begin(), expected.end(),

@@ -3,12 +3,10 @@
 #include "adit/registration/descriptor_index.hpp"
 
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cstring>
+#include <bit>
 #include <limits>
-#include <utility>
-
-#include "adit/core/check.hpp"
 
 namespace adit {
 namespace {
@@ -21,11 +19,9 @@ DescriptorVector vector_of(const Descriptor& descriptor) {
   return Eigen::Map<const Eigen::Matrix<std::uint8_t, kDescriptorSize, 1>>(descriptor.data()).cast<float>();
 }
 
-/// The direction of largest variance, by power iteration on a sample; an approximate one costs time, not
-/// exactness.
-DescriptorVector principal_direction(const std::vector<Descriptor>& descriptors) {
+/// The directions of largest variance of a sample, one a column; approximate ones cost time, not exactness.
+Eigen::MatrixXf principal_directions(const std::vector<Descriptor>& descriptors, int num_directions) {
   constexpr std::size_t kSample = 512;
-  constexpr int kIterations = 20;
   const std::size_t step = descriptors.size() / kSample + 1;
   Eigen::Matrix<float, kDescriptorSize, Eigen::Dynamic> sample(
       kDescriptorSize, static_cast<Eigen::Index>((descriptors.size() + step - 1) / step));
@@ -34,15 +30,9 @@ DescriptorVector principal_direction(const std::vector<Descriptor>& descriptors)
   }
   const DescriptorVector mean = sample.rowwise().mean();
   sample.colwise() -= mean;
-  const Eigen::Matrix<float, kDescriptorSize, kDescriptorSize> covariance = sample * sample.transpose();
-  DescriptorVector direction = DescriptorVector::Ones().normalized() + DescriptorVector::Unit(5) * 0.5F;
-  for (int i = 0; i < kIterations; ++i) {
-    const DescriptorVector next = covariance * direction;
-    const float norm = next.norm();
-    if (!(norm > 0.0F)) break;
-    direction = next / norm;
-  }
-  return direction.normalized();
+  using Covariance = Eigen::Matrix<float, kDescriptorSize, kDescriptorSize>;
+  const Eigen::SelfAdjointEigenSolver<Covariance> solver(sample * sample.transpose());
+  return solver.eigenvectors().rightCols(num_directions);
 }
 
 struct NearestTwoVisitor {
@@ -50,6 +40,7 @@ struct NearestTwoVisitor {
   bool found_any = false;
   NearestTwo best{};
 
+  [[nodiscard]] static bool is_done() { return false; }
   void found(std::uint32_t index, std::uint32_t distance) {
     const bool better = !found_any || distance < best.squared_distance ||
                         (distance == best.squared_distance && index < best.index);
@@ -69,6 +60,7 @@ struct NearerVisitor {
   std::uint32_t except;
   bool found_any = false;
 
+  [[nodiscard]] bool is_done() const { return found_any; }
   void found(std::uint32_t index, std::uint32_t distance) {
     if (index != except && (distance < bound || index < except)) found_any = true;
   }
@@ -87,74 +79,96 @@ std::uint32_t squared_distance(const Descriptor& a, const Descriptor& b) {
 
 DescriptorIndex::DescriptorIndex(const std::vector<Descriptor>& descriptors) {
   if (descriptors.empty()) return;
-  // shorter than 1 by more than rounding can lengthen it: a projection never exceeds the distance itself
-  DescriptorVector::Map(direction_.data()) = principal_direction(descriptors) * 0.9999F;
-  std::vector<std::pair<float, std::uint32_t>> order;
-  order.reserve(descriptors.size());
-  for (std::uint32_t i = 0; i < descriptors.size(); ++i) {
-    ADIT_CHECK(squared_distance(descriptors[i], Descriptor{}) <= kMaxSquaredDistance / 2,
-               "descriptor too long");
-    order.emplace_back(project(descriptors[i]), i);
+  const Eigen::MatrixXf directions = principal_directions(descriptors, kDirections);
+  for (int d = 0; d < kDescriptorSize; ++d) {
+    for (int k = 0; k < kDirections; ++k) directions_[d][k] = directions(d, k);
   }
-  std::sort(order.begin(), order.end());
-  blocks_.resize((order.size() + kLanes - 1) / kLanes);
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    Block& block = blocks_[k / kLanes];
-    const std::size_t lane = k % kLanes;
-    if (lane == 0) block.first = order[k].first;
-    block.last = order[k].first;
-    block.indices[lane] = order[k].second;
-    block.count = static_cast<std::uint32_t>(lane + 1);
-    for (std::size_t d = 0; d < kDescriptorSize; ++d)
-      block.bins[d][lane / 8][lane % 8] = descriptors[order[k].second][d];
-  }
+  std::vector<Item> items;
+  items.reserve(descriptors.size());
+  for (std::uint32_t i = 0; i < descriptors.size(); ++i) items.push_back({project(descriptors[i]), i});
+  leaves_.resize((items.size() + DescriptorBlock::kLanes - 1) / DescriptorBlock::kLanes);
+  boxes_.reserve(2 * leaves_.size());
+  build(items, 0, static_cast<std::uint32_t>(leaves_.size()), descriptors);
 }
 
-float DescriptorIndex::project(const Descriptor& descriptor) const {
-  float sum = 0.0F;
+void DescriptorIndex::build(std::span<Item> items, std::uint32_t first_leaf, std::uint32_t last_leaf,
+                            const std::vector<Descriptor>& descriptors) {
+  Box box{items.front().at, items.front().at};
+  for (const Item& item : items) {
+    box.low = item.at < box.low ? item.at : box.low;
+    box.high = item.at > box.high ? item.at : box.high;
+  }
+  boxes_.push_back(box);
+  if (last_leaf - first_leaf == 1) {
+    for (const Item& item : items) leaves_[first_leaf].append(descriptors[item.index], item.index);
+    return;
+  }
+  const Projection extent = box.high - box.low;
+  int axis = 0;
+  for (int k = 1; k < kDirections; ++k) axis = extent[k] > extent[axis] ? k : axis;
+  const std::uint32_t middle_leaf = first_leaf + (last_leaf - first_leaf) / 2;
+  const std::size_t middle = (middle_leaf - first_leaf) * DescriptorBlock::kLanes;
+  std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(middle), items.end(),
+                   [axis](const Item& a, const Item& b) { return a.at[axis] < b.at[axis]; });
+  build(items.first(middle), first_leaf, middle_leaf, descriptors);
+  build(items.subspan(middle), middle_leaf, last_leaf, descriptors);
+}
+
+DescriptorIndex::Projection DescriptorIndex::project(const Descriptor& descriptor) const {
+  Projection sum = {};
   for (std::size_t d = 0; d < descriptor.size(); ++d)
-    sum += direction_[d] * static_cast<float>(descriptor[d]);
+    sum += directions_[d] * static_cast<float>(descriptor[d]);
   return sum;
 }
 
 template <class Visitor>
-void DescriptorIndex::visit_block(const Block& block, const Descriptor& query, Visitor& visitor) const {
-  Lanes low_sums = {};
-  Lanes high_sums = {};
-  for (std::size_t d = 0; d < kDescriptorSize; ++d) {
-    const std::uint16_t bin = query[d];
-    const Lanes low = block.bins[d][0] - bin;
-    const Lanes high = block.bins[d][1] - bin;
-    low_sums += low * low;
-    high_sums += high * high;
-  }
-  const auto bound = static_cast<std::uint16_t>(std::min(visitor.bound, kMaxSquaredDistance));
-  using Halves [[gnu::vector_size(16)]] = std::uint64_t;
-  const auto near_enough = reinterpret_cast<Halves>((low_sums <= bound) | (high_sums <= bound));
-  if ((near_enough[0] | near_enough[1]) == 0) return;
-  const Lanes sums[2] = {low_sums, high_sums};
-  std::uint16_t distances[kLanes];
-  std::memcpy(distances, sums, sizeof(sums));
-  for (std::size_t lane = 0; lane < block.count; ++lane) {
-    if (distances[lane] <= visitor.bound) visitor.found(block.indices[lane], distances[lane]);
-  }
-}
-
-template <class Visitor>
-void DescriptorIndex::search(const Descriptor& query, Visitor& visitor) const {
-  const float at = project(query);
-  const auto beyond = [](float gap, std::uint32_t bound) {
-    return gap > 0.0F && gap * gap > static_cast<float>(bound);
+void DescriptorIndex::search(const Descriptor& descriptor, Visitor& visitor) const {
+  if (leaves_.empty()) return;
+  const DescriptorQuery query(descriptor);
+  const Projection at = project(descriptor);
+  // rounding errs by less than that, so nothing that is near enough is passed over
+  const auto is_beyond = [&](float squared_gap) {
+    return squared_gap > 1.0001F * static_cast<float>(visitor.bound) + 0.25F;
   };
-  auto right = std::lower_bound(blocks_.begin(), blocks_.end(), at,
-                                [](const Block& block, float value) { return block.last < value; });
-  auto left = right;
+  const auto squared_gap_to = [&](std::uint32_t node) {
+    const Box& box = boxes_[node];
+    const Projection below = box.low - at;
+    const Projection above = at - box.high;
+    Projection gap = below > above ? below : above;
+    gap = gap > 0.0F ? gap : Projection{};
+    gap *= gap;
+    return gap[0] + gap[1] + gap[2] + gap[3];
+  };
+  struct Subtree {
+    std::uint32_t node;
+    std::uint32_t first;  // leaves [first, last)
+    std::uint32_t last;
+    float squared_gap;
+  };
+  std::array<Subtree, 32> waiting;
+  std::size_t num_waiting = 0;
+  Subtree now{0, 0, static_cast<std::uint32_t>(leaves_.size()), squared_gap_to(0)};
+  std::array<std::uint16_t, DescriptorBlock::kLanes> distances;
   while (true) {
-    const bool go_right = right != blocks_.end() && !beyond(right->first - at, visitor.bound);
-    if (go_right) visit_block(*right++, query, visitor);
-    const bool go_left = left != blocks_.begin() && !beyond(at - (left - 1)->last, visitor.bound);
-    if (go_left) visit_block(*--left, query, visitor);
-    if (!go_right && !go_left) return;
+    while (now.last - now.first > 1 && !is_beyond(now.squared_gap)) {
+      const std::uint32_t middle = now.first + (now.last - now.first) / 2;
+      const std::uint32_t right = now.node + 2 * (middle - now.first);
+      const Subtree children[2] = {{now.node + 1, now.first, middle, squared_gap_to(now.node + 1)},
+                                   {right, middle, now.last, squared_gap_to(right)}};
+      const bool left_is_nearer = children[0].squared_gap <= children[1].squared_gap;
+      now = children[left_is_nearer ? 0 : 1];
+      waiting[num_waiting++] = children[left_is_nearer ? 1 : 0];
+    }
+    if (!is_beyond(now.squared_gap)) {
+      const DescriptorBlock& block = leaves_[now.first];
+      const auto bound = static_cast<std::uint16_t>(std::min(visitor.bound, kMaxSquaredDistance));
+      for (std::uint32_t near = near_lanes(block, query, bound, distances); near != 0; near &= near - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(near));
+        if (distances[lane] <= visitor.bound) visitor.found(block.indices[lane], distances[lane]);
+      }
+    }
+    if (num_waiting == 0 || visitor.is_done()) return;
+    now = waiting[--num_waiting];
   }
 }
 

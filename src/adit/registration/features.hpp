@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstdint>
 #include <vector>
 
 #include "adit/core/point_cloud.hpp"
+#include "adit/registration/oriented_points.hpp"
 #include "adit/registration/registration_config.hpp"
 
 namespace adit {
@@ -19,13 +19,8 @@ using Descriptor = std::array<std::uint8_t, kDescriptorSize>;
 
 /// What registration needs of a cloud; compute it once a keyframe and keep it (57 bytes a point). All three
 /// vectors are equally long. Points that have no reliable descriptor were left out.
-struct Features {
-  std::vector<Eigen::Vector3f> points;   ///< Metres, in the frame of the cloud.
-  std::vector<Eigen::Vector3f> normals;  ///< Unit length, pointing to the origin of that frame.
+struct Features : OrientedPoints {
   std::vector<Descriptor> descriptors;
-
-  [[nodiscard]] std::size_t size() const { return points.size(); }
-  [[nodiscard]] bool empty() const { return points.empty(); }
 };
 
 /// Thins the cloud to one point (the mean) a voxel and describes each. `cloud` is in the frame of the sensor

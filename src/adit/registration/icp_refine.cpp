@@ -4,54 +4,21 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 
 #include "adit/core/parallel.hpp"
+#include "adit/registration/plane_aligner.hpp"
 
 namespace adit {
 namespace {
 
 constexpr std::size_t kGrain = 512;
-constexpr double kAgreeingNormals = 0.8;  ///< Cosine of the angle between them.
-
-struct NormalEquations {
-  Matrix6 H = Matrix6::Zero();
-  Vector6 g = Vector6::Zero();
-  void add(const PlaneResidual& r, double kernel) {
-    const double root = kernel * kernel / (kernel * kernel + r.value * r.value);
-    H += root * root * r.jacobian.transpose() * r.jacobian;
-    g += root * root * r.jacobian.transpose() * r.value;
-  }
-  NormalEquations& operator+=(const NormalEquations& other) {
-    H += other.H;
-    g += other.g;
-    return *this;
-  }
-};
-
-NormalEquations linearize(const Features& a, const Features& b, const std::vector<PointPair>& pairs,
-                          const Pose& T_a_b, double kernel) {
-  return parallel_sum(pairs.size(), kGrain, NormalEquations{}, [&](std::size_t begin, std::size_t end) {
-    NormalEquations sum;
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto [i, j] = pairs[k];
-      const Vector3 p_a = a.points[i].cast<double>();
-      const Vector3 p_b = b.points[j].cast<double>();
-      // Both clouds' planes count (Rusinkiewicz, "A symmetric objective function for ICP", 2019), and only
-      // where they agree: far out, a spinning sensor sees the ground as the line of one ring, and that normal
-      // is noise.
-      const Vector3 n_a = a.normals[i].cast<double>();
-      const Vector3 n_b = T_a_b.rotation() * b.normals[j].cast<double>();
-      if (std::abs(n_a.dot(n_b)) < kAgreeingNormals) continue;
-      sum.add(plane_residual(T_a_b, p_a, n_a, p_b), kernel);
-      sum.add(plane_residual(T_a_b, p_a, n_b, p_b), kernel);
-    }
-    return sum;
-  });
-}
+/// More points make the answer no better.
+constexpr std::size_t kSample = 2500;
+/// Enough to tell which minimum a start leads to.
+constexpr std::size_t kSearchSample = 1000;
 
 /// Proportional to the mean diagonal of the translational and of the rotational block: free of units.
-Vector6 gauss_newton_step(const NormalEquations& sum) {
+Vector6 gauss_newton_step(const PlaneEquations& sum) {
   constexpr double kDamping = 1e-3;
   Matrix6 H = sum.H;
   H.diagonal().head<3>().array() += kDamping * sum.H.diagonal().head<3>().mean() + 1e-12;
@@ -59,70 +26,28 @@ Vector6 gauss_newton_step(const NormalEquations& sum) {
   return -H.ldlt().solve(sum.g);
 }
 
-}  // namespace
+std::size_t stride_for(std::size_t num_points, std::size_t sample) { return num_points / sample + 1; }
 
-PlaneResidual plane_residual(const Pose& T_a_b, const Vector3& p_a, const Vector3& n_a, const Vector3& p_b) {
-  const Vector3 n_b = T_a_b.rotation().conjugate() * n_a;
-  PlaneResidual out{.value = n_a.dot(T_a_b * p_b - p_a)};
-  out.jacobian << n_b.transpose(), p_b.cross(n_b).transpose();
-  return out;
-}
+struct Minimum {
+  Pose T_a_b;
+  double misfit = 1.0;  ///< 0: all points on the other cloud's planes; a point without partner counts 1.
+};
 
-std::vector<PointPair> associate(const KdTree& tree_a, const Features& b, const Pose& T_a_b,
-                                 double max_distance, std::size_t stride) {
-  constexpr auto kNone = static_cast<std::uint32_t>(-1);
-  const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
-  const Eigen::Vector3f t = T_a_b.translation().cast<float>();
-  std::vector<PointPair> pairs((b.size() + stride - 1) / stride);
-  parallel_for_each(
-      pairs.size(),
-      [&](std::size_t k) {
-        const std::size_t j = k * stride;
-        const auto nearest = tree_a.nearest(R * b.points[j] + t, static_cast<float>(max_distance));
-        pairs[k] = {nearest ? nearest->index : kNone, static_cast<std::uint32_t>(j)};
-      },
-      kGrain);
-  std::erase_if(pairs, [](const PointPair& pair) { return pair.a == kNone; });
-  return pairs;
-}
-
-namespace {
-
-constexpr std::size_t kMaxSourcePoints = 2500;
-
-/// Iterates until the steps are small.
-Pose refine_from(const Features& a, const KdTree& tree_a, const Features& b, Pose T_a_b,
-                 const RegistrationConfig& config) {
-  constexpr std::size_t kMinPairs = 12;
-  constexpr double kConvergedStep = 1e-4;
-  const double max_distance = config.refine_distance_voxels * config.voxel_size;
+/// Iterates until the steps are shorter than `last_step`.
+Minimum descend(PlaneAligner aligner, Pose T_a_b, double last_step, const RegistrationConfig& config) {
+  constexpr double kMinPairs = 12.0;
   const double kernel = config.refine_kernel_voxels * config.voxel_size;
-  const std::size_t stride = b.size() / kMaxSourcePoints + 1;
+  Minimum out{T_a_b};
   for (int iteration = 0; iteration < config.refine_max_iterations; ++iteration) {
-    const std::vector<PointPair> pairs = associate(tree_a, b, T_a_b, max_distance, stride);
-    if (pairs.size() < kMinPairs) break;
-    const Vector6 step = gauss_newton_step(linearize(a, b, pairs, T_a_b, kernel));
+    const PlaneEquations equations = aligner.linearize(out.T_a_b, kernel);
+    if (equations.num_pairs < kMinPairs) break;
+    out.misfit = 1.0 - equations.fit / static_cast<double>(aligner.sample_size());
+    const Vector6 step = gauss_newton_step(equations);
     if (!step.allFinite()) break;
-    T_a_b = T_a_b * Pose::exp(step);
-    if (step.norm() < kConvergedStep) break;
+    out.T_a_b = out.T_a_b * Pose::exp(step);
+    if (step.norm() < last_step) break;
   }
-  return T_a_b;
-}
-
-/// Share of misfit, 0 (all points on the other cloud's planes) to 1; a point without partner counts in full.
-double misfit(const Features& a, const KdTree& tree_a, const Features& b, const Pose& T_a_b,
-              const RegistrationConfig& config) {
-  const std::size_t stride = b.size() / kMaxSourcePoints + 1;
-  const double kernel = config.refine_kernel_voxels * config.voxel_size;
-  double fit = 0.0;
-  for (const auto& [i, j] :
-       associate(tree_a, b, T_a_b, config.refine_distance_voxels * config.voxel_size, stride)) {
-    const double r = plane_residual(T_a_b, a.points[i].cast<double>(), a.normals[i].cast<double>(),
-                                    b.points[j].cast<double>())
-                         .value;
-    fit += kernel * kernel / (kernel * kernel + r * r);
-  }
-  return 1.0 - fit * static_cast<double>(stride) / static_cast<double>(std::max<std::size_t>(b.size(), 1));
+  return out;
 }
 
 /// The global result itself, and turned by a degree or so about each axis, either way.
@@ -138,17 +63,50 @@ std::vector<Pose> starts_around(const Pose& T_a_b) {
 
 }  // namespace
 
-Pose refine_point_to_plane(const Features& a, const KdTree& tree_a, const Features& b, const Pose& T_a_b,
-                           const RegistrationConfig& config) {
-  // The rings of a spinning sensor lock onto one another in narrow false minima; several starts and the best
-  // fit get out of them.
-  std::vector<Pose> refined = starts_around(T_a_b);
-  std::vector<double> misfits(refined.size());
-  parallel_for_each(refined.size(), [&](std::size_t s) {
-    refined[s] = refine_from(a, tree_a, b, refined[s], config);
-    misfits[s] = misfit(a, tree_a, b, refined[s], config);
+PlaneResidual plane_residual(const Pose& T_a_b, const Vector3& p_a, const Vector3& n_a, const Vector3& p_b) {
+  const Vector3 n_b = T_a_b.rotation().conjugate() * n_a;
+  PlaneResidual out{.value = n_a.dot(T_a_b * p_b - p_a)};
+  out.jacobian << n_b.transpose(), p_b.cross(n_b).transpose();
+  return out;
+}
+
+std::vector<PointPair> associate(const KdTree& tree_a, const OrientedPoints& b, const Pose& T_a_b,
+                                 double max_distance) {
+  constexpr auto kNone = static_cast<std::uint32_t>(-1);
+  const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
+  const Eigen::Vector3f t = T_a_b.translation().cast<float>();
+  std::vector<PointPair> pairs(b.size());
+  parallel_for_each(
+      b.size(),
+      [&](std::size_t j) {
+        const auto nearest = tree_a.nearest(R * b.points[j] + t, static_cast<float>(max_distance));
+        pairs[j] = {nearest ? nearest->index : kNone, static_cast<std::uint32_t>(j)};
+      },
+      kGrain);
+  std::erase_if(pairs, [](const PointPair& pair) { return pair.a == kNone; });
+  return pairs;
+}
+
+Pose align_to_planes(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,
+                     const Pose& T_a_b, const RegistrationConfig& config) {
+  constexpr double kLastStep = 1e-4;
+  const double max_distance = config.refine_distance_voxels * config.voxel_size;
+  PlaneAligner aligner(a, tree_a, b, stride_for(b.size(), kSample), max_distance);
+  return descend(std::move(aligner), T_a_b, kLastStep, config).T_a_b;
+}
+
+Pose refine_point_to_plane(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,
+                           const Pose& T_a_b, const RegistrationConfig& config) {
+  constexpr double kLastStepOfSearch = 2e-3;
+  const double max_distance = config.refine_distance_voxels * config.voxel_size;
+  const PlaneAligner aligner(a, tree_a, b, stride_for(b.size(), kSearchSample), max_distance);
+  std::vector<Minimum> minima;
+  for (const Pose& start : starts_around(T_a_b)) minima.push_back({start});
+  parallel_for_each(minima.size(), [&](std::size_t s) {
+    minima[s] = descend(aligner, minima[s].T_a_b, kLastStepOfSearch, config);
   });
-  return refined[static_cast<std::size_t>(std::ranges::min_element(misfits) - misfits.begin())];
+  const auto best = std::ranges::min_element(minima, {}, &Minimum::misfit);
+  return align_to_planes(a, tree_a, b, best->T_a_b, config);
 }
 
 }  // namespace adit

@@ -9,7 +9,7 @@
 
 #include "adit/core/pose.hpp"
 #include "adit/geometry/kd_tree.hpp"
-#include "adit/registration/features.hpp"
+#include "adit/registration/oriented_points.hpp"
 #include "adit/registration/registration_config.hpp"
 
 namespace adit {
@@ -30,14 +30,20 @@ struct PointPair {
   bool operator==(const PointPair&) const = default;
 };
 
-/// The nearest point of a for every `stride`-th point of b, where there is one within `max_distance` metres.
-[[nodiscard]] std::vector<PointPair> associate(const KdTree& tree_a, const Features& b, const Pose& T_a_b,
-                                               double max_distance, std::size_t stride = 1);
+/// The nearest point of a for every point of b, where there is one within `max_distance` metres.
+[[nodiscard]] std::vector<PointPair> associate(const KdTree& tree_a, const OrientedPoints& b,
+                                               const Pose& T_a_b, double max_distance);
 
 /// The pose that minimises the robust (Geman-McClure) sum of squared plane residuals near `T_a_b`, by
 /// Gauss-Newton. Damped, so that along a direction that the surfaces leave open the pose stays where the
 /// guess put it.
-[[nodiscard]] Pose refine_point_to_plane(const Features& a, const KdTree& tree_a, const Features& b,
-                                         const Pose& T_a_b, const RegistrationConfig& config);
+[[nodiscard]] Pose align_to_planes(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,
+                                   const Pose& T_a_b, const RegistrationConfig& config);
+
+/// The best of several such minima around `T_a_b`: the rings of a spinning sensor lock onto one another in
+/// narrow false ones.
+[[nodiscard]] Pose refine_point_to_plane(const OrientedPoints& a, const KdTree& tree_a,
+                                         const OrientedPoints& b, const Pose& T_a_b,
+                                         const RegistrationConfig& config);
 
 }  // namespace adit

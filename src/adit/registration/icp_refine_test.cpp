@@ -31,23 +31,22 @@ TEST(PlaneResidual, JacobianAgreesWithFiniteDifferences) {
 }
 
 /// Points on three walls of a corner, with their true normals.
-Features corner(std::size_t n, std::uint64_t seed) {
+OrientedPoints corner(std::size_t n, std::uint64_t seed) {
   Rng rng(seed);
-  Features out;
+  OrientedPoints out;
   for (std::size_t k = 0; k < n; ++k) {
     const int wall = static_cast<int>(k % 3);
     Vector3 p(rng.uniform(0.0, 6.0), rng.uniform(0.0, 6.0), rng.uniform(0.0, 6.0));
     p[wall] = 0.0;
     out.points.push_back(p.cast<float>());
     out.normals.push_back(Eigen::Vector3f::Unit(wall));
-    out.descriptors.push_back({});
   }
   return out;
 }
 
 TEST(RefinePointToPlane, BringsACornerHome) {
-  const Features a = corner(3000, 2);
-  const Features b = corner(3000, 3);
+  const OrientedPoints a = corner(3000, 2);
+  const OrientedPoints b = corner(3000, 3);
   const KdTree tree(a.points);
   const Pose guess = Pose::exp((Vector6() << 0.15, -0.1, 0.12, 0.02, -0.03, 0.02).finished());
   const Pose refined = refine_point_to_plane(a, tree, b, guess, {});
@@ -56,7 +55,7 @@ TEST(RefinePointToPlane, BringsACornerHome) {
 }
 
 TEST(RefinePointToPlane, LeavesOpenDirectionsAlone) {
-  Features a = corner(3000, 2);
+  OrientedPoints a = corner(3000, 2);
   for (std::size_t k = 0; k < a.size(); ++k) {  // a floor alone
     a.points[k].z() = 0.0F;
     a.normals[k] = Eigen::Vector3f::UnitZ();
@@ -69,7 +68,7 @@ TEST(RefinePointToPlane, LeavesOpenDirectionsAlone) {
 }
 
 TEST(RefinePointToPlane, WithoutNeighborsReturnsTheGuess) {
-  const Features a = corner(100, 2);
+  const OrientedPoints a = corner(100, 2);
   const Pose guess = Pose::translation_of(500.0, 0.0, 0.0);
   EXPECT_EQ(refine_point_to_plane(a, KdTree(a.points), a, guess, {}).matrix(), guess.matrix());
   EXPECT_TRUE(associate(KdTree(), a, Pose(), 1.0).empty());

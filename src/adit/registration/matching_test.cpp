@@ -54,6 +54,24 @@ TEST(DescriptorIndex, AgreesWithBruteForce) {
   }
 }
 
+TEST(DescriptorBlock, AgreesWithTheDefinition) {
+  const auto all = random_descriptors(7, 13, 45);
+  DescriptorBlock block;
+  for (std::uint32_t i = 0; i < all.size(); ++i) block.append(all[i], 100 + i);
+  for (const Descriptor& descriptor : random_descriptors(8, 50, 45)) {
+    const DescriptorQuery query(descriptor);
+    std::array<std::uint16_t, DescriptorBlock::kLanes> distances{};
+    std::array<std::uint16_t, DescriptorBlock::kLanes> expected{};
+    for (const std::uint16_t bound : {std::uint16_t{0}, std::uint16_t{25000}, std::uint16_t{65535}}) {
+      EXPECT_EQ(near_lanes(block, query, bound, distances),
+                near_lanes_by_definition(block, query, bound, expected));
+      EXPECT_EQ(distances, expected);
+    }
+    for (std::size_t i = 0; i < all.size(); ++i)
+      EXPECT_EQ(distances[i], squared_distance(descriptor, all[i]));
+  }
+}
+
 TEST(DescriptorIndex, KeepsToItsBound) {
   Descriptor far{};
   far[0] = 50;

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "adit/registration/features.hpp"
+
+namespace adit {
+
+/// Two bins each, the last one padded with zero: what one instruction multiplies and adds at once.
+inline constexpr std::size_t kBinPairs = (kDescriptorSize + 1) / 2;
+
+/// A descriptor to be compared with many blocks. Its bins are at most 127 (one operand of that instruction is
+/// signed).
+struct DescriptorQuery {
+  explicit DescriptorQuery(const Descriptor& descriptor);
+
+  std::array<std::uint16_t, kBinPairs> pairs;  ///< Low byte first.
+  std::uint16_t squared_norm;
+};
+
+/// Sixteen descriptors side by side, bin by bin.
+struct alignas(32) DescriptorBlock {
+  static constexpr std::size_t kLanes = 16;
+
+  std::uint8_t pairs[kBinPairs][kLanes][2] = {};
+  std::uint16_t squared_norms[kLanes] = {};
+  std::uint32_t indices[kLanes] = {};  ///< Of the descriptors; the caller's.
+  std::uint32_t count = 0;             ///< Lanes in use, the first ones.
+
+  /// Squared norm at most 32767, as in DescriptorIndex.
+  void append(const Descriptor& descriptor, std::uint32_t index);
+};
+
+/// Fills in the squared distances of the query to all lanes, and sets bit l of the result where lane l is in
+/// use and no farther than `bound`.
+[[nodiscard]] std::uint32_t near_lanes(const DescriptorBlock& block, const DescriptorQuery& query,
+                                       std::uint16_t bound,
+                                       std::array<std::uint16_t, DescriptorBlock::kLanes>& squared_distances);
+
+/// The same on any processor: its oracle.
+[[nodiscard]] std::uint32_t near_lanes_by_definition(
+    const DescriptorBlock& block, const DescriptorQuery& query, std::uint16_t bound,
+    std::array<std::uint16_t, DescriptorBlock::kLanes>& squared_distances);
+
+}  // namespace adit

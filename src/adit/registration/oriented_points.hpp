@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "adit/core/point_cloud.hpp"
+#include "adit/registration/registration_config.hpp"
+
+namespace adit {
+
+/// Points with the normals of the surface that they lie on; both vectors are equally long.
+struct OrientedPoints {
+  std::vector<Eigen::Vector3f> points;   ///< Metres, in the frame of the cloud.
+  std::vector<Eigen::Vector3f> normals;  ///< Unit length, pointing to the origin of that frame.
+
+  [[nodiscard]] std::size_t size() const { return points.size(); }
+  [[nodiscard]] bool empty() const { return points.empty(); }
+};
+
+}  // namespace adit

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "adit/core/pose.hpp"
+#include "adit/geometry/kd_tree.hpp"
+#include "adit/registration/oriented_points.hpp"
+
+namespace adit {
+
+/// Gauss-Newton's normal equations H step = -g of the plane residuals at one pose, weighted by the
+/// Geman-McClure kernel, for a right perturbation [translation; rotation].
+struct PlaneEquations {
+  Matrix6 H = Matrix6::Zero();
+  Vector6 g = Vector6::Zero();
+  double fit = 0.0;  ///< Sum over the pairs of k^2 / (k^2 + r^2), r from the plane of a: 1 a pair at best.
+  double num_pairs = 0.0;
+  PlaneEquations& operator+=(const PlaneEquations& other);
+};
+
+/// Pairs a sample of cloud b with the nearest points of cloud a, pose after pose. A pair is kept from one
+/// pose to the next as long as its point moved too little for any other point of a to become the nearest; so
+/// the pairs are always the exact ones, and near convergence nothing is searched.
+class PlaneAligner {
+ public:
+  /// Takes every `stride`-th point of b. Pairs lie within `max_distance` metres. `a` and `tree_a` must
+  /// outlive the aligner.
+  PlaneAligner(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b, std::size_t stride,
+               double max_distance);
+
+  /// Both clouds' planes count (Rusinkiewicz, "A symmetric objective function for ICP", 2019), and only where
+  /// they agree: far out, a spinning sensor sees the ground as the line of one ring, and that normal is
+  /// noise.
+  [[nodiscard]] PlaneEquations linearize(const Pose& T_a_b, double kernel);
+
+  [[nodiscard]] std::size_t sample_size() const { return sample_size_; }
+
+ private:
+  static constexpr std::size_t kWidth = 8;
+  using Row = float[kWidth];
+  /// Eight points side by side, for vector registers.
+  struct alignas(32) Block {
+    Row p[3];  ///< Of b, in the frame of b.
+    Row n[3];  ///< Its normal; zero: padding.
+    Row a[3];  ///< The nearest point of a; with a zero normal: where it was searched in vain.
+    Row n_a[3];
+    Row seen[3];  ///< Where p was, in the frame of a, when it was searched.
+    Row others;   ///< No other point of a was nearer to `seen` than this.
+  };
+  struct Motion;
+  struct Sums;
+  void search(Block& block, const Row (&q)[3], std::size_t k) const;
+  void add(Block& block, const Motion& motion, float kernel, Sums& sums) const;
+
+  const OrientedPoints& a_;
+  const KdTree& tree_a_;
+  float max_distance_;
+  std::size_t sample_size_;
+  std::vector<Block> blocks_;
+};
+
+}  // namespace adit
