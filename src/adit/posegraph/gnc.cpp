@@ -7,6 +7,7 @@
 
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
+#include "adit/posegraph/loop_clusters.hpp"
 
 namespace adit {
 namespace {
@@ -30,6 +31,16 @@ constexpr int kMaxRounds = 20;      // of settling; a few are the rule
 constexpr int kMaxRestarts = 2;
 // An odometry edge whose chi2 is this many bounds, twice as many standard deviations, is bent.
 constexpr double kBent = 4.0;
+// A cluster of loops at least this share of the largest one's size is as good a witness; and an answer that
+// turns down no cluster that large stands.
+constexpr double kRival = 0.2;
+// Where loops fit better than their information says, the bound follows: variances this many times those of
+// the loops kept still pass.
+constexpr double kHeadroom = 4.0;
+constexpr double kShare = 0.9;     // of the loops kept: where their chi2 is compared with that of true noise
+constexpr double kFirstMu = 0.01;  // of a graduation that starts at a good solution: loops within 100 bounds
+constexpr double kReach = 30.0;    // times the bound, when it is let out
+constexpr double kSmallestBound = 1e-6;  // share of the given one; less is rounding
 
 template <class P>
 std::size_t num_rejected(const Solution<P>& s) {
@@ -86,14 +97,15 @@ class Search {
   Search(const BasicPoseGraph<P>& graph, const GncConfig& config)
       : graph_(graph), config_(config), bound_(chi2_quantile(config.inlier_probability, P::kDof)) {}
 
-  // Graduated non-convexity from the poses of `s`.
-  [[nodiscard]] Solution<P> graduate(Solution<P> s) const {
+  // Graduated non-convexity from the poses of `s`, from the convex surrogate on or from `mu` if that is
+  // larger.
+  [[nodiscard]] Solution<P> graduate(Solution<P> s, double mu = 0.0) const {
     OptimizerConfig inner = config_.optimizer;
     inner.initialization = "none";
     inner.relative_tolerance = std::max(inner.relative_tolerance, 1e-3);
     inner.max_iterations = std::min(inner.max_iterations, 5);
     std::vector<double> costs = edge_costs(graph_, s.poses);
-    double mu = first_mu(largest_loop_cost(graph_, costs), bound_);
+    mu = std::max(mu, first_mu(largest_loop_cost(graph_, costs), bound_));
     for (int outer = 0; s.ok() && outer < config_.max_outer_iterations; ++outer, mu *= config_.mu_step) {
       const auto weights =
           weights_of(graph_, costs, [&](double chi2) { return truncated_weight(chi2, bound_, mu); });
@@ -104,11 +116,74 @@ class Search {
     return s;
   }
 
-  [[nodiscard]] Solution<P> run(Solution<P> start) const { return settle(graduate(std::move(start))); }
+  [[nodiscard]] Solution<P> run(Solution<P> start) const { return settle(graduate(std::move(start)), true); }
+
+  // From the loops that confirm one another: least squares over the largest clusters, then all loops that
+  // this explains. It never meets most false loops, which is also what keeps the matrix sparse.
+  [[nodiscard]] Solution<P> from(const LoopClusters& clusters) const {
+    const double rival = kRival * static_cast<double>(largest_of(clusters));
+    std::vector<double> weights(graph_.edges.size(), 1.0);
+    for (std::size_t e = 0; e < weights.size(); ++e) {
+      const std::size_t cluster = clusters.of_edge[e];
+      if (cluster != LoopClusters::kNone && static_cast<double>(clusters.sizes[cluster]) < rival)
+        weights[e] = 0.0;
+    }
+    return optimize(graph_, config_.optimizer, weights);
+  }
+
+  // Lowers the bound to what the loops in use call for: a high quantile of their chi2 against that of true
+  // noise.
+  // False when it stays as it is.
+  bool fit_bound(const Solution<P>& s) {
+    const std::vector<double> costs = edge_costs(graph_, s.poses);
+    std::vector<double> kept;
+    for (std::size_t e = 0; e < costs.size(); ++e) {
+      if (graph_.edges[e].kind == EdgeKind::loop && s.edge_weights[e] > 0.5) kept.push_back(costs[e]);
+    }
+    if (kept.empty()) return false;
+    const auto middle = kept.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(kept.size()));
+    std::nth_element(kept.begin(), middle, kept.end());
+    const double share = kHeadroom * *middle / chi2_quantile(kShare, P::kDof);
+    bound_ *= std::clamp(share, kSmallestBound, 1.0);
+    return share < 1.0;
+  }
+
+  // From a solution that holds few loops, but true ones, to all true ones. The bound follows their fit, is
+  // let out once for loops that drift has kept away, and drawn in again; where it is right as given,
+  // gradually.
+  [[nodiscard]] Solution<P> grow(Solution<P> s) {
+    const double given = bound_;
+    if (!s.ok()) return s;
+    if (!fit_bound(s)) return settle(graduate(settle(std::move(s), false), kFirstMu), false);
+    s = settle(std::move(s), false);
+    bound_ = std::min(given, kReach * bound_);
+    s = settle(std::move(s), false);
+    bound_ = given;
+    if (s.ok()) fit_bound(s);
+    return settle(std::move(s), false);
+  }
+
+  // Whether the loops that `s` turns down are many times fewer, cluster by cluster, than a cluster that it
+  // keeps.
+  [[nodiscard]] bool rejects_only_small(const Solution<P>& s, const LoopClusters& clusters) const {
+    std::vector<std::size_t> rejected(clusters.sizes.size(), 0);
+    for (std::size_t e = 0; e < graph_.edges.size(); ++e) {
+      if (clusters.of_edge[e] != LoopClusters::kNone && s.edge_weights[e] < 0.5)
+        ++rejected[clusters.of_edge[e]];
+    }
+    std::size_t largest_rejected = 0;
+    std::size_t largest_kept = 0;
+    for (std::size_t c = 0; c < rejected.size(); ++c) {
+      largest_rejected = std::max(largest_rejected, rejected[c]);
+      largest_kept = std::max(largest_kept, clusters.sizes[c] - rejected[c]);
+    }
+    return static_cast<double>(largest_rejected) < kRival * static_cast<double>(largest_kept);
+  }
 
   // Alternates between the poses for these loops and the loops for these poses; both lower the objective, so
   // that it ends. True loops that were lost on the way come back.
-  [[nodiscard]] Solution<P> settle(Solution<P> s) const {
+  // With `unbend`, a chain that false loops have bent beyond what the solver straightens is found anew.
+  [[nodiscard]] Solution<P> settle(Solution<P> s, bool unbend) const {
     OptimizerConfig warm = config_.optimizer;
     warm.initialization = "none";
     for (int round = 0; s.ok() && round < kMaxRounds; ++round) {
@@ -116,8 +191,7 @@ class Search {
                                       [&](double chi2) { return chi2 <= bound_ ? 1.0 : 0.0; });
       if (round > 0 && weights == s.edge_weights) break;
       Solution<P> next = continued(s, s.poses, warm, weights);
-      if (round == 0) {
-        // A chain that false loops have bent beyond what the solver straightens is found anew.
+      if (round == 0 && unbend) {
         Solution<P> anew = continued(next, poses_of(graph_), config_.optimizer, weights);
         next.iterations = anew.iterations;
         if (anew.ok() && anew.cost_final < next.cost_final) next = std::move(anew);
@@ -138,8 +212,9 @@ class Search {
   }
 
   // Nothing hints at a better explanation: no odometry edge is off by more than twice the bound's standard
-  // deviations, at most one loop in ten was rejected, and no part of the graph came loose.
-  [[nodiscard]] bool is_clearly_fine(const Solution<P>& s) const {
+  // deviations, at most one loop in ten was rejected or only small clusters were, and no part of the graph
+  // came loose.
+  [[nodiscard]] bool is_clearly_fine(const Solution<P>& s, const LoopClusters& clusters) const {
     if (s.status != SolveStatus::converged) return false;
     const std::vector<double> costs = edge_costs(graph_, s.poses);
     std::size_t num_loops = 0;
@@ -149,11 +224,16 @@ class Search {
       else if (costs[e] > kBent * bound_)
         return false;
     }
-    return 10 * num_rejected(s) <= num_loops && connected_components(graph_, s.edge_weights).anchors.size() ==
-                                                    connected_components(graph_).anchors.size();
+    return (10 * num_rejected(s) <= num_loops || rejects_only_small(s, clusters)) &&
+           connected_components(graph_, s.edge_weights).anchors.size() ==
+               connected_components(graph_).anchors.size();
   }
 
  private:
+  [[nodiscard]] static std::size_t largest_of(const LoopClusters& clusters) {
+    return clusters.sizes.empty() ? 0 : *std::ranges::max_element(clusters.sizes);
+  }
+
   // One more solve, counted on top of those before.
   [[nodiscard]] Solution<P> continued(const Solution<P>& before, const std::vector<P>& start,
                                       const OptimizerConfig& config,
@@ -185,13 +265,14 @@ double chi2_quantile(double probability, int dof) {
 
 template <class P>
 Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config) {
-  const Search<P> search(graph, config);
+  Search<P> search(graph, config);
   OptimizerConfig none = config.optimizer;
   none.initialization = "none";
   none.max_iterations = 0;
   Solution<P> given = optimize(graph, none);
   if (!given.ok()) return given;
-  Solution<P> best = search.run(given);
+  const LoopClusters clusters = loop_clusters(graph);
+  Solution<P> best = search.grow(search.from(clusters));
   const auto improve_from = [&](Solution<P> start) {
     Solution<P> other = start.ok() ? search.run(std::move(start)) : std::move(start);
     other.iterations += best.iterations;
@@ -200,9 +281,11 @@ Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config
     if (better) best = std::move(other);
     return better;
   };
-  if (!search.is_clearly_fine(best)) improve_from(optimize(graph, config.optimizer));
+  const auto is_fine = [&] { return search.is_clearly_fine(best, clusters); };
+  if (!is_fine()) improve_from(given);
+  if (!is_fine()) improve_from(optimize(graph, config.optimizer));
   // Loops that hold only together are found from where the others have brought the poses.
-  for (int i = 0; i < kMaxRestarts && best.ok() && !search.is_clearly_fine(best); ++i) {
+  for (int i = 0; i < kMaxRestarts && best.ok() && !is_fine(); ++i) {
     Solution<P> again = best;
     again.iterations = 0;
     if (!improve_from(std::move(again))) break;

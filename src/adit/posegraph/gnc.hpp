@@ -30,13 +30,15 @@ inline Fields fields_of(GncConfig& c) {
 /// rejected. The bound is on unhalved chi2 (c^2 = chi2inv(p, dof): 22.46 at 6 dof, 16.27 at 3), which is
 /// GTSAM's on halved errors. Each outer iteration starts from the poses of the one before.
 ///
-/// The first weights come from the residuals at the graph's own poses, so that a good guess is used. Unless
-/// that ends clearly well (odometry unbent, few loops rejected, nothing come loose), a second search starts
-/// from the least-squares solution with all loops, as a bad guess needs it, and the lower truncated cost, the
-/// sum over odometry of chi2 plus the sum over loops of min(chi2, c^2), wins. Each search settles at the end:
-/// least squares over the loops within the bound, in turn with choosing these loops anew, until they stay
-/// the same. Source: Yang, Antonante, Tzoumas, Carlone, "Graduated Non-Convexity for Robust Spatial
-/// Perception" (RA-L 2020), Proposition 4 (weights), Remark 5 (mu).
+/// It starts from loops that confirm one another (loop_clusters.hpp): least squares over the largest
+/// clusters, then all loops that this explains, in rounds of choosing loops and solving anew until they stay
+/// the same. Where loops fit better than their information says, the bound shrinks to four times what the
+/// kept ones call for. That alone settles most graphs, and never factorizes the dense matrix that random
+/// loops make. Unless it ends clearly well (odometry unbent; few loops rejected, or only small clusters;
+/// nothing come loose), graduated searches from the graph's own poses and from the least-squares solution
+/// with all loops follow, and the lowest truncated cost, the sum over odometry of chi2 plus the sum over
+/// loops of min(chi2, c^2), wins. Source: Yang, Antonante, Tzoumas, Carlone, "Graduated Non-Convexity for
+/// Robust Spatial Perception" (RA-L 2020), Proposition 4 (weights), Remark 5 (mu).
 template <class P>
 [[nodiscard]] Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config = {});
 
