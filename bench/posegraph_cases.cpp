@@ -1,8 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 /// Pose graphs from the file's guess to the minimum; reading is not timed, analysis of the structure is.
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+
 #include "adit/core/format.hpp"
+#include "adit/io/g2o.hpp"
 #include "adit/posegraph/gnc.hpp"
+#include "adit/posegraph/incremental.hpp"
 #include "adit/posegraph/optimizer.hpp"
 #include "harness/bench_case.hpp"
 #include "posegraph_inputs.hpp"
@@ -42,24 +49,55 @@ double largest_distance_m(const std::vector<Pose>& a, const std::vector<Pose>& b
   return largest;
 }
 
-Work rejecting(const std::string& name, bool thin, double share, FalseLoops kind) {
-  PoseGraph clean = std::get<PoseGraph>(shared_graph(name));
-  if (thin) clean = thinned(clean);
-  const std::vector<Pose> optimum = optimize(clean).poses;
+struct GncCase {
+  std::string title;
+  std::string graph;
+  bool thin;
+  double share;
+  FalseLoops kind;
+};
+std::vector<GncCase> gnc_case_list() {
+  std::vector<GncCase> out;
+  const auto add = [&](const std::string& graph, bool thin) {
+    for (const int percent : {30, 50}) {
+      for (const FalseLoops kind : {FalseLoops::random, FalseLoops::clustered}) {
+        out.push_back({format("{}{}_{}_{}", graph, thin ? "_thin" : "",
+                              kind == FalseLoops::random ? "random" : "clustered", percent),
+                       graph, thin, 0.01 * percent, kind});
+      }
+    }
+  };
+  add("smallGrid3D", false);
+  add("sphere2500", true);
+  add("sphere2500", false);
+  add("parking-garage", false);
+  return out;
+}
+
+PoseGraph clean(const GncCase& c) {
+  PoseGraph graph = std::get<PoseGraph>(shared_graph(c.graph));
+  return c.thin ? thinned(graph) : graph;
+}
+PoseGraph spoiled(const GncCase& c, std::size_t& num_true) {
+  return with_false_loops(clean(c), c.share, c.kind, num_true);
+}
+
+Work rejecting(const GncCase& c) {
+  const std::vector<Pose> optimum = optimize(clean(c)).poses;
   std::size_t num_true = 0;
-  PoseGraph graph = with_false_loops(clean, share, kind, num_true);
+  PoseGraph graph = spoiled(c, num_true);
   return [=, graph = std::move(graph)] {
     const Solution<Pose> solution = optimize_gnc(graph);
-    Figures figures{{"false", static_cast<double>(graph.edges.size() - num_true)}};
-    double num_loops = 0.0;
+    Figures figures{{"false", static_cast<double>(graph.edges.size() - num_true)},
+                    {"false_kept", 0.0},
+                    {"true", 0.0},
+                    {"true_lost", 0.0}};
     for (std::size_t e = 0; e < graph.edges.size(); ++e) {
-      if (e < num_true && graph.edges[e].kind == EdgeKind::loop) num_loops += 1.0;
-      if (e < num_true)
-        figures["true_lost"] += 1.0 - solution.edge_weights[e];
-      else
-        figures["false_kept"] += solution.edge_weights[e];
+      const bool is_true = e < num_true;
+      if (is_true && graph.edges[e].kind == EdgeKind::loop) figures["true"] += 1.0;
+      figures[is_true ? "true_lost" : "false_kept"] +=
+          is_true ? 1.0 - solution.edge_weights[e] : solution.edge_weights[e];
     }
-    figures["true"] = num_loops;
     figures["off_m"] = largest_distance_m(solution.poses, optimum);
     return figures;
   };
@@ -67,24 +105,90 @@ Work rejecting(const std::string& name, bool thin, double share, FalseLoops kind
 
 const struct GncCases {
   GncCases() {
-    for (const std::string name : {"smallGrid3D", "sphere2500", "parking-garage"}) {
-      for (const bool thin : {false, true}) {
-        if (thin && name != "sphere2500") continue;
-        for (const int percent : {30, 50}) {
-          for (const FalseLoops kind : {FalseLoops::random, FalseLoops::clustered}) {
-            const std::string title = format("gnc/{}{}_{}_{}", name, thin ? "_thin" : "",
-                                             kind == FalseLoops::random ? "random" : "clustered", percent);
-            Case({.name = title,
-                  .work = "which loops are false, and the poses",
-                  .peer = "gtsam",
-                  .aim = 10.0});
-            Side(title, "adit", [=] { return rejecting(name, thin, 0.01 * percent, kind); });
-          }
-        }
-      }
+    for (const GncCase& c : gnc_case_list()) {
+      Case({.name = "gnc/" + c.title,
+            .work = "which loops are false, and the poses",
+            .peer = "gtsam",
+            .aim = 10.0});
+      Side("gnc/" + c.title, "adit", [c] { return rejecting(c); });
     }
   }
 } gnc_cases;
+
+// One run: the keyframes up to the next loop, and the update that it calls for.
+Work feeding(std::size_t num_keyframes) {
+  constexpr std::size_t kSpare = 1500;  // keyframes whose loops are left for the runs
+  struct Feed {
+    PoseGraph graph;
+    IncrementalOptimizer<Pose> optimizer;
+    std::size_t edge = 0;
+    bool next_loop() {  // false when it has come to the end
+      while (edge < graph.edges.size()) {
+        const auto& e = graph.edges[edge++];
+        if (e.kind == EdgeKind::odometry)
+          optimizer.add_node(graph.nodes[e.to].key, optimizer.poses()[e.from] * e.T_from_to);
+        optimizer.add_edge(e);
+        if (e.kind == EdgeKind::loop) return true;
+      }
+      return false;
+    }
+  };
+  auto feed = std::make_shared<Feed>();
+  feed->graph = wandering_graph(num_keyframes + kSpare);
+  feed->optimizer.add_node(0, feed->graph.nodes[0].pose);
+  // The past goes in with few updates: every hundredth loop.
+  for (int loop = 1; feed->next_loop() && feed->optimizer.poses().size() < num_keyframes; ++loop) {
+    if (loop % 100 == 0) (void)feed->optimizer.update();
+  }
+  (void)feed->optimizer.update();
+  return [feed] {
+    if (!feed->next_loop()) throw std::runtime_error("no loop is left: fewer rounds, please");
+    const auto update = feed->optimizer.update();
+    return Figures{{"chi2", update.cost},
+                   {"iterations", static_cast<double>(update.iterations)},
+                   {"keyframes", static_cast<double>(feed->optimizer.poses().size())},
+                   {"supernodes_renewed", static_cast<double>(update.num_renewed)},
+                   {"linearized_anew", update.all_renewed ? 1.0 : 0.0}};
+  };
+}
+
+const struct IncrementalCases {
+  IncrementalCases() {
+    Case({.name = "posegraph/incremental_10k",
+          .work = "10,000 keyframes, a loop arrives: update to convergence",
+          .peer = "gtsam"});
+    Side("posegraph/incremental_10k", "adit", [] { return feeding(10'000); });
+    Growth("posegraph/incremental", "Update to convergence when a loop arrives", "keyframes so far",
+           {1000, 3000, 10'000, 30'000}, [](double size) { return feeding(static_cast<std::size_t>(size)); });
+    Growth("posegraph/batch", "The same graph solved from dead reckoning at once", "keyframes",
+           {1000, 3000, 10'000, 30'000}, [](double size) -> Work {
+             auto graph = std::make_shared<PoseGraph>(wandering_graph(static_cast<std::size_t>(size)));
+             return [graph] {
+               const auto solution = optimize(*graph);
+               return Figures{{"chi2", solution.cost_final}};
+             };
+           });
+  }
+} incremental_cases;
+
+// What programs outside need to do the same: every graph as a g2o file; of the graphs with false loops also
+// how many of the edges, which come first, are true.
+void export_graphs(const std::filesystem::path& folder) {
+  const auto write = [&](const std::string& name, const auto& graph) {
+    std::ofstream file(folder / (name + ".g2o"));
+    write_g2o(file, graph);
+  };
+  for (const std::string name : kGraphNames)
+    std::visit([&](const auto& graph) { write(name, graph); }, shared_graph(name));
+  write("incremental_10k", wandering_graph(11'500));
+  for (const GncCase& c : gnc_case_list()) {
+    std::size_t num_true = 0;
+    write(c.title, spoiled(c, num_true));
+    write(c.title + "_clean", clean(c));
+    std::ofstream(folder / (c.title + ".txt")) << num_true << "\n";
+  }
+}
+const Export exported("posegraph", export_graphs);
 
 }  // namespace
 }  // namespace adit::bench

@@ -29,4 +29,9 @@ enum class FalseLoops { random, clustered };
 /// Every tenth loop of the graph stays.
 [[nodiscard]] PoseGraph thinned(const PoseGraph& graph);
 
+/// A robot that wanders the streets of a mine of square blocks, a keyframe a metre, with a loop at every
+/// tenth keyframe that stands where one stood before. Edges in the order in which they come: each node's
+/// odometry, then its loops. Poses are dead reckoning.
+[[nodiscard]] PoseGraph wandering_graph(std::size_t num_keyframes);
+
 }  // namespace adit::bench

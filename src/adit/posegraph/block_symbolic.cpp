@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "adit/posegraph/block_symbolic.hpp"
 
+#include <metis.h>
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
+
 #include <algorithm>
+#include <mutex>
 #include <numeric>
 #include <utility>
 
@@ -41,14 +44,18 @@ Adjacency adjacency_of(const BlockPattern& pattern, const std::vector<Index>& ne
   return a;
 }
 
-// Position in the order of elimination for each block, by approximate minimum degree.
-std::vector<Index> minimum_degree(const BlockPattern& pattern) {
-  const Index n = pattern.size();
-  if (n == 0) return {};
+// Position in the order of elimination for each block, by approximate minimum degree; the last ones stay
+// last.
+std::vector<Index> minimum_degree(const BlockPattern& pattern, Index num_last) {
+  const Index n = pattern.size() - num_last;
+  std::vector<Index> new_of_old(pattern.size());
+  std::iota(new_of_old.begin(), new_of_old.end(), Index{0});
+  if (n == 0) return new_of_old;
   std::vector<Eigen::Triplet<char, int>> entries;
   entries.reserve(pattern.num_blocks());
   for (Index j = 0; j < n; ++j) {
     for (Index p = pattern.column_start[j]; p < pattern.column_start[j + 1]; ++p) {
+      if (pattern.row[p] >= n) break;
       entries.emplace_back(static_cast<int>(pattern.row[p]), static_cast<int>(j), char{1});
     }
   }
@@ -56,10 +63,38 @@ std::vector<Index> minimum_degree(const BlockPattern& pattern) {
   matrix.setFromTriplets(entries.begin(), entries.end());
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> old_of_new;
   Eigen::AMDOrdering<int>()(matrix.selfadjointView<Eigen::Lower>(), old_of_new);
-  std::vector<Index> new_of_old(n);
   for (Index i = 0; i < n; ++i) {
     new_of_old[static_cast<Index>(old_of_new.indices()[static_cast<Eigen::Index>(i)])] = i;
   }
+  return new_of_old;
+}
+
+// The same by nested dissection (METIS).
+std::vector<Index> dissected(const BlockPattern& pattern, Index num_last) {
+  const Index n = pattern.size() - num_last;
+  std::vector<Index> new_of_old(pattern.size());
+  std::iota(new_of_old.begin(), new_of_old.end(), Index{0});
+  const Adjacency adjacency = adjacency_of(pattern, new_of_old);
+  std::vector<idx_t> start{0};
+  std::vector<idx_t> neighbour;
+  for (Index i = 0; i < n; ++i) {
+    for (Index p = adjacency.start[i]; p < adjacency.start[i + 1]; ++p) {
+      if (adjacency.neighbour[p] < n) neighbour.push_back(static_cast<idx_t>(adjacency.neighbour[p]));
+    }
+    start.push_back(static_cast<idx_t>(neighbour.size()));
+  }
+  auto size = static_cast<idx_t>(n);
+  std::vector<idx_t> old_of_position(n);
+  std::vector<idx_t> position(n);
+  {
+    // METIS draws from the C library's generator, which it seeds at each call: two calls at a time would mix.
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    const int status = METIS_NodeND(&size, start.data(), neighbour.data(), nullptr, nullptr,
+                                    old_of_position.data(), position.data());
+    ADIT_CHECK(status == METIS_OK, "METIS orders every graph that fits into memory");
+  }
+  std::ranges::copy(position, new_of_old.begin());
   return new_of_old;
 }
 
@@ -169,9 +204,11 @@ std::vector<Supernode> supernodes_of(std::vector<std::vector<Index>> rows, const
 
 }  // namespace
 
-BlockSymbolic::BlockSymbolic(const BlockPattern& pattern)
+BlockSymbolic::BlockSymbolic(const BlockPattern& pattern, Ordering ordering, Index num_last)
     : size(pattern.size()), num_blocks(pattern.num_blocks()) {
-  new_of_old = minimum_degree(pattern);
+  new_of_old = ordering == Ordering::nested_dissection && pattern.size() > num_last
+                   ? dissected(pattern, num_last)
+                   : minimum_degree(pattern, num_last);
   const std::vector<Index> order = postorder(elimination_tree(adjacency_of(pattern, new_of_old)));
   old_of_new.resize(size);
   for (Index i = 0; i < size; ++i) {

@@ -41,9 +41,16 @@ struct Supernode {
   }
 };
 
+/// How the order of elimination is found. Minimum degree is quick and fills little, but takes a chain from
+/// its ends: a tree as deep as the chain is long. Nested dissection makes shallow trees.
+enum class Ordering { minimum_degree, nested_dissection };
+
 class BlockSymbolic {
  public:
-  explicit BlockSymbolic(const BlockPattern& pattern);
+  /// The last `num_last` variables of the pattern are eliminated last, so that what comes to them later finds
+  /// them near the root.
+  explicit BlockSymbolic(const BlockPattern& pattern, Ordering ordering = Ordering::minimum_degree,
+                         std::size_t num_last = 0);
 
   std::size_t size = 0;
   std::size_t num_blocks = 0;

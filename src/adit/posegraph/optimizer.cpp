@@ -258,12 +258,12 @@ std::vector<double> edge_costs(const BasicPoseGraph<P>& graph, const std::vector
 }
 
 template <class P>
-std::vector<std::size_t> indefinite_edges(const BasicPoseGraph<P>& graph) {
+std::vector<std::size_t> indefinite_edges(const BasicPoseGraph<P>& graph, std::size_t first) {
   std::vector<std::size_t> out;
   bool last = false;
-  for (std::size_t e = 0; e < graph.edges.size(); ++e) {
+  for (std::size_t e = first; e < graph.edges.size(); ++e) {
     // Most graphs repeat one matrix over and over.
-    const bool repeated = e > 0 && graph.edges[e].information == graph.edges[e - 1].information;
+    const bool repeated = e > first && graph.edges[e].information == graph.edges[e - 1].information;
     if (!repeated) last = is_indefinite(graph.edges[e].information);
     if (last) out.push_back(e);
   }
@@ -309,8 +309,8 @@ Solution<P> optimize(const BasicPoseGraph<P>& graph, const OptimizerConfig& conf
 
 template std::vector<double> edge_costs(const PoseGraph&, const std::vector<Pose>&);
 template std::vector<double> edge_costs(const PoseGraph2&, const std::vector<Pose2>&);
-template std::vector<std::size_t> indefinite_edges(const PoseGraph&);
-template std::vector<std::size_t> indefinite_edges(const PoseGraph2&);
+template std::vector<std::size_t> indefinite_edges(const PoseGraph&, std::size_t);
+template std::vector<std::size_t> indefinite_edges(const PoseGraph2&, std::size_t);
 template Solution<Pose> optimize(const PoseGraph&, const OptimizerConfig&, const std::vector<double>&);
 template Solution<Pose2> optimize(const PoseGraph2&, const OptimizerConfig&, const std::vector<double>&);
 

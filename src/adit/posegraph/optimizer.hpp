@@ -73,8 +73,10 @@ template <class P>
 [[nodiscard]] std::vector<double> edge_costs(const BasicPoseGraph<P>& graph, const std::vector<P>& poses);
 
 /// Edges whose information matrix is not symmetric positive semidefinite, in the order of the graph. A matrix
-/// may be singular (an open direction) but no eigenvalue may be below -1e-9 times the largest.
+/// may be singular (an open direction) but no eigenvalue may be below -1e-9 times the largest. Edges before
+/// `first` are not looked at.
 template <class P>
-[[nodiscard]] std::vector<std::size_t> indefinite_edges(const BasicPoseGraph<P>& graph);
+[[nodiscard]] std::vector<std::size_t> indefinite_edges(const BasicPoseGraph<P>& graph,
+                                                        std::size_t first = 0);
 
 }  // namespace adit

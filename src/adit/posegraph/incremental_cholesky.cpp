@@ -1,0 +1,269 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/posegraph/incremental_cholesky.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <utility>
+
+#include "adit/core/check.hpp"
+#include "adit/posegraph/block_symbolic.hpp"
+#include "adit/posegraph/dense_kernels.hpp"
+
+namespace adit {
+namespace {
+
+using Index = std::size_t;
+constexpr double kMinPivot = 1e-13;  // relative to the diagonal element that the pivot started from
+constexpr Index kLarge = 300;        // variables, from which on a shallow tree is worth finding
+
+}  // namespace
+
+Index IncrementalCholesky::add_variable() {
+  const Index v = size();
+  diagonal_.push_back(blocks_.size() / (d_ * d_));
+  blocks_.resize(blocks_.size() + d_ * d_, 0.0);
+  neighbours_.emplace_back();
+  clique_of_.push_back(kNone);
+  row_of_.push_back(kNone);
+  touched_.push_back(v);
+  return v;
+}
+
+void IncrementalCholesky::add(Index i, Index j, const Eigen::Ref<const Eigen::MatrixXd>& term) {
+  ADIT_CHECK(i < size() && j < size(), "two variables that have been added");
+  const auto d = static_cast<Eigen::Index>(d_);
+  const auto at = [&](Index b) { return Eigen::Map<Eigen::MatrixXd>(block(b), d, d); };
+  touched_.push_back(i);
+  if (i == j) {
+    at(diagonal_[i]) += term;
+    return;
+  }
+  touched_.push_back(j);
+  const auto known = std::ranges::find(neighbours_[i], j, &Neighbour::variable);
+  if (known != neighbours_[i].end()) {
+    if (known->transposed)
+      at(known->block) += term;
+    else
+      at(known->block) += term.transpose();
+    return;
+  }
+  const Index b = blocks_.size() / (d_ * d_);
+  blocks_.resize(blocks_.size() + d_ * d_);
+  at(b) = term;
+  neighbours_[i].push_back({j, b, true});
+  neighbours_[j].push_back({i, b, false});
+}
+
+IncrementalCholesky::Removed IncrementalCholesky::remove_touched() {
+  std::ranges::sort(touched_);
+  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  std::vector<Index> affected;
+  for (const Index v : touched_) {
+    for (Index c = clique_of_[v]; c != kNone; c = cliques_[c].parent) {
+      if (std::ranges::find(affected, c) != affected.end()) break;
+      affected.push_back(c);
+    }
+  }
+  std::ranges::sort(affected);
+  Removed removed;
+  const auto is_touched = [&](Index v) { return std::ranges::binary_search(touched_, v); };
+  for (const Index c : affected) {
+    std::ranges::copy_if(cliques_[c].own, std::back_inserter(removed.variables), std::not_fn(is_touched));
+    for (const Index child : cliques_[c].children) {
+      if (!std::ranges::binary_search(affected, child)) removed.orphans.push_back(child);
+    }
+  }
+  for (const Index c : affected) {
+    cliques_[c] = {};
+    free_cliques_.push_back(c);
+  }
+  removed.num_touched = touched_.size();
+  removed.variables.insert(removed.variables.end(), touched_.begin(), touched_.end());
+  touched_.clear();
+  return removed;
+}
+
+std::optional<Index> IncrementalCholesky::refresh() {
+  num_renewed_ = 0;
+  if (touched_.empty()) return std::nullopt;
+  const Removed removed = remove_touched();
+  const std::vector<Index>& variables = removed.variables;
+
+  // The part to renew as a matrix of its own: its terms, and a full block for what each orphan hands up.
+  for (Index l = 0; l < variables.size(); ++l) row_of_[variables[l]] = l;
+  std::vector<std::pair<Index, Index>> pairs;
+  for (Index l = 0; l < variables.size(); ++l) {
+    for (const Neighbour& n : neighbours_[variables[l]]) {
+      if (row_of_[n.variable] != kNone && row_of_[n.variable] < l) pairs.emplace_back(l, row_of_[n.variable]);
+    }
+  }
+  for (const Index orphan : removed.orphans) {
+    const std::vector<Index>& below = cliques_[orphan].below;
+    for (Index a = 0; a < below.size(); ++a) {
+      for (Index b = 0; b < a; ++b) pairs.emplace_back(row_of_[below[a]], row_of_[below[b]]);
+    }
+  }
+  // Where nearly all is new, no variable deserves the last place.
+  const bool few = 4 * removed.num_touched < variables.size();
+  const auto ordering = variables.size() > kLarge ? Ordering::nested_dissection : Ordering::minimum_degree;
+  const BlockSymbolic symbolic(BlockPattern::of_pairs(variables.size(), std::move(pairs)), ordering,
+                               few ? removed.num_touched : 0);
+  const auto variable_at = [&](Index position) { return variables[symbolic.old_of_new[position]]; };
+
+  std::vector<Index> place;  // of each supernode in cliques_
+  std::vector<Index> node_of(variables.size());
+  for (Index s = 0; s < symbolic.nodes.size(); ++s) {
+    const Supernode& node = symbolic.nodes[s];
+    if (free_cliques_.empty()) {
+      free_cliques_.push_back(cliques_.size());
+      cliques_.emplace_back();
+    }
+    place.push_back(free_cliques_.back());
+    free_cliques_.pop_back();
+    Clique& clique = cliques_[place[s]];
+    for (Index k = 0; k < node.width; ++k) {
+      clique.own.push_back(variable_at(node.first + k));
+      clique_of_[clique.own.back()] = place[s];
+      node_of[node.first + k] = s;
+    }
+    for (const Index position : node.below) clique.below.push_back(variable_at(position));
+    for (const Index child : node.children) {
+      clique.children.push_back(place[child]);
+      cliques_[place[child]].parent = place[s];
+    }
+  }
+  for (const Index orphan : removed.orphans) {
+    Index first = kNone;
+    for (const Index v : cliques_[orphan].below) first = std::min(first, symbolic.new_of_old[row_of_[v]]);
+    cliques_[orphan].parent = place[node_of[first]];
+    cliques_[place[node_of[first]]].children.push_back(orphan);
+  }
+  for (const Index v : variables) row_of_[v] = kNone;
+
+  sort_cliques();
+  for (const Index c : place) {
+    if (const auto free = eliminate(cliques_[c])) return free;
+  }
+  num_renewed_ = place.size();
+  return std::nullopt;
+}
+
+std::optional<Index> IncrementalCholesky::eliminate(Clique& clique) {
+  const Index width = clique.own.size();
+  const Index rows = (width + clique.below.size()) * d_;
+  const Index columns = width * d_;
+  const Index below = rows - columns;
+  for (Index k = 0; k < width; ++k) row_of_[clique.own[k]] = k;
+  for (Index k = 0; k < clique.below.size(); ++k) row_of_[clique.below[k]] = width + k;
+
+  clique.panel.assign(rows * columns, 0.0);
+  std::vector<double> min_pivot(columns);
+  for (Index k = 0; k < width; ++k) {
+    const auto place = [&](Index row, const double* b, bool transposed) {
+      for (Index j = 0; j < d_; ++j) {
+        double* to = clique.panel.data() + (k * d_ + j) * rows + row * d_;
+        for (Index i = 0; i < d_; ++i) to[i] = transposed ? b[j + i * d_] : b[i + j * d_];
+      }
+    };
+    const double* own = block(diagonal_[clique.own[k]]);
+    place(k, own, false);
+    for (Index i = 0; i < d_; ++i) min_pivot[k * d_ + i] = kMinPivot * own[i * d_ + i];
+    for (const Neighbour& n : neighbours_[clique.own[k]]) {
+      const Index row = row_of_[n.variable];
+      if (row != kNone && row > k) place(row, block(n.block), n.transposed);
+    }
+  }
+  for (const Index child : clique.children) add_update(cliques_[child], clique, clique.panel, true);
+  const Index done = dense::factorize_panel(clique.panel.data(), rows, rows, columns, min_pivot.data());
+  if (done == columns) {
+    clique.update.assign(below * below, 0.0);
+    dense::PackedPanel packed;
+    packed.pack(clique.panel.data() + columns, rows, below, columns);
+    dense::subtract_outer_product(clique.update.data(), below, packed, 0, below, dense::Into::replace);
+    for (const Index child : clique.children) add_update(cliques_[child], clique, clique.update, false);
+  }
+  for (const Index v : clique.own) row_of_[v] = kNone;
+  for (const Index v : clique.below) row_of_[v] = kNone;
+  return done == columns ? std::nullopt : std::optional(clique.own[done / d_]);
+}
+
+// Adds the part of the child's update that belongs to the parent's columns (`square`), or the part that it
+// hands on. The child may list its rows in another order than the parent.
+void IncrementalCholesky::add_update(const Clique& child, const Clique& parent, std::vector<double>& to,
+                                     bool square) const {
+  const Index width = parent.own.size();
+  const Index skipped = square ? 0 : width;
+  const Index to_rows = (width + parent.below.size() - skipped) * d_;
+  const Index from_rows = child.below.size() * d_;
+  for (Index b = 0; b < child.below.size(); ++b) {
+    for (Index a = b; a < child.below.size(); ++a) {
+      const Index row_a = row_of_[child.below[a]];
+      const Index row_b = row_of_[child.below[b]];
+      const bool turned = row_a < row_b;
+      const Index row = turned ? row_b : row_a;
+      const Index column = turned ? row_a : row_b;
+      if ((column < width) != square) continue;
+      const double* from = child.update.data() + b * d_ * from_rows + a * d_;
+      double* target = to.data() + (column - skipped) * d_ * to_rows + (row - skipped) * d_;
+      for (Index j = 0; j < d_; ++j) {
+        for (Index i = 0; i < d_; ++i)
+          target[j * to_rows + i] += turned ? from[i * from_rows + j] : from[j * from_rows + i];
+      }
+    }
+  }
+}
+
+void IncrementalCholesky::sort_cliques() {
+  order_.clear();
+  for (Index c = 0; c < cliques_.size(); ++c) {
+    if (!cliques_[c].own.empty() && cliques_[c].parent == kNone) order_.push_back(c);
+  }
+  // Parents first, then turned round.
+  for (Index k = 0; k < order_.size(); ++k) {
+    const std::vector<Index>& children = cliques_[order_[k]].children;
+    order_.insert(order_.end(), children.begin(), children.end());
+  }
+  std::ranges::reverse(order_);
+}
+
+Eigen::VectorXd IncrementalCholesky::solve(const Eigen::VectorXd& right_side) const {
+  ADIT_CHECK(right_side.size() == static_cast<Eigen::Index>(size() * d_), "one row for each scalar variable");
+  ADIT_CHECK(touched_.empty(), "refresh comes first");
+  Eigen::VectorXd x = right_side;
+  std::vector<double> t;
+  const auto gather = [&](const std::vector<Index>& variables, double* to) {
+    for (const Index v : variables) to = std::copy_n(x.data() + v * d_, d_, to);
+  };
+  const auto store = [&](const Clique& clique) {
+    const double* from = t.data();
+    for (const Index v : clique.own) {
+      std::copy_n(from, d_, x.data() + v * d_);
+      from += d_;
+    }
+  };
+  const auto rows_of = [&](const Clique& clique) { return (clique.own.size() + clique.below.size()) * d_; };
+  for (const Index c : order_) {
+    const Clique& clique = cliques_[c];
+    t.assign(rows_of(clique), 0.0);
+    gather(clique.own, t.data());
+    dense::solve_lower(clique.panel.data(), t.size(), clique.own.size() * d_, t.data());
+    store(clique);
+    const double* owed = t.data() + clique.own.size() * d_;
+    for (const Index v : clique.below) {
+      for (Index i = 0; i < d_; ++i) x.data()[v * d_ + i] += *owed++;
+    }
+  }
+  for (Index k = order_.size(); k-- > 0;) {
+    const Clique& clique = cliques_[order_[k]];
+    t.resize(rows_of(clique));
+    gather(clique.own, t.data());
+    gather(clique.below, t.data() + clique.own.size() * d_);
+    dense::solve_lower_transposed(clique.panel.data(), t.size(), clique.own.size() * d_, t.data());
+    store(clique);
+  }
+  return x;
+}
+
+}  // namespace adit

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace adit {
+
+/// Cholesky factorization of a symmetric positive definite block matrix that grows: variables and terms are
+/// added, and only the supernodes on the way from the variables they touch to the root are eliminated anew;
+/// all other subtrees keep their columns and what they hand to their parents. Order within the part that is
+/// renewed: approximate minimum degree, or nested dissection where it is large; touched variables last.
+/// Source: Kaess, Johannsson, Roberts, Ila, Leonard, Dellaert, "iSAM2" (IJRR 2012), section 3 (the Bayes tree
+/// is this tree), with dense fronts as in block_cholesky.hpp.
+class IncrementalCholesky {
+ public:
+  explicit IncrementalCholesky(std::size_t block_size) : d_(block_size) {}
+
+  [[nodiscard]] std::size_t size() const { return diagonal_.size(); }
+  /// A variable with a zero diagonal block; returns its index.
+  std::size_t add_variable();
+  /// Adds `block` (d x d, column-major) to block (i, j) of the matrix, and its transpose to (j, i). i == j:
+  /// once.
+  void add(std::size_t i, std::size_t j, const Eigen::Ref<const Eigen::MatrixXd>& block);
+
+  /// Brings the factor up to date. Returns a variable that the matrix leaves free (a pivot not above 1e-13 of
+  /// its diagonal), or nothing when all is well; after a failure `solve` must not be called.
+  [[nodiscard]] std::optional<std::size_t> refresh();
+  /// Supernodes that the last refresh eliminated, and that there are.
+  [[nodiscard]] std::size_t num_renewed() const { return num_renewed_; }
+  [[nodiscard]] std::size_t num_supernodes() const { return order_.size(); }
+
+  /// Solution of A x = b, after `refresh`.
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
+
+ private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  /// A supernode: variables that are eliminated together.
+  struct Clique {
+    std::vector<std::size_t> own;    ///< In the order of elimination.
+    std::vector<std::size_t> below;  ///< Variables of ancestors that the columns reach.
+    std::vector<double> panel;       ///< Columns of the factor: (own + below) * d rows.
+    std::vector<double> update;      ///< Lower triangle of what the parent gets.
+    std::size_t parent = kNone;
+    std::vector<std::size_t> children;
+  };
+  struct Neighbour {
+    std::size_t variable;
+    std::size_t block;  ///< Index into blocks_, in units of d * d.
+    bool transposed;    ///< The block is (this, other); otherwise (other, this).
+  };
+
+  struct Removed {
+    std::vector<std::size_t>
+        variables;  ///< Of the cliques that were taken out, and new ones; touched ones last.
+    std::size_t num_touched = 0;
+    std::vector<std::size_t> orphans;  ///< Cliques that have lost their parent.
+  };
+  Removed remove_touched();
+  [[nodiscard]] std::optional<std::size_t> eliminate(Clique& clique);
+  void add_update(const Clique& child, const Clique& parent, std::vector<double>& to, bool square) const;
+  void sort_cliques();
+  [[nodiscard]] double* block(std::size_t i) { return blocks_.data() + i * d_ * d_; }
+  [[nodiscard]] const double* block(std::size_t i) const { return blocks_.data() + i * d_ * d_; }
+
+  std::size_t d_;
+  std::vector<double> blocks_;
+  std::vector<std::size_t> diagonal_;  ///< Block of each variable.
+  std::vector<std::vector<Neighbour>> neighbours_;
+  std::vector<std::size_t> touched_;  ///< Variables whose terms have changed since the last refresh.
+
+  std::vector<Clique> cliques_;
+  std::vector<std::size_t> free_cliques_;  ///< Places in cliques_ that are not in use.
+  std::vector<std::size_t> clique_of_;     ///< Of each variable; kNone before its first elimination.
+  std::vector<std::size_t> order_;         ///< All cliques, children before parents.
+  std::vector<std::size_t> row_of_;        ///< Scratch: row of a variable in the front at hand, or kNone.
+  std::size_t num_renewed_ = 0;
+};
+
+}  // namespace adit

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/posegraph/incremental.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <set>
+
+#include "adit/core/parallel.hpp"
+#include "adit/posegraph/incremental_cholesky.hpp"
+#include "support/graphs.hpp"
+
+namespace adit {
+namespace {
+
+// A matrix that grows beside its dense twin.
+class Growing {
+ public:
+  explicit Growing(std::size_t d) : cholesky(d), d_(static_cast<Eigen::Index>(d)) {}
+
+  void add_variable(Rng& rng) {
+    const std::size_t v = cholesky.add_variable();
+    const Eigen::Index n = dense.rows();
+    dense.conservativeResize(n + d_, n + d_);
+    dense.rightCols(d_).setZero();
+    dense.bottomRows(d_).setZero();
+    add_term(v, v, rng);
+  }
+  // J^T J of a random J over both variables: what an edge adds.
+  void add_term(std::size_t i, std::size_t j, Rng& rng) {
+    Eigen::MatrixXd J(d_, 2 * d_);
+    for (double& v : J.reshaped()) v = rng.normal();
+    const Eigen::MatrixXd H = J.transpose() * J;
+    add(i, i, H.topLeftCorner(d_, d_));
+    if (i == j) return;
+    add(j, j, H.bottomRightCorner(d_, d_));
+    add(i, j, H.topRightCorner(d_, d_));
+  }
+  void expect_solves() {
+    ASSERT_FALSE(cholesky.refresh());
+    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(dense.rows(), -1.0, 2.0);
+    const Eigen::VectorXd x = dense.llt().solve(b);
+    EXPECT_LT((cholesky.solve(b) - x).norm(), 1e-8 * x.norm());
+  }
+  IncrementalCholesky cholesky;
+  Eigen::MatrixXd dense;
+
+ private:
+  void add(std::size_t i, std::size_t j, const Eigen::MatrixXd& block) {
+    cholesky.add(i, j, block);
+    const auto at = [&](std::size_t v) { return static_cast<Eigen::Index>(v) * d_; };
+    dense.block(at(i), at(j), d_, d_) += block;
+    if (i != j) dense.block(at(j), at(i), d_, d_) += block.transpose();
+  }
+  Eigen::Index d_;
+};
+
+TEST(IncrementalCholesky, SolvesAsADenseFactorizationAfterEachChange) {
+  for (const std::size_t d : {1U, 3U, 6U}) {
+    Rng rng(d);
+    Growing g(d);
+    for (std::size_t i = 0; i < 40; ++i) {
+      g.add_variable(rng);
+      if (i > 0) g.add_term(i - 1, i, rng);
+      // A chord now and then, some of them twice, in both directions.
+      if (i % 7 == 6) g.add_term(rng.below(i), i, rng);
+      if (i % 11 == 10) g.add_term(i, rng.below(i), rng);
+      if (i % 13 == 12) g.add_term(i - 2, i - 3, rng);
+      if (i % 3 == 0) g.expect_solves();
+    }
+    g.expect_solves();
+  }
+}
+
+TEST(IncrementalCholesky, LeavesTheRestAlone) {
+  Rng rng(5);
+  Growing g(3);
+  for (std::size_t i = 0; i < 400; ++i) {
+    g.add_variable(rng);
+    if (i > 0) g.add_term(i - 1, i, rng);
+  }
+  ASSERT_FALSE(g.cholesky.refresh());
+  g.add_variable(rng);
+  g.add_term(399, 400, rng);
+  g.add_term(120, 400, rng);
+  g.expect_solves();
+  EXPECT_LT(10 * g.cholesky.num_renewed(), g.cholesky.num_supernodes());
+}
+
+TEST(IncrementalCholesky, NamesAFreeVariable) {
+  IncrementalCholesky cholesky(1);
+  const auto one = Eigen::MatrixXd::Ones(1, 1);
+  (void)cholesky.add_variable();
+  (void)cholesky.add_variable();
+  cholesky.add(0, 0, one);
+  EXPECT_EQ(cholesky.refresh(), 1U);
+}
+
+template <class P>
+class Incremental : public testing::Test {};
+using Spaces = testing::Types<Pose, Pose2>;
+TYPED_TEST_SUITE(Incremental, Spaces);
+
+// Feeds the graph edge by edge, each node when its first edge comes.
+template <class P, class Check>
+void feed(const BasicPoseGraph<P>& graph, IncrementalOptimizer<P>& optimizer, const Check& check) {
+  std::vector<typename BasicPoseGraph<P>::Edge> loops;
+  optimizer.add_node(graph.nodes[0].key, graph.nodes[0].pose);
+  for (const auto& edge : graph.edges) {
+    if (edge.kind == EdgeKind::loop) loops.push_back(edge);
+  }
+  for (const auto& edge : graph.edges) {
+    if (edge.kind != EdgeKind::odometry) continue;
+    optimizer.add_node(graph.nodes[edge.to].key, optimizer.poses()[edge.from] * edge.T_from_to);
+    optimizer.add_edge(edge);
+    for (const auto& loop : loops) {
+      if (std::max(loop.from, loop.to) != edge.to) continue;
+      optimizer.add_edge(loop);
+      check(optimizer.update());
+    }
+  }
+  check(optimizer.update());
+}
+
+TYPED_TEST(Incremental, ReachesTheBatchMinimumAtEachLoop) {
+  using P = TypeParam;
+  Rng rng(7);
+  const auto made = test::make_graph<P>(rng, 120, 25, 0.02);
+  IncrementalOptimizer<P> optimizer;
+  feed(made.graph, optimizer, [&](const auto& update) {
+    ASSERT_EQ(update.status, SolveStatus::converged) << update.reason;
+    OptimizerConfig config;
+    config.relative_tolerance = 1e-12;
+    const Solution<P> batch = optimize(optimizer.graph(), config);
+    EXPECT_NEAR(update.cost, batch.cost_final, 1e-5 * (1.0 + batch.cost_final));
+  });
+  const Solution<P> batch = optimize(made.graph);
+  for (std::size_t i = 0; i < batch.poses.size(); ++i)
+    EXPECT_LT((batch.poses[i].translation() - optimizer.poses()[i].translation()).norm(), 1e-3);
+}
+
+TYPED_TEST(Incremental, ReportsWhatItCannotSolveAndGoesOn) {
+  using P = TypeParam;
+  IncrementalOptimizer<P> optimizer;
+  optimizer.add_node(0, P());
+  optimizer.add_node(1, P());
+  EXPECT_EQ(optimizer.update().status, SolveStatus::singular);
+  optimizer.add_edge({0, 1, P(), P::Jacobian::Identity(), EdgeKind::odometry});
+  const auto update = optimizer.update();
+  EXPECT_EQ(update.status, SolveStatus::converged) << update.reason;
+  typename P::Jacobian bad = P::Jacobian::Identity();
+  bad(0, 0) = -1.0;
+  optimizer.add_edge({0, 1, P(), bad, EdgeKind::loop});
+  EXPECT_EQ(optimizer.update().status, SolveStatus::indefinite_information);
+}
+
+TYPED_TEST(Incremental, GivesTheSameBytesWithAnyNumberOfThreads) {
+  using P = TypeParam;
+  std::set<std::vector<double>> results;
+  for (const int threads : {1, 2}) {
+    set_num_threads(threads);
+    Rng rng(8);
+    const auto made = test::make_graph<P>(rng, 600, 12, 0.02);
+    IncrementalOptimizer<P> optimizer;
+    feed(made.graph, optimizer, [](const auto&) {});
+    std::vector<double> numbers;
+    for (const P& pose : optimizer.poses()) {
+      for (const double x : pose.translation()) numbers.push_back(x);
+    }
+    results.insert(numbers);
+  }
+  EXPECT_EQ(results.size(), 1U);
+}
+
+}  // namespace
+}  // namespace adit
