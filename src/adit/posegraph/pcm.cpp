@@ -50,7 +50,7 @@ double distance2(const OdometryChain& chain_a, const OdometryChain& chain_b, con
   return error.dot(S.ldlt().solve(error));
 }
 
-std::vector<std::size_t> without(std::size_t n, const std::vector<std::size_t>& taken) {
+std::vector<std::size_t> without(std::size_t n, const std::vector<std::uint32_t>& taken) {
   std::vector<std::size_t> rest;
   for (std::size_t i = 0; i < n; ++i) {
     if (!std::ranges::binary_search(taken, i)) rest.push_back(i);
@@ -121,7 +121,7 @@ PcmResult pcm(const OdometryChain& chain_a, const OdometryChain& chain_b, const 
     }
   }
   const Clique second = max_clique(remaining, config.max_search_nodes);
-  result.largest = largest.vertices;
+  result.largest.assign(largest.vertices.begin(), largest.vertices.end());
   for (const std::size_t i : second.vertices) result.second.push_back(rest[i]);
   result.optimal = largest.optimal && second.optimal;
   return result;

@@ -8,7 +8,7 @@
 
 #include "adit/core/config.hpp"
 #include "adit/core/pose.hpp"
-#include "adit/posegraph/max_clique.hpp"
+#include "adit/geometry/max_clique.hpp"
 
 namespace adit {
 

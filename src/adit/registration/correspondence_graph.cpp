@@ -3,30 +3,13 @@
 #include "adit/registration/correspondence_graph.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
-#include <utility>
 
 #include "adit/core/check.hpp"
 #include "adit/core/parallel.hpp"
 
 namespace adit {
 namespace {
-
-template <class Visit>
-void for_each_bit(std::span<const std::uint64_t> words, const Visit& visit) {
-  for (std::size_t w = 0; w < words.size(); ++w) {
-    for (std::uint64_t bits = words[w]; bits != 0; bits &= bits - 1) {
-      visit(static_cast<std::uint32_t>(w * 64 + static_cast<std::size_t>(std::countr_zero(bits))));
-    }
-  }
-}
-
-std::size_t num_bits(std::span<const std::uint64_t> words) {
-  std::size_t sum = 0;
-  for (const std::uint64_t word : words) sum += static_cast<std::size_t>(std::popcount(word));
-  return sum;
-}
 
 /// Coordinates in rows, so that one correspondence meets a whole block of others in vector registers.
 using Rows = Eigen::Matrix<float, 3, Eigen::Dynamic, Eigen::RowMajor>;
@@ -67,98 +50,23 @@ std::uint64_t consistent_in_block(const Rows& a, const Rows& b, Eigen::Index fro
   return mask_of(excess.data(), slack.data());
 }
 
-using Bits = std::vector<std::uint64_t>;
-
-Bits intersection(const Bits& bits, std::span<const std::uint64_t> row) {
-  Bits out(bits.size());
-  for (std::size_t w = 0; w < bits.size(); ++w) out[w] = bits[w] & row[w];
-  return out;
-}
-
-void clear(Bits& bits, std::uint32_t v) { bits[v / 64] &= ~(std::uint64_t{1} << (v % 64)); }
-
-class CliqueSearch {
- public:
-  CliqueSearch(const ConsistencyGraph& graph, std::uint64_t max_nodes)
-      : graph_(graph), nodes_left_(max_nodes) {}
-
-  /// Extends the current clique by vertices of `candidates`, all of which are joined to all of it.
-  void expand(Bits candidates) {
-    if (current_.size() > best.size()) best = current_;
-    const std::vector<Coloured> order = coloured(candidates);
-    for (auto it = order.rbegin(); it != order.rend(); ++it) {
-      if (current_.size() + it->colour <= best.size() || nodes_left_ == 0) return;
-      --nodes_left_;
-      current_.push_back(it->vertex);
-      expand(intersection(candidates, graph_.row(it->vertex)));
-      current_.pop_back();
-      clear(candidates, it->vertex);
-    }
-  }
-
-  std::vector<std::uint32_t> best;
-
- private:
-  struct Coloured {
-    std::uint32_t vertex;
-    std::size_t colour;  ///< From 1; a clique has at most one vertex of each.
-  };
-
-  /// Greedy colour classes of mutually unjoined vertices, colours ascending.
-  std::vector<Coloured> coloured(Bits uncoloured) const {
-    std::vector<Coloured> order;
-    for (std::size_t colour = 1; num_bits(uncoloured) > 0; ++colour) {
-      Bits free = uncoloured;
-      for_each_first(free, [&](std::uint32_t v) {
-        order.push_back({v, colour});
-        clear(uncoloured, v);
-        const std::span<const std::uint64_t> row = graph_.row(v);
-        for (std::size_t w = 0; w < free.size(); ++w) free[w] &= ~row[w];
-      });
-    }
-    return order;
-  }
-
-  /// Takes the first bit out again and again; `visit` may clear further ones.
-  template <class Visit>
-  static void for_each_first(Bits& bits, const Visit& visit) {
-    for (std::size_t w = 0; w < bits.size(); ++w) {
-      while (bits[w] != 0) {
-        const auto v =
-            static_cast<std::uint32_t>(w * 64 + static_cast<std::size_t>(std::countr_zero(bits[w])));
-        bits[w] &= bits[w] - 1;
-        visit(v);
-      }
-    }
-  }
-
-  const ConsistencyGraph& graph_;
-  std::uint64_t nodes_left_;
-  std::vector<std::uint32_t> current_;
-};
-
 }  // namespace
 
-void ConsistencyGraph::add_edge(std::size_t v, std::size_t w) {
-  bits_[v * words_ + w / 64] |= std::uint64_t{1} << (w % 64);
-  bits_[w * words_ + v / 64] |= std::uint64_t{1} << (v % 64);
-}
-
-ConsistencyGraph consistency_graph(std::span<const Eigen::Vector3f> points_a,
-                                   std::span<const Eigen::Vector3f> points_b, float noise_bound) {
+BitGraph consistency_graph(std::span<const Eigen::Vector3f> points_a,
+                           std::span<const Eigen::Vector3f> points_b, float noise_bound) {
   ADIT_CHECK(points_a.size() == points_b.size(), "a correspondence has a point in either cloud");
   const Rows a = rows_of(points_a);
   const Rows b = rows_of(points_b);
-  ConsistencyGraph graph(points_a.size());
+  BitGraph graph(points_a.size());
   parallel_for_each(
       points_a.size(),
       [&](std::size_t v) {
-        const std::span<std::uint64_t> row = graph.row(v);
+        const std::span<bits::Word> row = graph.row(v);
         for (std::size_t w = 0; w < row.size(); ++w) {
           row[w] = consistent_in_block(a, b, static_cast<Eigen::Index>(v),
                                        static_cast<Eigen::Index>(w) * kBlock, noise_bound);
         }
-        row[v / 64] &= ~(std::uint64_t{1} << (v % 64));  // not with itself
+        bits::reset(row.data(), v);  // not with itself
       },
       64);
   return graph;
@@ -166,12 +74,12 @@ ConsistencyGraph consistency_graph(std::span<const Eigen::Vector3f> points_a,
 
 /// Peels off the vertex of least degree again and again, vertices held in buckets by degree (Batagelj and
 /// Zaversnik).
-std::vector<std::uint32_t> max_core(const ConsistencyGraph& graph) {
+std::vector<std::uint32_t> max_core(const BitGraph& graph) {
   const std::size_t n = graph.num_vertices();
   std::vector<std::size_t> degree(n);
   std::vector<std::vector<std::uint32_t>> buckets;
   for (std::uint32_t v = 0; v < n; ++v) {
-    degree[v] = num_bits(graph.row(v));
+    degree[v] = bits::count(graph.row(v));
     if (degree[v] >= buckets.size()) buckets.resize(degree[v] + 1);
     buckets[degree[v]].push_back(v);
   }
@@ -189,8 +97,8 @@ std::vector<std::uint32_t> max_core(const ConsistencyGraph& graph) {
     peeled[v] = true;
     k = std::max(k, d);
     core[v] = k;
-    for_each_bit(graph.row(v), [&](std::uint32_t w) {
-      if (!peeled[w] && degree[w] > d) buckets[--degree[w]].push_back(w);
+    bits::for_each(graph.row(v), [&](std::size_t w) {
+      if (!peeled[w] && degree[w] > d) buckets[--degree[w]].push_back(static_cast<std::uint32_t>(w));
     });
   }
   std::vector<std::uint32_t> innermost;
@@ -198,15 +106,6 @@ std::vector<std::uint32_t> max_core(const ConsistencyGraph& graph) {
     if (core[v] == k) innermost.push_back(v);
   }
   return innermost;
-}
-
-std::vector<std::uint32_t> largest_clique(const ConsistencyGraph& graph, std::uint64_t max_search_nodes) {
-  Bits all((graph.num_vertices() + 63) / 64, 0);
-  for (std::size_t v = 0; v < graph.num_vertices(); ++v) all[v / 64] |= std::uint64_t{1} << (v % 64);
-  CliqueSearch search(graph, max_search_nodes);
-  search.expand(std::move(all));
-  std::sort(search.best.begin(), search.best.end());
-  return std::move(search.best);
 }
 
 }  // namespace adit

@@ -12,9 +12,9 @@
 namespace adit {
 namespace {
 
-ConsistencyGraph random_graph(std::uint64_t seed, std::size_t n, double density) {
+BitGraph random_graph(std::uint64_t seed, std::size_t n, double density) {
   Rng rng(seed);
-  ConsistencyGraph graph(n);
+  BitGraph graph(n);
   for (std::size_t v = 0; v < n; ++v) {
     for (std::size_t w = v + 1; w < n; ++w) {
       if (rng.uniform() < density) graph.add_edge(v, w);
@@ -24,7 +24,7 @@ ConsistencyGraph random_graph(std::uint64_t seed, std::size_t n, double density)
 }
 
 /// Removes vertices of too small degree, one k after the other, until none is left.
-std::vector<std::uint32_t> core_by_brute_force(const ConsistencyGraph& graph) {
+std::vector<std::uint32_t> core_by_brute_force(const BitGraph& graph) {
   std::vector<std::uint32_t> alive(graph.num_vertices());
   for (std::uint32_t v = 0; v < alive.size(); ++v) alive[v] = v;
   for (std::ptrdiff_t k = 1;; ++k) {
@@ -46,13 +46,13 @@ std::vector<std::uint32_t> core_by_brute_force(const ConsistencyGraph& graph) {
 TEST(MaxCore, AgreesWithBruteForce) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const std::size_t n = 1 + seed * 3;
-    const ConsistencyGraph graph = random_graph(seed, n, 0.05 + 0.02 * static_cast<double>(seed % 10));
+    const BitGraph graph = random_graph(seed, n, 0.05 + 0.02 * static_cast<double>(seed % 10));
     EXPECT_EQ(max_core(graph), core_by_brute_force(graph)) << "seed " << seed;
   }
 }
 
 TEST(MaxCore, HoldsAPlantedClique) {
-  ConsistencyGraph graph = random_graph(7, 200, 0.05);
+  BitGraph graph = random_graph(7, 200, 0.05);
   for (std::size_t v = 30; v < 60; ++v) {
     for (std::size_t w = v + 1; w < 60; ++w) graph.add_edge(v, w);
   }
@@ -61,43 +61,8 @@ TEST(MaxCore, HoldsAPlantedClique) {
 }
 
 TEST(MaxCore, OfDegenerateGraphs) {
-  EXPECT_TRUE(max_core(ConsistencyGraph(0)).empty());
-  EXPECT_EQ(max_core(ConsistencyGraph(3)).size(), 3U);  // no edge: all are in the 0-core
-}
-
-/// The size of the largest clique that holds `taken`, with further vertices from `from` on.
-std::size_t clique_size_by_brute_force(const ConsistencyGraph& graph, std::vector<std::size_t>& taken,
-                                       std::size_t from) {
-  std::size_t best = taken.size();
-  for (std::size_t v = from; v < graph.num_vertices(); ++v) {
-    if (!std::all_of(taken.begin(), taken.end(), [&](std::size_t w) { return graph.has_edge(v, w); }))
-      continue;
-    taken.push_back(v);
-    best = std::max(best, clique_size_by_brute_force(graph, taken, v + 1));
-    taken.pop_back();
-  }
-  return best;
-}
-
-TEST(LargestClique, AgreesWithBruteForce) {
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const ConsistencyGraph graph = random_graph(seed, 10 + 3 * seed, 0.3);
-    const auto clique = largest_clique(graph, 1000000);
-    std::vector<std::size_t> taken;
-    EXPECT_EQ(clique.size(), clique_size_by_brute_force(graph, taken, 0)) << "seed " << seed;
-    for (const std::uint32_t v : clique) {
-      for (const std::uint32_t w : clique) EXPECT_TRUE(v == w || graph.has_edge(v, w));
-    }
-  }
-}
-
-TEST(LargestClique, KeepsToItsBudget) {
-  const ConsistencyGraph graph = random_graph(3, 300, 0.8);
-  const auto clique = largest_clique(graph, 50);
-  EXPECT_GT(clique.size(), 10U);  // greedy, but a clique
-  EXPECT_EQ(clique, largest_clique(graph, 50));
-  EXPECT_TRUE(largest_clique(ConsistencyGraph(0), 50).empty());
-  EXPECT_EQ(largest_clique(ConsistencyGraph(3), 50).size(), 1U);
+  EXPECT_TRUE(max_core(BitGraph(0)).empty());
+  EXPECT_EQ(max_core(BitGraph(3)).size(), 3U);  // no edge: all are in the 0-core
 }
 
 TEST(ConsistencyGraph, JoinsWhatKeepsItsDistance) {
@@ -110,7 +75,7 @@ TEST(ConsistencyGraph, JoinsWhatKeepsItsDistance) {
   }
   a[20] = a[21];  // one point matched with two
   const float bound = 0.5F;
-  const ConsistencyGraph graph = consistency_graph(a, b, bound);
+  const BitGraph graph = consistency_graph(a, b, bound);
   for (std::size_t v = 0; v < a.size(); ++v) {
     EXPECT_FALSE(graph.has_edge(v, v));
     for (std::size_t w = 0; w < a.size(); ++w) {

@@ -10,6 +10,7 @@
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/geometry/kd_tree.hpp"
+#include "adit/geometry/max_clique.hpp"
 #include "adit/registration/correspondence_graph.hpp"
 #include "adit/registration/gnc_registration.hpp"
 #include "adit/registration/icp_refine.hpp"
@@ -43,11 +44,11 @@ MatchedPoints matched_points(const Features& a, const Features& b,
 
 MatchedPoints pruned(const MatchedPoints& points, const RegistrationConfig& config) {
   const double bound = std::min(config.graph_noise_voxels * config.voxel_size, config.max_noise_bound);
-  const ConsistencyGraph graph = consistency_graph(points.a, points.b, static_cast<float>(bound));
+  const BitGraph graph = consistency_graph(points.a, points.b, static_cast<float>(bound));
   MatchedPoints out;
   const bool exact = config.pruning == "clique";
   const auto max_nodes = static_cast<std::uint64_t>(config.clique_max_search_nodes);
-  for (const std::uint32_t k : exact ? largest_clique(graph, max_nodes) : max_core(graph)) {
+  for (const std::uint32_t k : exact ? max_clique(graph, max_nodes).vertices : max_core(graph)) {
     out.a.push_back(points.a[k]);
     out.b.push_back(points.b[k]);
   }
@@ -100,6 +101,14 @@ Registration register_clouds(const PointCloud& a, const PointCloud& b, const Reg
   std::array<Features, 2> features;
   parallel_for_each(2, [&](std::size_t k) { features[k] = compute_features(*clouds[k], config); });
   return register_features(features[0], features[1], config);
+}
+
+Pose align_clouds(const PointCloud& a, const PointCloud& b, const Pose& T_a_b,
+                  const RegistrationConfig& config) {
+  const std::array<const PointCloud*, 2> clouds = {&a, &b};
+  std::array<OrientedPoints, 2> surfaces;
+  parallel_for_each(2, [&](std::size_t k) { surfaces[k] = compute_surface(*clouds[k], config); });
+  return align_to_planes(surfaces[0], KdTree(surfaces[0].points), surfaces[1], T_a_b, config);
 }
 
 }  // namespace adit
