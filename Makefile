@@ -18,9 +18,8 @@ demo: build
 test: build
 	ctest --preset release -j 2
 
-bench: build/bench/build.ninja
-	cmake --build --preset bench
-	tools/bench.sh
+bench:
+	tools/bench.sh $(BENCH)
 
 lint: build
 	tools/lint.sh

@@ -2,9 +2,11 @@
 # SPDX-FileCopyrightText: 2026 The adit authors
 # SPDX-License-Identifier: MIT
 # Installs what packages.txt lists, and does nothing (no network, no root) where all of it is there already.
+# `tools/setup.sh bench`: its last part as well.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-mapfile -t wanted < <(grep -v '^#' packages.txt)
+if [ "${1:-}" = bench ]; then list=$(cat packages.txt); else list=$(sed '/^# bench$/,$d' packages.txt); fi
+mapfile -t wanted < <(grep -v '^#' <<< "$list")
 missing=()
 for package in "${wanted[@]}"; do
   [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")

@@ -17,7 +17,7 @@ namespace adit {
 namespace {
 
 constexpr std::size_t kGrain = 256;
-constexpr double kSlow = 0.2;  // a step that leaves more than this share of the last one's gain is slow
+constexpr double kSlow = 0.5;  // a step after which more than this share of the gain is left is slow
 constexpr double kNoise =
     1e-12;  // gain per edge, in standard deviations squared, below which nothing is left
 
