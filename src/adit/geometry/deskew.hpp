@@ -26,31 +26,34 @@ struct ConstantVelocity {
 };
 
 /// p_body_at_stamp = SweepTransform(offset) * p_sensor_at_offset, for the many points of one sweep. The pose
-/// is exact at 65 knots over the span of offsets and its matrix linear between them: for a turn of 0.3 rad
-/// within the sweep the error is 3e-6 of the range (0.3 mm at 100 m), far below any sensor's noise.
+/// is exact at knots over the span of offsets and its matrix linear between them; the knots are so many that
+/// the error is at most 3e-6 of the range (0.3 mm at 100 m), far below any sensor's noise.
 class SweepTransform {
  public:
+  using Matrix34 = Eigen::Matrix<float, 3, 4>;
+  struct Knot {
+    Matrix34 value;
+    Matrix34 slope;  ///< Change to the next knot.
+  };
+
   /// `offsets_ns` (non-empty) are the points' times less the stamp, as in PointCloud.
   SweepTransform(const ConstantVelocity& motion, const Pose& T_body_sensor,
                  std::span<const std::int32_t> offsets_ns);
 
-  [[nodiscard]] Eigen::Vector3f apply(std::int32_t offset_ns, const Eigen::Vector3f& p_sensor) const {
-    const float s = static_cast<float>(offset_ns - first_ns_) * knots_per_ns_;
-    const Knot& knot = knots_[static_cast<std::size_t>(s)];
-    const Matrix34 T = knot.value + (s - std::floor(s)) * knot.slope;
-    return T.leftCols<3>() * p_sensor + T.col(3);
-  }
+  /// Spans of equal length that do not overlap; offsets are among those given to the constructor. Fast where
+  /// points that follow one another were measured one after the other.
+  void apply(std::span<const std::int32_t> offsets_ns, std::span<const Eigen::Vector3f> p_sensor,
+             std::span<Eigen::Vector3f> p_body) const;
 
  private:
-  using Matrix34 = Eigen::Matrix<float, 3, 4>;
-  struct Knot {
-    Matrix34 value;
-    Matrix34 slope;
-  };
   std::vector<Knot> knots_;
-  std::int64_t first_ns_ = 0;
-  float knots_per_ns_ = 0.0F;
+  std::int32_t first_ns_ = 0;
+  float knots_per_step_ = 0.0F;  ///< Steps of 2 ns: the span of offsets then fits an int.
 };
+
+/// p_a = T * p_b for each point, T = [R, t]; spans of equal length that do not overlap.
+void transform_points(const SweepTransform::Matrix34& T_a_b, std::span<const Eigen::Vector3f> p_b,
+                      std::span<Eigen::Vector3f> p_a);
 
 /// The cloud as if all of it had been measured at the scan's stamp: each point moved from where the sensor
 /// was at the point's own time. `motion` is the sensor's. The result holds no times any more, since none is

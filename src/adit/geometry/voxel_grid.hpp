@@ -28,6 +28,10 @@ struct VoxelKey {
     return {value +
             static_cast<std::uint64_t>(dx + dy * (std::int64_t{1} << 21) + dz * (std::int64_t{1} << 42))};
   }
+  /// No voxel's key: bit 63 is never set in one.
+  [[nodiscard]] static constexpr VoxelKey none() { return {~std::uint64_t{0}}; }
+  /// Fibonacci hashing: multiplication by 2^64 / golden ratio; the upper bits count.
+  [[nodiscard]] std::uint64_t hash() const { return value * 0x9e3779b97f4a7c15ULL; }
   [[nodiscard]] Eigen::Vector3i indices() const {
     return {unbiased(value), unbiased(value >> 21U), unbiased(value >> 42U)};
   }
@@ -52,14 +56,16 @@ class VoxelGrid {
   /// Nothing for NaN, infinity and points beyond the index range of VoxelKey.
   [[nodiscard]] std::optional<VoxelKey> key_of(const Eigen::Vector3f& p) const {
     const Eigen::Vector3f cell = p * inverse_;
-    constexpr float kLimit = 1048575.0F;
     if (!(std::abs(cell.x()) < kLimit && std::abs(cell.y()) < kLimit && std::abs(cell.z()) < kLimit))
       return {};
     return VoxelKey::of(static_cast<int>(std::floor(cell.x())), static_cast<int>(std::floor(cell.y())),
                         static_cast<int>(std::floor(cell.z())));
   }
+  /// The keys of many points, VoxelKey::none() for those that have none. `keys` is as long as `points`.
+  void keys_of(std::span<const Eigen::Vector3f> points, std::span<VoxelKey> keys) const;
 
  private:
+  static constexpr float kLimit = 1048575.0F;
   float size_;
   float inverse_;
 };
@@ -74,9 +80,11 @@ class VoxelTable {
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] std::optional<std::uint32_t> find(VoxelKey key) const {
     const Slot& slot = slots_[position_of(key)];
-    if (slot.key == kEmpty) return {};
+    if (slot.key == VoxelKey::none()) return {};
     return slot.number;
   }
+  /// Says that `key` will soon be asked for.
+  void prefetch(VoxelKey key) const { __builtin_prefetch(&slots_[home_of(key)]); }
   /// The number that `key` already has; otherwise gives it `number`, and the answer says nothing.
   std::optional<std::uint32_t> find_or_insert(VoxelKey key, std::uint32_t number) {
     Slot& slot = slots_[position_of(key)];
@@ -89,20 +97,18 @@ class VoxelTable {
   bool erase(VoxelKey key);
 
  private:
-  static constexpr VoxelKey kEmpty{~std::uint64_t{0}};  // bit 63 is never set in a key
   struct Slot {
-    VoxelKey key = kEmpty;
+    VoxelKey key = VoxelKey::none();
     std::uint32_t number = 0;
   };
 
-  // Fibonacci hashing: the top bits of a multiplication by 2^64 / golden ratio.
   [[nodiscard]] std::size_t home_of(VoxelKey key) const {
-    return static_cast<std::size_t>((key.value * 0x9e3779b97f4a7c15ULL) >> shift_);
+    return static_cast<std::size_t>(key.hash() >> shift_);
   }
   // Where `key` is, or the empty slot where it would go.
   [[nodiscard]] std::size_t position_of(VoxelKey key) const {
     std::size_t i = home_of(key);
-    while (slots_[i].key != key && slots_[i].key != kEmpty) i = (i + 1) & (slots_.size() - 1);
+    while (slots_[i].key != key && slots_[i].key != VoxelKey::none()) i = (i + 1) & (slots_.size() - 1);
     return i;
   }
   void grow();
@@ -110,6 +116,57 @@ class VoxelTable {
   std::vector<Slot> slots_;  ///< Their number is a power of two.
   unsigned shift_ = 0;
   std::size_t size_ = 0;
+};
+
+/// A set of voxels in the manner of VoxelTable.
+class VoxelSet {
+ public:
+  /// Room for `expected` voxels before the first growth.
+  explicit VoxelSet(std::size_t expected = 16);
+
+  void clear();  ///< Keeps the room.
+  /// False when `key` was there already.
+  bool insert(VoxelKey key) {
+    VoxelKey& slot = slots_[position_of(key)];
+    if (slot == key) return false;
+    slot = key;
+    if (2 * ++size_ > slots_.size()) grow();
+    return true;
+  }
+
+ private:
+  [[nodiscard]] std::size_t position_of(VoxelKey key) const {
+    std::size_t i = key.hash() >> shift_;
+    while (slots_[i] != key && slots_[i] != VoxelKey::none()) i = (i + 1) & (slots_.size() - 1);
+    return i;
+  }
+  void grow();
+
+  std::vector<VoxelKey> slots_;  ///< Their number is a power of two.
+  unsigned shift_ = 0;
+  std::size_t size_ = 0;
+};
+
+/// Finds the first point of each voxel, and keeps its memory for the next cloud.
+class VoxelThinner {
+ public:
+  /// Positions in `points`, ascending; points without a voxel are left out. The answer stands until the next
+  /// call.
+  std::span<const std::uint32_t> first_in_voxel(std::span<const Eigen::Vector3f> points, double voxel_size);
+
+ private:
+  struct Candidate {
+    VoxelKey key;
+    std::uint32_t index = 0;
+  };
+  static std::size_t find_candidates(const VoxelGrid& grid, std::span<const Eigen::Vector3f> points,
+                                     std::uint32_t first_index, Candidate* candidates);
+
+  std::vector<Candidate>
+      candidates_;  ///< Each part of the cloud has a stretch of its own, used from its front.
+  std::vector<std::size_t> num_candidates_;  ///< Of each part.
+  VoxelSet seen_;
+  std::vector<std::uint32_t> first_;
 };
 
 /// The first point of each voxel, in the order of the cloud, with its intensity and time. NaN points are

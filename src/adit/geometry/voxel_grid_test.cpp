@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <map>
 
@@ -56,6 +57,22 @@ TEST(VoxelGrid, FloorsAndRefusesWhatHasNoVoxel) {
   EXPECT_THROW(VoxelGrid(-1.0), ContractViolation);
 }
 
+TEST(VoxelGrid, KeysOfManyAreThoseOfEach) {
+  const VoxelGrid grid(0.3);
+  std::vector<Eigen::Vector3f> points = random_cloud(1003, 50.0).points;
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (const float odd : {kNan, kInfinity, -kInfinity, 1e30F, -1e30F, 314572.0F, 314573.0F, -314572.5F,
+                          -314573.0F, 0.0F, -0.0F, 0.3F, -0.3F, -1e-30F}) {
+    points.emplace_back(odd, 1.0F, -2.0F);
+    points.emplace_back(1.0F, odd, -2.0F);
+    points.emplace_back(1.0F, -2.0F, odd);
+  }
+  std::vector<VoxelKey> keys(points.size());
+  grid.keys_of(points, keys);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_EQ(keys[i], grid.key_of(points[i]).value_or(VoxelKey::none())) << points[i].transpose();
+}
+
 TEST(VoxelTable, BehavesLikeAMapUnderInsertionAndErasure) {
   VoxelTable table;
   std::map<VoxelKey, std::uint32_t> oracle;
@@ -95,6 +112,17 @@ TEST(VoxelDownsample, KeepsTheFirstPointOfEachVoxelInOrder) {
   }
   EXPECT_EQ(voxel_downsample(std::span<const Eigen::Vector3f>(cloud.points), 0.4), thin.points);
   EXPECT_EQ(voxel_downsample(thin, 0.4).points, thin.points);
+}
+
+TEST(VoxelThinner, RemembersNothingOfTheCloudBefore) {
+  const PointCloud one = random_cloud(40000, 4.0);
+  const PointCloud other = random_cloud(2000, 4.0);
+  VoxelThinner thinner;
+  for (const PointCloud& cloud : {one, other, one}) {
+    const auto kept = thinner.first_in_voxel(cloud.points, 0.3);
+    VoxelThinner fresh;
+    EXPECT_TRUE(std::ranges::equal(kept, fresh.first_in_voxel(cloud.points, 0.3)));
+  }
 }
 
 TEST(VoxelCentroids, AreTheMeans) {

@@ -16,7 +16,7 @@ OdometryStep KinematicIcp::register_scan(const Scan& scan, const WheelDelta& whe
   const Pose T_prediction = T_odom_base_ * T_last_now;
   std::optional<ConstantVelocity> motion;
   if (config_.deskew && started_) motion = {T_last_now, wheel.duration};
-  cloud_ = preprocess(scan.cloud, {config_.min_range, config_.max_range}, T_base_lidar_, motion);
+  preprocess(scan.cloud, {config_.min_range, config_.max_range}, T_base_lidar_, motion, cloud_);
   started_ = true;
 
   OdometryStep step = at_rest(T_prediction) ? resting(T_prediction) : moving(T_prediction);
@@ -40,7 +40,7 @@ OdometryStep KinematicIcp::resting(const Pose& T_prediction) const {
 }
 
 OdometryStep KinematicIcp::moving(const Pose& T_prediction) {
-  const ThinnedScan thin = thinned(cloud_.points, config_.voxel_size);
+  const ThinnedScan thin = thinned(cloud_.points, config_.voxel_size, thinner_);
   const OdometryStep step =
       map_.empty() ? first_step(thin, T_prediction, config_) : registered(thin, T_prediction);
   update_map(map_, thin, step, config_);

@@ -64,6 +64,7 @@ class KinematicIcp {
   std::optional<OdometryStep> last_registered_;  ///< Of the last moving scan, if that entered the map.
   bool started_ = false;
   PointCloud cloud_;
+  VoxelThinner thinner_;
 };
 
 }  // namespace adit

@@ -10,7 +10,8 @@ namespace {
 // Sum of squared distances to the map, a voxel at most for each point.
 double misfit(const Alignment& alignment, const ThinnedScan& scan, const LocalMap& map) {
   const double reach = map.voxel_size();
-  const auto fit = linearize_rigid(scan.source, map, alignment.T_map_base, reach, reach);
+  Correspondences pairs(scan.source, map, reach);
+  const auto fit = linearize_rigid(pairs, alignment.T_map_base, reach);
   const auto lost = static_cast<double>(scan.source.size()) - fit.num_correspondences;
   return fit.squared_residuals + lost * reach * reach;
 }
@@ -26,11 +27,11 @@ KissIcp::KissIcp(const KissIcpConfig& config, const Pose& T_base_lidar)
 OdometryStep KissIcp::register_scan(const Scan& scan) {
   ADIT_CHECK(!stamp_ || *stamp_ < scan.stamp, "the stamps of scans ascend");
   const Pose T_prediction = motion_ ? T_odom_base_ * motion_->T_start_end : T_odom_base_;
-  cloud_ = preprocess(scan.cloud, {config_.min_range, config_.max_range}, T_base_lidar_,
-                      config_.deskew ? motion_ : std::nullopt);
+  preprocess(scan.cloud, {config_.min_range, config_.max_range}, T_base_lidar_,
+             config_.deskew ? motion_ : std::nullopt, cloud_);
   irregular_ =
       config_.irregular_steps == "on" || (config_.irregular_steps == "auto" && !scan.cloud.has_times());
-  const ThinnedScan thin = thinned(cloud_.points, config_.voxel_size);
+  const ThinnedScan thin = thinned(cloud_.points, config_.voxel_size, thinner_);
   OdometryStep step = map_.empty() ? first_step(thin, T_prediction, config_) : registered(thin, T_prediction);
   step.stamp = scan.stamp;
   update_map(map_, thin, step, config_);

@@ -74,6 +74,7 @@ class KissIcp {
   std::optional<Stamp> stamp_;
   std::optional<ConstantVelocity> motion_;  ///< From the scan before the last to the last.
   PointCloud cloud_;
+  VoxelThinner thinner_;
 };
 
 }  // namespace adit

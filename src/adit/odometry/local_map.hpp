@@ -2,23 +2,38 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "adit/core/pose.hpp"
 #include "adit/geometry/voxel_grid.hpp"
 
 namespace adit {
 
 /// The sparse map that scans are registered to: at most `max_points_per_voxel` points a voxel, none nearer to
 /// another of its voxel than voxel_size / sqrt(max_points_per_voxel) (KISS-ICP, section III-B). Points lie in
-/// one flat float array, a block a voxel, x, y and z apart from each other, so that a whole block is compared
-/// at a time.
+/// one flat float array, a block a voxel, in groups of four, so that four are compared at a time.
 class LocalMap {
  public:
   struct Neighbour {
     Eigen::Vector3f point;
     float squared_distance = 0.0F;
+  };
+
+  /// The answer of `search`.
+  struct Found {
+    std::optional<Neighbour> nearest;
+    /// No other point of the map is nearer to the query than this, metres.
+    float clearance = 0.0F;
+  };
+
+  /// The points around a place: how many, and the sums of their offsets d from it and of d d^T.
+  struct Moments {
+    int count = 0;
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
   };
 
   /// `voxel_size` and `max_points_per_voxel` positive.
@@ -36,49 +51,36 @@ class LocalMap {
   /// Removes each voxel whose first point is farther than `max_distance` from `centre`.
   void remove_beyond(const Eigen::Vector3f& centre, double max_distance);
 
-  /// The nearest point strictly nearer than `max_distance`, of the 27 voxels around the query.
-  [[nodiscard]] std::optional<Neighbour> nearest(const Eigen::Vector3f& query, float max_distance) const;
-  /// Calls `visit(point)` for each point within `radius` (at most one voxel) of `centre`.
-  template <class Visit>
-  void for_each_within(const Eigen::Vector3f& centre, float radius, const Visit& visit) const;
+  /// The nearest point strictly nearer than `max_distance`, of the 27 voxels around the query; voxels within
+  /// `margin` of it are looked at as well, so that the clearance says more.
+  [[nodiscard]] Found search(const Eigen::Vector3f& query, float max_distance, float margin) const;
+  [[nodiscard]] std::optional<Neighbour> nearest(const Eigen::Vector3f& query, float max_distance) const {
+    return search(query, max_distance, 0.0F).nearest;
+  }
+  /// Of the points nearer than `radius` (at most one voxel) to `centre`.
+  [[nodiscard]] Moments moments_within(const Eigen::Vector3f& centre, float radius) const;
 
  private:
-  struct Voxel {
-    VoxelKey key;
-    std::uint32_t num_points = 0;  ///< 0 marks a block that is free for the next new voxel.
-  };
-
   [[nodiscard]] const float* block(std::size_t voxel) const {
-    return coordinates_.data() + voxel * 3 * stride_;
+    return coordinates_.data() + voxel * block_size_;
   }
-  [[nodiscard]] float* block(std::size_t voxel) { return coordinates_.data() + voxel * 3 * stride_; }
+  [[nodiscard]] float* block(std::size_t voxel) { return coordinates_.data() + voxel * block_size_; }
   [[nodiscard]] std::uint32_t voxel_for(VoxelKey key);
-  void add_point(const Eigen::Vector3f& point);
+  void add_point(const Eigen::Vector3f& point, std::uint32_t voxel);
 
   VoxelGrid grid_;
   std::uint32_t max_points_per_voxel_;
   float min_squared_spacing_;
-  std::size_t
-      stride_;  ///< Floats a coordinate and block: max_points_per_voxel rounded up to whole vectors of four.
+  std::size_t block_size_;  ///< Floats a voxel.
   VoxelTable table_;
-  std::vector<Voxel> voxels_;
-  std::vector<float> coordinates_;  ///< Unused places hold infinity: never near anything.
+  std::vector<VoxelKey> keys_;             ///< Of each block.
+  std::vector<std::uint32_t> num_points_;  ///< Of each block; 0 where it is free for the next new voxel.
+  std::vector<Eigen::Vector3f> first_;     ///< First point of each block; NaN where it is free.
+  std::vector<float> coordinates_;         ///< Unused places hold infinity: never near anything.
   std::vector<std::uint32_t> free_;
+  std::vector<Eigen::Vector3f> new_points_;  ///< Of the scan that is being added,
+  std::vector<VoxelKey> new_keys_;           ///< their voxels,
+  std::vector<std::uint32_t> new_voxels_;    ///< and the blocks of these.
 };
-
-template <class Visit>
-void LocalMap::for_each_within(const Eigen::Vector3f& centre, float radius, const Visit& visit) const {
-  const auto key = grid_.key_of(centre);
-  if (!key) return;
-  for (int i = 0; i < 27; ++i) {
-    const auto voxel = table_.find(key->shifted(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-    if (!voxel) continue;
-    const float* x = block(*voxel);
-    for (std::size_t k = 0; k < voxels_[*voxel].num_points; ++k) {
-      const Eigen::Vector3f p(x[k], x[stride_ + k], x[2 * stride_ + k]);
-      if ((p - centre).squaredNorm() < radius * radius) visit(p);
-    }
-  }
-}
 
 }  // namespace adit

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <map>
 
@@ -98,15 +99,47 @@ TEST(LocalMap, ForgetsWhatIsFarAndUsesTheRoomAgain) {
   EXPECT_EQ(map.num_points(), 0U);
 }
 
-TEST(LocalMap, WithinRadiusIsExact) {
+TEST(LocalMap, ClearanceIsTrueAndSaysSomething) {
+  LocalMap map(0.8, 20);
+  map.add(random_points(3000, 4.0, 1), Pose());
+  const std::vector<Eigen::Vector3f> points = map.points();
+  double tightness = 0.0;
+  int num_found = 0;
+  for (const float margin : {0.0F, 0.1F}) {
+    for (const float reach : {0.05F, 0.3F, 0.9F, 5.0F}) {
+      for (const Eigen::Vector3f& query : random_points(200, 5.0, 2)) {
+        const LocalMap::Found found = map.search(query, reach, margin);
+        std::vector<float> distances;
+        for (const Eigen::Vector3f& p : points)
+          if (!found.nearest || p != found.nearest->point) distances.push_back((p - query).norm());
+        const float second = *std::ranges::min_element(distances);
+        EXPECT_LE(found.clearance, second * 1.00001F);
+        if (!found.nearest || reach > 0.8F) continue;
+        EXPECT_GE(found.clearance, std::sqrt(found.nearest->squared_distance) - 1e-5F);
+        tightness += static_cast<double>(found.clearance / second);
+        ++num_found;
+      }
+    }
+  }
+  EXPECT_GT(tightness / num_found, 0.85);
+}
+
+TEST(LocalMap, MomentsWithinRadius) {
   LocalMap map(1.0, 20);
   map.add(random_points(5000, 3.0, 6), Pose());
   for (const Eigen::Vector3f& centre : random_points(50, 3.0, 7)) {
-    int expected = 0;
-    int visited = 0;
-    for (const Eigen::Vector3f& p : map.points()) expected += (p - centre).squaredNorm() < 0.64F ? 1 : 0;
-    map.for_each_within(centre, 0.8F, [&](const Eigen::Vector3f&) { ++visited; });
-    EXPECT_EQ(visited, expected);
+    LocalMap::Moments expected;
+    for (const Eigen::Vector3f& p : map.points()) {
+      const Eigen::Vector3f d = p - centre;
+      if (!(d.squaredNorm() < 0.64F)) continue;
+      ++expected.count;
+      expected.sum += d;
+      expected.squares += d * d.transpose();
+    }
+    const LocalMap::Moments moments = map.moments_within(centre, 0.8F);
+    EXPECT_EQ(moments.count, expected.count);
+    EXPECT_LT((moments.sum - expected.sum).norm(), 1e-4F);
+    EXPECT_LT((moments.squares - expected.squares).norm(), 1e-4F);
   }
 }
 

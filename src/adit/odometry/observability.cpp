@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "adit/core/parallel.hpp"
 #include "adit/odometry/scan_to_map.hpp"
 
 namespace adit {
@@ -11,6 +12,8 @@ namespace {
 
 // A direction is judged by some hundreds of normals as well as by thousands.
 constexpr std::size_t kMaxSamples = 512;
+// Samples of a part of the parallel loop.
+constexpr std::size_t kGrain = 32;
 // Below six points a plane fits anything.
 constexpr int kMinPlanePoints = 6;
 // A patch whose second extent is less than a fifth of its first is a line (one scan ring): its normal is
@@ -27,19 +30,11 @@ struct PlaneRow {
 
 std::optional<Vector3> normal_at(const LocalMap& map, const Eigen::Vector3f& point) {
   const auto radius = static_cast<float>(map.voxel_size());
-  int count = 0;
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
-  map.for_each_within(point, radius, [&](const Eigen::Vector3f& q) {
-    const Eigen::Vector3f d = q - point;
-    sum += d;
-    squares += d * d.transpose();
-    ++count;
-  });
-  if (count < kMinPlanePoints) return {};
-  const Vector3 mean = sum.cast<double>() / count;
+  const LocalMap::Moments around = map.moments_within(point, radius);
+  if (around.count < kMinPlanePoints) return {};
+  const Vector3 mean = around.sum.cast<double>() / around.count;
   Eigen::SelfAdjointEigenSolver<Matrix3> eigen;
-  eigen.computeDirect(squares.cast<double>() / count - mean * mean.transpose());
+  eigen.computeDirect(around.squares.cast<double>() / around.count - mean * mean.transpose());
   if (eigen.eigenvalues()[1] < kMinPatchRatio * eigen.eigenvalues()[2]) return {};
   return eigen.eigenvectors().col(0);
 }
@@ -48,19 +43,25 @@ std::vector<PlaneRow> plane_rows(std::span<const Eigen::Vector3f> source, const 
                                  const Pose& T_map_base, float max_distance) {
   const Matrix3 R = T_map_base.rotation_matrix();
   const std::size_t stride = source.size() / kMaxSamples + 1;
-  std::vector<PlaneRow> rows;
-  for (std::size_t i = 0; i < source.size(); i += stride) {
-    const Vector3 p = source[i].cast<double>();
-    const Vector3 at = R * p + T_map_base.translation();
-    const auto neighbour = map.nearest(at.cast<float>(), max_distance);
-    if (!neighbour) continue;
-    const auto normal = normal_at(map, neighbour->point);
-    if (!normal) continue;
-    const Vector3 n = R.transpose() * *normal;
-    rows.push_back(
-        {(Vector6() << n, p.cross(n)).finished(), normal->dot(at - neighbour->point.cast<double>())});
-  }
-  return rows;
+  std::vector<std::optional<PlaneRow>> rows((source.size() + stride - 1) / stride);
+  parallel_for_each(
+      rows.size(),
+      [&](std::size_t i) {
+        const Vector3 p = source[i * stride].cast<double>();
+        const Vector3 at = R * p + T_map_base.translation();
+        const auto neighbour = map.nearest(at.cast<float>(), max_distance);
+        if (!neighbour) return;
+        const auto normal = normal_at(map, neighbour->point);
+        if (!normal) return;
+        const Vector3 n = R.transpose() * *normal;
+        rows[i] = {(Vector6() << n, p.cross(n)).finished(),
+                   normal->dot(at - neighbour->point.cast<double>())};
+      },
+      kGrain);
+  std::vector<PlaneRow> found;
+  for (const std::optional<PlaneRow>& row : rows)
+    if (row) found.push_back(*row);
+  return found;
 }
 
 // Root-mean-square distance of the points from each of the three axes; at least a metre, for a scene on the

@@ -19,8 +19,8 @@ struct RangeLimits {
 /// A raw cloud in the lidar frame -> all points with a finite position and a range within the limits, in the
 /// base frame at the scan's stamp, at full density and in their order; intensities are kept, times are used
 /// up. With `motion` (of the base) and per-point times the sweep is deskewed; without either it is only moved
-/// into the base frame.
-[[nodiscard]] PointCloud preprocess(const PointCloud& cloud_lidar, const RangeLimits& limits,
-                                    const Pose& T_base_lidar, const std::optional<ConstantVelocity>& motion);
+/// into the base frame. The result replaces `cloud_base` and uses its memory.
+void preprocess(const PointCloud& cloud_lidar, const RangeLimits& limits, const Pose& T_base_lidar,
+                const std::optional<ConstantVelocity>& motion, PointCloud& cloud_base);
 
 }  // namespace adit

@@ -9,6 +9,7 @@
 
 #include "adit/core/config.hpp"
 #include "adit/core/records.hpp"
+#include "adit/odometry/correspondences.hpp"
 #include "adit/odometry/local_map.hpp"
 
 namespace adit {
@@ -64,15 +65,12 @@ struct NormalEquations {
 
 /// KISS-ICP eq. (10)-(11): point-to-point with the Geman-McClure weight (k / (k + r^2))^2, in the tangent of
 /// a right perturbation of T_map_base.
-[[nodiscard]] NormalEquations<6> linearize_rigid(std::span<const Eigen::Vector3f> source, const LocalMap& map,
-                                                 const Pose& T_map_base, double max_distance,
+[[nodiscard]] NormalEquations<6> linearize_rigid(Correspondences& pairs, const Pose& T_map_base,
                                                  double kernel_scale);
 
 /// Kinematic-ICP (Guadagnino et al., ICRA 2025), section III-B: the same residual, unweighted, in the two
 /// motions of a vehicle that does not slip sideways: forward and about its z axis.
-[[nodiscard]] NormalEquations<2> linearize_unicycle(std::span<const Eigen::Vector3f> source,
-                                                    const LocalMap& map, const Pose& T_map_base,
-                                                    double max_distance);
+[[nodiscard]] NormalEquations<2> linearize_unicycle(Correspondences& pairs, const Pose& T_map_base);
 
 /// The pose a vehicle reaches that drives `distance` along an arc on which its heading turns by `turn`: exact
 /// for every turn, 0 included.
@@ -119,7 +117,8 @@ struct ThinnedScan {
   std::vector<Eigen::Vector3f> map_points;  ///< One a cube of half a voxel: what the map takes.
   std::vector<Eigen::Vector3f> source;      ///< Of those one a cube of 1.5 voxels: what is registered.
 };
-[[nodiscard]] ThinnedScan thinned(std::span<const Eigen::Vector3f> points_base, double voxel_size);
+[[nodiscard]] ThinnedScan thinned(std::span<const Eigen::Vector3f> points_base, double voxel_size,
+                                  VoxelThinner& thinner);
 
 /// The step of a scan that finds the map empty: it starts the map unless it has too few points for that.
 [[nodiscard]] OdometryStep first_step(const ThinnedScan& scan, const Pose& T_prediction,

@@ -31,6 +31,7 @@ struct Pairs {
     }
     map.add(target, Pose());
   }
+  [[nodiscard]] Correspondences within(double max_distance) const { return {source, map, max_distance}; }
   [[nodiscard]] Vector3 residual(std::size_t i, const Pose& T) const {
     return T.rotation().conjugate() * (T * source[i].cast<double>() - target[i].cast<double>());
   }
@@ -42,7 +43,8 @@ TEST(LinearizeRigid, GradientAndHessianAgainstFiniteDifferences) {
   const Pairs pairs;
   constexpr double kScale = 0.7;
   constexpr double kStep = 1e-6;
-  const auto eq = linearize_rigid(pairs.source, pairs.map, pairs.T_map_base, 0.9, kScale);
+  Correspondences within_reach = pairs.within(0.9);
+  const auto eq = linearize_rigid(within_reach, pairs.T_map_base, kScale);
   ASSERT_EQ(eq.num_correspondences, 200);
   Vector6 g = Vector6::Zero();
   Matrix6 H = Matrix6::Zero();
@@ -70,7 +72,8 @@ TEST(LinearizeRigid, GradientAndHessianAgainstFiniteDifferences) {
 TEST(LinearizeRigid, GradientIsThatOfTheGemanMcClureCost) {
   const Pairs pairs;
   constexpr double kScale = 0.7;
-  const auto eq = linearize_rigid(pairs.source, pairs.map, pairs.T_map_base, 0.9, kScale);
+  Correspondences within_reach = pairs.within(0.9);
+  const auto eq = linearize_rigid(within_reach, pairs.T_map_base, kScale);
   // rho(r^2) = k r^2 / (k + r^2) / 2 has the derivative w r with w = (k / (k + r^2))^2.
   const auto cost = [&](const Pose& T) {
     double sum = 0.0;
@@ -90,7 +93,8 @@ TEST(LinearizeRigid, GradientIsThatOfTheGemanMcClureCost) {
 
 TEST(LinearizeUnicycle, GradientAndHessianAgainstFiniteDifferences) {
   const Pairs pairs;
-  const auto eq = linearize_unicycle(pairs.source, pairs.map, pairs.T_map_base, 0.9);
+  Correspondences within_reach = pairs.within(0.9);
+  const auto eq = linearize_unicycle(within_reach, pairs.T_map_base);
   ASSERT_EQ(eq.num_correspondences, 200);
   const auto at = [&](double d, double theta) { return pairs.T_map_base * unicycle_motion(d, theta); };
   const auto cost = [&](const Pose& T) {
@@ -129,10 +133,11 @@ Built built(const test::Scene& scene, double noise) {
   test::Lidar lidar{64, 512, 0.35, 120.0, noise};
   lidar.jitter = 0.5;
   Built out;
+  VoxelThinner thinner;
   for (int i = 0; i < 12; ++i) {
     lidar.seed = static_cast<std::uint64_t>(i);
     const Scan scan = test::scan_of(scene, lidar, Pose(), {}, 0);
-    const ThinnedScan thin = thinned(scan.cloud.points, 0.5);
+    const ThinnedScan thin = thinned(scan.cloud.points, 0.5, thinner);
     out.map.add(thin.map_points, Pose());
     out.source = thin.source;
   }
