@@ -34,6 +34,7 @@ constexpr double kLargestLambda = 1e8;
 // pays.
 constexpr double kForcing = 0.05;
 constexpr int kMaxRounds = 4;
+constexpr double kLittle = 0.1;  // of the gain that ends the search: such a step needs no further rounds
 
 template <class P>
 double edge_cost(const typename BasicPoseGraph<P>::Edge& edge, const std::vector<P>& poses) {
@@ -109,7 +110,8 @@ class Minimizer {
     if (!current_) equations_ = linearize(graph_, structure_, s.poses, weights_);
     current_ = true;
     ++s.iterations;
-    std::optional<Eigen::VectorXd> step = step_by_kept_factor();
+    const double enough = config_.relative_tolerance * s.cost_final;
+    std::optional<Eigen::VectorXd> step = step_by_kept_factor(enough);
     if (!step) {
       if (const auto free = factorize())
         return give_up(s, graph_.nodes[structure_.node_of_variable[*free]].key);
@@ -124,7 +126,6 @@ class Minimizer {
     const double decrease = s.cost_final - cost;
     // Near the minimum rounding decides the sign of the last decrease, so the model's word ends the search as
     // well.
-    const double enough = config_.relative_tolerance * s.cost_final;
     if (std::isfinite(cost) && (decrease > 0.0 || config_.method == "gn")) {
       s.poses = std::move(poses);
       s.cost_final = cost;
@@ -148,13 +149,15 @@ class Minimizer {
 
   // Solves H x = -g by conjugate gradients, preconditioned by the factor of an earlier H: near the minimum H
   // hardly changes, and two or three rounds cost a fraction of a factorization. Nothing when it takes more.
-  [[nodiscard]] std::optional<Eigen::VectorXd> step_by_kept_factor() {
+  // A gain far below `little` needs no accuracy.
+  [[nodiscard]] std::optional<Eigen::VectorXd> step_by_kept_factor(double little) {
     if (!kept_ || lambda_ > 0.0) return std::nullopt;
     Eigen::VectorXd x = Eigen::VectorXd::Zero(equations_.gradient.size());
     Eigen::VectorXd r = -equations_.gradient;
     Eigen::VectorXd z = cholesky_.solve(r);
     Eigen::VectorXd p = z;
     double rz = r.dot(z);
+    if (rz <= kLittle * little) return z;
     const double enough = kForcing * kForcing * rz;
     for (int round = 0; round < kMaxRounds; ++round) {
       const Eigen::VectorXd Hp = times<P::kDof>(structure_.pattern, equations_.values, p);
