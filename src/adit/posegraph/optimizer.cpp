@@ -33,7 +33,7 @@ constexpr double kLargestLambda = 1e8;
 // Of the steps by an earlier factor: residual left, of the linear system, and rounds after which a new factor
 // pays.
 constexpr double kForcing = 0.05;
-constexpr int kMaxRounds = 4;
+constexpr int kMaxRounds = 8;
 constexpr double kLittle = 0.1;  // of the gain that ends the search: such a step needs no further rounds
 
 template <class P>
