@@ -53,7 +53,8 @@ ADIT_WIDE_VECTORS void transform(std::size_t stride, const Constants& constants,
 // its answer (or the farthest that counts) and c the clearance, d + m < c must hold, in squares.
 ADIT_WIDE_VECTORS void flag_stale(std::size_t stride, float max_distance, const float* __restrict at,
                                   const float* __restrict searched, const float* __restrict neighbour,
-                                  const float* __restrict clearance2, std::uint32_t* __restrict flags) {
+                                  const float* __restrict clearance2, const float* __restrict room2,
+                                  std::uint32_t* __restrict flags) {
   const auto squared_distance = [&](std::size_t i, const float* to) {
     const float x = at[i] - to[i];
     const float y = at[i + stride] - to[i + stride];
@@ -64,7 +65,7 @@ ADIT_WIDE_VECTORS void flag_stale(std::size_t stride, float max_distance, const 
     const float m2 = squared_distance(i, searched);
     const float d2 = std::min(squared_distance(i, neighbour), max_distance * max_distance);
     const float rest = kCertain * clearance2[i] - d2 - m2;
-    flags[i] = static_cast<std::uint32_t>(!(rest > 0.0F)) |
+    flags[i] = static_cast<std::uint32_t>(!(m2 < room2[i])) | static_cast<std::uint32_t>(!(rest > 0.0F)) |
                static_cast<std::uint32_t>(!(rest * rest > 4.0F * d2 * m2));
   }
 }
@@ -108,7 +109,8 @@ Correspondences::Correspondences(std::span<const Eigen::Vector3f> source, const 
       at_(3 * stride_),
       searched_(3 * stride_),
       neighbour_(3 * stride_, kNowhere),
-      clearance2_(stride_, kNowhere * kNowhere) {
+      clearance2_(stride_, kNowhere * kNowhere),
+      room2_(stride_, kNowhere * kNowhere) {
   for (std::size_t i = 0; i < source.size(); ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       source_[i + axis * stride_] = source[i][static_cast<Eigen::Index>(axis)];
@@ -122,7 +124,7 @@ void Correspondences::residuals(std::size_t index, const Pose& T_map_base, Block
   transform(stride_, T, &source_[begin], &at_[begin]);
   std::array<std::uint32_t, kBlock> stale;
   flag_stale(stride_, max_distance_, &at_[begin], &searched_[begin], &neighbour_[begin], &clearance2_[begin],
-             stale.data());
+             &room2_[begin], stale.data());
   for (std::size_t i = 0; i < kBlock; ++i)
     if (stale[i] != 0) search(begin + i);
   make_residuals(stride_, T, max_distance_, &source_[begin], &at_[begin], &neighbour_[begin], block);
@@ -137,8 +139,12 @@ void Correspondences::search(std::size_t i) {
     neighbour_[i + axis * stride_] =
         found.nearest ? found.nearest->point[static_cast<Eigen::Index>(axis)] : kNowhere;
   }
-  const float clearance = std::max(0.0F, found.clearance);
-  clearance2_[i] = clearance * clearance;
+  const auto squared = [](float bound) {
+    const float b = std::clamp(bound, 0.0F, kNowhere);
+    return b * b;
+  };
+  clearance2_[i] = squared(found.clearance);
+  room2_[i] = squared(found.room);
 }
 
 }  // namespace adit

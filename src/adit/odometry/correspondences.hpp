@@ -15,7 +15,7 @@ namespace adit {
 /// A scan's nearest neighbours in the map (LocalMap::nearest), from one pose to the next. A point whose
 /// neighbour was d away, with all others at least c away, keeps it without a search as long as the triangle
 /// inequality says that no other can have come nearer: after a motion by m while the new distance to the
-/// neighbour is below c - m. That is exact, and most points of the later iterations of ICP hardly move.
+/// neighbour is below c - m. That is exact, and most points hardly move in the later iterations of ICP.
 class Correspondences {
  public:
   /// Points handled together.
@@ -50,7 +50,8 @@ class Correspondences {
   Points at_;           ///< The same in the map frame at the last pose.
   Points searched_;     ///< Where the last search for each was made,
   Points neighbour_;    ///< its answer,
-  std::vector<float> clearance2_;  ///< and the square of LocalMap::Found::clearance.
+  std::vector<float> clearance2_;  ///< and the squares of the bounds of LocalMap::Found.
+  std::vector<float> room2_;
 };
 
 }  // namespace adit

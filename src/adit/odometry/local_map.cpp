@@ -95,17 +95,16 @@ ADIT_WIDE_VECTORS void transform(const Eigen::Matrix<double, 3, 4>& T, std::size
 struct Slabs {
   std::array<int, 3> offset;
   std::array<float, 3> gap2;
-  float border;  // to where the farther one ends
+  float near;  // to the nearer neighbour
 
   // `to_lower`: from the lower face of the query's voxel to the query.
   Slabs(float to_lower, float size) {
     const float to_upper = size - to_lower;
     const bool lower_first = to_lower < to_upper;
-    const float near = lower_first ? to_lower : to_upper;
+    near = lower_first ? to_lower : to_upper;
     const float far = lower_first ? to_upper : to_lower;
     offset = {0, lower_first ? -1 : 1, lower_first ? 1 : -1};
     gap2 = {0.0F, near * near, far * far};
-    border = near + size;
   }
 };
 
@@ -202,8 +201,7 @@ LocalMap::Found LocalMap::search(const Eigen::Vector3f& query, float max_distanc
                                       Slabs(to_lower.z(), size)};
   float best2 = max_distance * max_distance;
   float limit2 = (max_distance + margin) * (max_distance + margin);
-  float others2 = std::min({slabs[0].border, slabs[1].border, slabs[2].border});
-  others2 *= others2;
+  float others2 = kNowhere;
   std::optional<std::uint32_t> best_voxel;
   // From near to far along each axis: where one voxel is out of the limit, so are those behind it.
   for (std::size_t z = 0; z < 3; ++z) {
@@ -241,8 +239,19 @@ LocalMap::Found LocalMap::search(const Eigen::Vector3f& query, float max_distanc
       }
     }
   }
-  out.clearance = std::sqrt(others2) - kRounding * query.cwiseAbs().maxCoeff();
   if (best_voxel) out.nearest = {point_at(block(*best_voxel), query, best2), best2};
+  // Beyond the neighbourhood nothing is nearer than its border, wherever the query goes. That settles it
+  // where the nearest point is within; else the query must stay in its voxel.
+  const float rounding = kRounding * query.cwiseAbs().maxCoeff();
+  const float to_face = std::min({slabs[0].near, slabs[1].near, slabs[2].near});
+  out.clearance = std::sqrt(others2) - rounding;
+  out.room = kNowhere;
+  if (out.clearance > size + to_face - rounding) {
+    if (best2 < size * size)
+      out.clearance = size + to_face - rounding;
+    else
+      out.room = to_face - rounding;
+  }
   return out;
 }
 

@@ -22,11 +22,13 @@ class LocalMap {
     float squared_distance = 0.0F;
   };
 
-  /// The answer of `search`.
+  /// The answer of `search`, and how long it stands: `nearest` stays the answer for a query that has moved by
+  /// m < room, as long as its distance (or the greatest that counts, if there is none) is below clearance -
+  /// m.
   struct Found {
     std::optional<Neighbour> nearest;
-    /// No other point of the map is nearer to the query than this, metres.
-    float clearance = 0.0F;
+    float clearance = 0.0F;  ///< Metres: all other points that the search is about are at least so far.
+    float room = 0.0F;       ///< Metres: so far the query may move until the search is about other points.
   };
 
   /// The points around a place: how many, and the sums of their offsets d from it and of d d^T.
