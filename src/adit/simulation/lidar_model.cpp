@@ -3,6 +3,7 @@
 #include "adit/simulation/lidar_model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -10,6 +11,7 @@
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/rng.hpp"
+#include "adit/core/vectors.hpp"
 
 namespace adit {
 namespace {
@@ -60,75 +62,110 @@ std::vector<LidarConfig> presets() {
           vlp16()};
 }
 
-// Near normal with mean 0 and standard deviation 1: the sum of four 16-bit uniform numbers (Irwin and Hall).
-// No logarithm, so every machine draws the same; and bounded by 3.5, as no sensor errs by metres.
-float near_normal(std::uint64_t bits) {
-  const std::uint64_t sum =
-      (bits & 0xffffU) + ((bits >> 16U) & 0xffffU) + ((bits >> 32U) & 0xffffU) + (bits >> 48U);
-  constexpr double kMean = 2.0 * 0xffff;
-  return static_cast<float>((static_cast<double>(sum) - kMean) * (std::numbers::sqrt3 / 0x10000));
+// For 0 <= x <= 1, to 1e-6 (Abramowitz and Stegun, 4.4.46). The C library's takes no vectors.
+float arc_cosine(float x) {
+  constexpr std::array<float, 8> kCoefficients = {1.5707963050F,  -0.2145988016F, 0.0889789874F,
+                                                  -0.0501743046F, 0.0308918810F,  -0.0170881256F,
+                                                  0.0066700901F,  -0.0012624911F};
+  float sum = kCoefficients[7];
+  for (std::size_t k = 7; k-- > 0;) sum = sum * x + kCoefficients[k];
+  return std::sqrt(1.0F - x) * sum;
 }
 
-float uniform(std::uint64_t bits) { return static_cast<float>(bits >> 40U) * 0x1p-24F; }
+// What chance adds to each ray of a block. It hangs on the seed of the column and the number of the beam
+// alone.
+struct Chance {
+  // Near normal with mean 0 and standard deviation 1: the sum of four 16-bit uniform numbers (Irwin and
+  // Hall). No logarithm, so every machine draws the same; and bounded by 3.5, as no sensor errs by metres.
+  RayBlock::Numbers noise;
+  RayBlock::Numbers dropout;  // uniform in [0, 1)
+
+  Chance(std::uint64_t column_seed, std::size_t first_beam, std::size_t num) {
+    std::array<std::int32_t, RayBlock::kCapacity> sums;
+    std::array<std::int32_t, RayBlock::kCapacity> draws;
+    for (std::size_t i = 0; i < num; ++i) {
+      const std::uint64_t ray_seed = mix64(column_seed ^ (first_beam + i));
+      const std::uint64_t bits = mix64(ray_seed);
+      const std::uint64_t pairs = (bits & 0xffff0000ffffU) + ((bits >> 16U) & 0xffff0000ffffU);
+      sums[i] = static_cast<std::int32_t>((pairs >> 32U) + (pairs & 0xffffffffU));
+      draws[i] = static_cast<std::int32_t>(mix64(~ray_seed) >> 40U);
+    }
+    constexpr double kMean = 2.0 * 0xffff;
+    for (std::size_t i = 0; i < num; ++i) {
+      noise[i] = static_cast<float>((sums[i] - kMean) * (std::numbers::sqrt3 / 0x10000));
+      dropout[i] = static_cast<float>(draws[i]) * 0x1p-24F;
+    }
+  }
+};
+
+// What becomes of a true range.
+struct Returns {
+  float range_min;
+  float range_max;
+  float noise_near;
+  float noise_slope;
+  float cos_dropout_start;
+  float dropout_start;
+  float dropout_width;
+
+  explicit Returns(const LidarConfig& c)
+      : range_min(static_cast<float>(c.range_min)),
+        range_max(static_cast<float>(c.range_max)),
+        noise_near(static_cast<float>(c.noise_near)),
+        noise_slope(static_cast<float>((c.noise_far - c.noise_near) / (c.range_max - c.range_min))),
+        cos_dropout_start(static_cast<float>(std::cos(c.dropout_start_deg * kDegree))),
+        dropout_start(static_cast<float>(c.dropout_start_deg * kDegree)),
+        dropout_width(static_cast<float>(c.dropout_end_deg * kDegree) - dropout_start) {}
+};
+
+// The ranges that are reported, or misses. Beyond the end of the drop-out, all of 0 to 1 is below the share
+// that is lost.
+ADIT_WIDE_VECTORS void measure(const Returns& returns, const Chance& chance,
+                               const RayBlock::Numbers& distances, const RayBlock::Numbers& cosines,
+                               std::size_t num, RayBlock::Numbers& ranges) {
+  const auto [range_min, range_max, noise_near, noise_slope, cos_dropout_start, dropout_start,
+              dropout_width] = returns;
+  for (std::size_t i = 0; i < num; ++i) {
+    const float sigma = noise_near + noise_slope * (distances[i] - range_min);
+    const float range = distances[i] + sigma * chance.noise[i];
+    const float cosine = std::min(cosines[i], 1.0F);
+    const float share_lost = (arc_cosine(cosine) - dropout_start) / dropout_width;
+    const bool lost = (cosine < cos_dropout_start) & (chance.dropout[i] < share_lost);
+    const bool kept = !lost & (distances[i] < RayHit::kMiss) & (range >= range_min) & (range <= range_max);
+    ranges[i] = kept ? range : RayHit::kMiss;
+  }
+}
 
 // All that is the same for every scan of one sensor, in the units of the inner loop.
 class Sensor {
  public:
-  explicit Sensor(const LidarConfig& c)
-      : range_min_(static_cast<float>(c.range_min)),
-        range_max_(static_cast<float>(c.range_max)),
-        noise_near_(static_cast<float>(c.noise_near)),
-        noise_slope_(static_cast<float>((c.noise_far - c.noise_near) / (c.range_max - c.range_min))),
-        cos_dropout_start_(static_cast<float>(std::cos(c.dropout_start_deg * kDegree))),
-        dropout_start_(static_cast<float>(c.dropout_start_deg * kDegree)),
-        dropout_end_(static_cast<float>(c.dropout_end_deg * kDegree)) {
+  explicit Sensor(const LidarConfig& c) : returns_(c) {
     const double step = c.beams > 1 ? (c.elevation_max_deg - c.elevation_min_deg) / (c.beams - 1) : 0.0;
     for (int beam = 0; beam < c.beams; ++beam) {
       const double elevation = (c.elevation_max_deg - step * beam) * kDegree;
-      beams_.emplace_back(static_cast<float>(std::cos(elevation)), static_cast<float>(std::sin(elevation)));
+      cosines_.push_back(static_cast<float>(std::cos(elevation)));
+      sines_.push_back(static_cast<float>(std::sin(elevation)));
     }
   }
 
-  [[nodiscard]] float range_max() const { return range_max_; }
+  [[nodiscard]] std::size_t num_beams() const { return cosines_.size(); }
+  [[nodiscard]] const Returns& returns() const { return returns_; }
 
-  /// The directions of all beams, in the lidar frame, at an azimuth.
-  [[nodiscard]] std::vector<Eigen::Vector3f> directions(double azimuth) const {
-    const Eigen::Vector2d heading(std::cos(azimuth), std::sin(azimuth));
-    std::vector<Eigen::Vector3f> out;
-    out.reserve(beams_.size());
-    for (const Eigen::Vector2f& beam : beams_) {
-      const Eigen::Vector2f flat = beam.x() * heading.cast<float>();
-      out.emplace_back(flat.x(), flat.y(), beam.y());
+  /// The directions of beams at an azimuth, in the lidar frame.
+  void look(double azimuth, std::size_t first_beam, std::size_t num, RayBlock::Vectors& directions) const {
+    const auto x = static_cast<float>(std::cos(azimuth));
+    const auto y = static_cast<float>(std::sin(azimuth));
+    for (std::size_t i = 0; i < num; ++i) {
+      directions.x[i] = cosines_[first_beam + i] * x;
+      directions.y[i] = cosines_[first_beam + i] * y;
+      directions.z[i] = sines_[first_beam + i];
     }
-    return out;
-  }
-
-  /// The range that is reported, or a miss.
-  [[nodiscard]] float measure(const RayHit& hit, const Eigen::Vector3f& direction,
-                              std::uint64_t ray_seed) const {
-    if (!hit.hit() || is_lost(std::abs(hit.normal.dot(direction)), ray_seed)) return RayHit::kMiss;
-    const float sigma = noise_near_ + noise_slope_ * (hit.distance - range_min_);
-    const float range = hit.distance + sigma * near_normal(mix64(ray_seed));
-    return range >= range_min_ && range <= range_max_ ? range : RayHit::kMiss;
   }
 
  private:
-  [[nodiscard]] bool is_lost(float cos_incidence, std::uint64_t ray_seed) const {
-    if (cos_incidence >= cos_dropout_start_) return false;
-    const float incidence = std::acos(cos_incidence);
-    if (incidence >= dropout_end_) return true;
-    const float share_lost = (incidence - dropout_start_) / (dropout_end_ - dropout_start_);
-    return uniform(mix64(~ray_seed)) < share_lost;
-  }
-
-  std::vector<Eigen::Vector2f> beams_;  // cosine and sine of each elevation
-  float range_min_;
-  float range_max_;
-  float noise_near_;
-  float noise_slope_;
-  float cos_dropout_start_;
-  float dropout_start_;
-  float dropout_end_;
+  std::vector<float> cosines_;  // of the elevations of the beams
+  std::vector<float> sines_;
+  Returns returns_;
 };
 
 // One turn: where the sensor is and looks at each column.
@@ -149,22 +186,48 @@ struct Turn {
   }
 };
 
-void cast_column(const Raycaster& raycaster, const Sensor& sensor, const Turn& turn, int column,
-                 PointCloud& cloud) {
-  const std::vector<Eigen::Vector3f> directions = sensor.directions(turn.azimuth(column));
-  const Pose T_world_lidar = turn.T_world_lidar(column);
+// Rays of `directions` in the lidar frame, seen from the world.
+void aim(const Pose& T_world_lidar, const RayBlock::Vectors& directions, RayBlock& rays) {
   const Eigen::Matrix3f R = T_world_lidar.rotation_matrix().cast<float>();
   const Eigen::Vector3f origin = T_world_lidar.translation().cast<float>();
-  std::vector<Ray> rays;
-  rays.reserve(directions.size());
-  for (const Eigen::Vector3f& direction : directions) rays.push_back({origin, R * direction});
-  const std::vector<RayHit> hits = raycaster.cast(rays, sensor.range_max());
+  const auto& [x, y, z] = directions;
+  for (std::size_t i = 0; i < rays.size; ++i) {
+    rays.origins.x[i] = origin.x();
+    rays.origins.y[i] = origin.y();
+    rays.origins.z[i] = origin.z();
+    rays.directions.x[i] = R(0, 0) * x[i] + (R(0, 1) * y[i] + R(0, 2) * z[i]);
+    rays.directions.y[i] = R(1, 0) * x[i] + (R(1, 1) * y[i] + R(1, 2) * z[i]);
+    rays.directions.z[i] = R(2, 0) * x[i] + (R(2, 1) * y[i] + R(2, 2) * z[i]);
+  }
+}
+
+void append_returns(const RayBlock::Numbers& ranges, const RayBlock::Vectors& directions, std::size_t num,
+                    std::int32_t offset_ns, PointCloud& cloud) {
+  std::size_t size = cloud.size();
+  cloud.points.resize(size + num);
+  for (std::size_t i = 0; i < num; ++i) {  // a miss is written too, and then overwritten
+    cloud.points[size] = ranges[i] * Eigen::Vector3f(directions.x[i], directions.y[i], directions.z[i]);
+    size += ranges[i] < RayHit::kMiss ? 1 : 0;
+  }
+  cloud.points.resize(size);
+  cloud.time_offsets_ns.resize(size, offset_ns);
+}
+
+void cast_column(const Raycaster& raycaster, const Sensor& sensor, const Turn& turn, int column,
+                 PointCloud& cloud) {
+  const Pose T_world_lidar = turn.T_world_lidar(column);
   const std::uint64_t column_seed = mix64(turn.sweep.noise_seed, static_cast<std::uint64_t>(column));
-  for (std::size_t beam = 0; beam < hits.size(); ++beam) {
-    const float range = sensor.measure(hits[beam], rays[beam].direction, mix64(column_seed ^ beam));
-    if (range == RayHit::kMiss) continue;
-    cloud.points.emplace_back(range * directions[beam]);
-    cloud.time_offsets_ns.push_back(turn.offset_ns(column));
+  RayBlock rays;
+  RayBlock::Vectors directions;
+  RayBlock::Numbers ranges;
+  for (std::size_t beam = 0; beam < sensor.num_beams(); beam += rays.size) {
+    rays.size = std::min(RayBlock::kCapacity, sensor.num_beams() - beam);
+    sensor.look(turn.azimuth(column), beam, rays.size, directions);
+    aim(T_world_lidar, directions, rays);
+    raycaster.cast(rays, sensor.returns().range_max);
+    const Chance chance(column_seed, beam, rays.size);
+    measure(sensor.returns(), chance, rays.distances, rays.cosines, rays.size, ranges);
+    append_returns(ranges, directions, rays.size, turn.offset_ns(column), cloud);
   }
 }
 
@@ -221,8 +284,11 @@ Scan cast_scan(const Raycaster& raycaster, const LidarConfig& config, const Swee
   const auto columns = static_cast<std::size_t>(config.columns);
   std::vector<PointCloud> parts((columns + kColumnsAPart - 1) / kColumnsAPart);
   parallel_for(columns, kColumnsAPart, [&](std::size_t begin, std::size_t end) {
+    PointCloud& part = parts[begin / kColumnsAPart];
+    part.points.reserve((end - begin) * sensor.num_beams());
+    part.time_offsets_ns.reserve((end - begin) * sensor.num_beams());
     for (std::size_t column = begin; column < end; ++column) {
-      cast_column(raycaster, sensor, turn, static_cast<int>(column), parts[begin / kColumnsAPart]);
+      cast_column(raycaster, sensor, turn, static_cast<int>(column), part);
     }
   });
   return {sweep.end, joined(parts)};

@@ -11,12 +11,10 @@
 
 #include "adit/core/check.hpp"
 #include "adit/core/pose.hpp"
+#include "adit/core/vectors.hpp"
 
 namespace adit {
 namespace {
-
-// Measured in a tunnel: streams of 128 beat packets of 8 by a tenth, and more rays gain nothing.
-constexpr std::size_t kRaysAtOnce = 128;
 
 struct ReleaseDevice {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -92,6 +90,75 @@ void aim(RTCRayHit& query, const Ray& ray, float max_distance) {
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 }
 
+// What Embree wants to know of a block of rays beside their origins and directions, and what it answers.
+struct Query {
+  RayBlock::Numbers near{};
+  RayBlock::Numbers times{};
+  std::array<unsigned, RayBlock::kCapacity> masks;
+  std::array<unsigned, RayBlock::kCapacity> flags{};
+  RayBlock::Numbers far;
+  RayBlock::Vectors normals;
+  RayBlock::Numbers u;
+  RayBlock::Numbers v;
+  std::array<unsigned, RayBlock::kCapacity> triangles;
+  std::array<unsigned, RayBlock::kCapacity> geometries;
+  std::array<unsigned, RayBlock::kCapacity> instances;
+
+  explicit Query(float max_distance) {
+    masks.fill(~0U);
+    far.fill(max_distance);
+    geometries.fill(RTC_INVALID_GEOMETRY_ID);
+    instances.fill(RTC_INVALID_GEOMETRY_ID);
+  }
+
+  [[nodiscard]] RTCRayHitNp with(RayBlock& block) {
+    RTCRayHitNp out;
+    out.ray = {block.origins.x.data(),
+               block.origins.y.data(),
+               block.origins.z.data(),
+               near.data(),
+               block.directions.x.data(),
+               block.directions.y.data(),
+               block.directions.z.data(),
+               times.data(),
+               far.data(),
+               masks.data(),
+               flags.data(),
+               flags.data()};
+    out.hit = {normals.x.data(), normals.y.data(), normals.z.data(),  u.data(),
+               v.data(),         triangles.data(), geometries.data(), {instances.data()}};
+    return out;
+  }
+};
+
+// The planes of the triangles that a block of rays met.
+struct PlaneBlock {
+  RayBlock::Vectors corners;
+  RayBlock::Vectors normals;
+};
+
+// A plane's own distance; Embree's counts only where the ray runs along the triangle and the plane equation
+// has no grip.
+ADIT_WIDE_VECTORS void measure(const PlaneBlock& planes, const RayBlock::Vectors& origins,
+                               const RayBlock::Vectors& directions, const RayBlock::Numbers& embree_distances,
+                               RayBlock::Numbers& distances, RayBlock::Numbers& cosines, std::size_t size) {
+  const auto& [nx, ny, nz] = planes.normals;
+  const auto& [cx, cy, cz] = planes.corners;
+  const auto& [ox, oy, oz] = origins;
+  const auto& [dx, dy, dz] = directions;
+  for (std::size_t i = 0; i < size; ++i) {
+    const double to_plane =
+        double{nx[i]} * (double{cx[i]} - double{ox[i]}) +
+        (double{ny[i]} * (double{cy[i]} - double{oy[i]}) + double{nz[i]} * (double{cz[i]} - double{oz[i]}));
+    const double approach =
+        double{nx[i]} * double{dx[i]} + (double{ny[i]} * double{dy[i]} + double{nz[i]} * double{dz[i]});
+    const auto exact = static_cast<float>(to_plane / approach);
+    const float embree = embree_distances[i];
+    distances[i] = std::abs(exact - embree) < 1e-3F * (1.0F + embree) ? exact : embree;
+    cosines[i] = std::abs(nx[i] * dx[i] + (ny[i] * dy[i] + nz[i] * dz[i]));
+  }
+}
+
 }  // namespace
 
 struct Raycaster::Scene {
@@ -133,20 +200,24 @@ RayHit Raycaster::cast(const Ray& ray, float max_distance) const {
   return scene_->hit_of(query, ray);
 }
 
-std::vector<RayHit> Raycaster::cast(std::span<const Ray> rays, float max_distance) const {
-  std::vector<RayHit> hits;
-  hits.reserve(rays.size());
+void Raycaster::cast(RayBlock& block, float max_distance) const {
+  Query query(max_distance);
+  RTCRayHitNp rays = query.with(block);
   RTCIntersectContext context = context_of(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
-  std::array<RTCRayHit, kRaysAtOnce> queries;
-  while (!rays.empty()) {
-    const auto part = rays.first(std::min(kRaysAtOnce, rays.size()));
-    for (std::size_t i = 0; i < part.size(); ++i) aim(queries[i], part[i], max_distance);
-    rtcIntersect1M(scene_->embree.get(), &context, queries.data(), static_cast<unsigned>(part.size()),
-                   sizeof(RTCRayHit));
-    for (std::size_t i = 0; i < part.size(); ++i) hits.push_back(scene_->hit_of(queries[i], part[i]));
-    rays = rays.subspan(part.size());
+  rtcIntersectNp(scene_->embree.get(), &context, &rays, static_cast<unsigned>(block.size));
+  PlaneBlock planes;
+  for (std::size_t i = 0; i < block.size; ++i) {
+    const bool hit = query.geometries[i] != RTC_INVALID_GEOMETRY_ID;
+    const Plane& plane = scene_->planes[hit ? query.triangles[i] : 0];
+    planes.corners.x[i] = plane.corner.x();
+    planes.corners.y[i] = plane.corner.y();
+    planes.corners.z[i] = plane.corner.z();
+    planes.normals.x[i] = plane.normal.x();
+    planes.normals.y[i] = plane.normal.y();
+    planes.normals.z[i] = plane.normal.z();
+    if (!hit) query.far[i] = RayHit::kMiss;
   }
-  return hits;
+  measure(planes, block.origins, block.directions, query.far, block.distances, block.cosines, block.size);
 }
 
 }  // namespace adit

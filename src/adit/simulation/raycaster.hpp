@@ -3,11 +3,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <limits>
 #include <memory>
-#include <span>
 #include <utility>
-#include <vector>
 
 #include "adit/core/result.hpp"
 #include "adit/geometry/triangle_mesh.hpp"
@@ -29,6 +29,23 @@ struct RayHit {
   [[nodiscard]] bool hit() const { return distance < kMiss; }
 };
 
+/// Rays side by side, and what they meet: the fast way to cast many.
+struct RayBlock {
+  static constexpr std::size_t kCapacity = 128;
+  using Numbers = std::array<float, kCapacity>;
+  struct Vectors {
+    Numbers x;
+    Numbers y;
+    Numbers z;
+  };
+
+  std::size_t size = 0;  ///< How many of the following count.
+  Vectors origins;
+  Vectors directions;
+  Numbers distances;  ///< As in RayHit, from here on what casting fills in.
+  Numbers cosines;    ///< Of the angle between the ray and the normal, 0 to 1; undefined for a miss.
+};
+
 /// Casts rays against a triangle mesh (Embree behind it). A cheap value: copies share one acceleration
 /// structure. All casting is const and may run on any number of threads at once.
 ///
@@ -42,8 +59,8 @@ class Raycaster {
   /// The first surface, from either side, within `max_distance`.
   [[nodiscard]] RayHit cast(const Ray& ray, float max_distance) const;
 
-  /// The same for many rays, several at a time: fastest when neighbours in the list start and point alike.
-  [[nodiscard]] std::vector<RayHit> cast(std::span<const Ray> rays, float max_distance) const;
+  /// The same for many rays at once: fastest when neighbours in the block start and point alike.
+  void cast(RayBlock& block, float max_distance) const;
 
  private:
   struct Scene;
