@@ -128,15 +128,15 @@ TYPED_TEST(Incremental, ReachesTheBatchMinimumAtEachLoop) {
   using P = TypeParam;
   Rng rng(7);
   const auto made = test::make_graph<P>(rng, 120, 25, 0.02);
-  IncrementalOptimizer<P> optimizer;
+  OptimizerConfig config;
+  config.relative_tolerance = 1e-10;
+  IncrementalOptimizer<P> optimizer(config);
   feed(made.graph, optimizer, [&](const auto& update) {
     ASSERT_EQ(update.status, SolveStatus::converged) << update.reason;
-    OptimizerConfig config;
-    config.relative_tolerance = 1e-12;
     const Solution<P> batch = optimize(optimizer.graph(), config);
     EXPECT_NEAR(update.cost, batch.cost_final, 1e-5 * (1.0 + batch.cost_final));
   });
-  const Solution<P> batch = optimize(made.graph);
+  const Solution<P> batch = optimize(made.graph, config);
   for (std::size_t i = 0; i < batch.poses.size(); ++i)
     EXPECT_LT((batch.poses[i].translation() - optimizer.poses()[i].translation()).norm(), 1e-3);
 }
