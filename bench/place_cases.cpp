@@ -85,11 +85,11 @@ const Side alignable_adit("keyframes/alignability", "adit", []() -> Work {
   };
 });
 
-/// Contexts along the ways of tunnels of three kinds. A robot passes each place four times, up to 0.4 m to
+/// Contexts along the ways of tunnels of three kinds. A robot passes each place eight times, up to 0.4 m to
 /// the side and turned by up to 6 degrees, as often the other way round.
 std::vector<ScanContext> contexts_along_tunnels(std::size_t wanted) {
   constexpr double kSpacing = 0.5;
-  constexpr std::size_t kPasses = 4;
+  constexpr std::size_t kPasses = 8;
   std::vector<ScanContext> contexts;
   for (std::uint64_t seed = 1; contexts.size() < wanted; ++seed) {
     for (const char* kind : {"zab", "metro", "mine"}) {
