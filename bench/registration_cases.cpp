@@ -144,6 +144,27 @@ const GlobalCase keyframes("registration/tube_keyframes", "keyframes of zab, 4 m
                            tube_keyframes, 6);
 const GlobalCase maps("registration/submaps", "submaps of zab of ten scans each, 6 m apart", submaps, 2);
 
+/// The peer's settings: voxels of 0.25 m, pairs up to 1 m apart, from no motion at all.
+Prepare refine(int num_threads) {
+  return [=]() -> Work {
+    set_num_threads(num_threads);
+    RegistrationConfig config;
+    config.voxel_size = 0.25;
+    config.refine_distance_voxels = 4.0;
+    return [config, pairs = kitti_pair()] {
+      return judged(pairs, [&](const CloudPair& pair) {
+        return align_clouds(pair.target, pair.source, Pose(), config);
+      });
+    };
+  };
+}
+const Case refine_one({"registration/refine_kitti", "KITTI pair, refined from no motion, one thread",
+                       "small_gicp", 1.0, "", 1, "pair"});
+const Side refine_one_adit("registration/refine_kitti", "adit", refine(1));
+const Case refine_two({"registration/refine_kitti_2_threads",
+                       "KITTI pair, refined from no motion, two threads", "small_gicp", 1.0, "", 1, "pair"});
+const Side refine_two_adit("registration/refine_kitti_2_threads", "adit", refine(2));
+
 // NAME_K_target.bin, NAME_K_source.bin: KITTI format. NAME_K_T_target_source.txt: 4 x 4, row by row.
 void write_pairs(const std::filesystem::path& folder) {
   const auto write = [&](const std::string& name, const CloudPairs& pairs) {

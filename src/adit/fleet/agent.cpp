@@ -4,6 +4,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <iterator>
+#include <set>
+#include <tuple>
 
 #include "adit/core/parallel.hpp"
 #include "adit/geometry/voxel_grid.hpp"
@@ -39,6 +42,12 @@ bool is_usable(const GraphPart& part) {
   return true;
 }
 
+std::size_t bytes_of(const Features& features) {
+  return features.points.capacity() * sizeof(Eigen::Vector3f) +
+         features.normals.capacity() * sizeof(Eigen::Vector3f) +
+         features.descriptors.capacity() * sizeof(Descriptor);
+}
+
 bool same_grid(const ScanContext& a, const ScanContext& b) {
   return a.num_rings == b.num_rings && a.num_sectors == b.num_sectors;
 }
@@ -54,29 +63,50 @@ std::vector<std::uint32_t> searchable_indices(const RobotMap& map) {
 }  // namespace
 
 Fields fields_of(AgentConfig& c) {
-  Fields fields;
+  Fields fields = {{"max_candidates", &c.max_candidates, "", 0, 1e9,
+                    "candidates that a robot registers with the peers it meets first"},
+                   {"candidates_per_peer", &c.candidates_per_peer, "", 1, 1e6,
+                    "candidates that it registers with each further peer, the most similar ones"}};
   append(fields, "place", fields_of(c.place));
   append(fields, "registration", fields_of(c.registration));
   return fields;
 }
 
-FeatureStore::FeatureStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config)
-    : map_(std::move(map)), config_(config), features_(map_->keyframes.size()) {}
+FeatureStore::FeatureStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
+                           std::size_t max_bytes)
+    : map_(std::move(map)), config_(config), max_bytes_(max_bytes), entries_(map_->keyframes.size()) {}
 
 void FeatureStore::prepare(const std::vector<std::uint32_t>& indices) {
+  ++now_;
   std::vector<std::uint32_t> missing;
-  std::ranges::copy_if(indices, std::back_inserter(missing),
-                       [&](std::uint32_t i) { return !features_.at(i); });
-  std::ranges::sort(missing);
-  missing.erase(std::ranges::unique(missing).begin(), missing.end());
+  for (const std::uint32_t i : indices) {
+    Entry& entry = entries_.at(i);
+    if (!entry.features && entry.last_used != now_) missing.push_back(i);
+    entry.last_used = now_;
+  }
   parallel_for_each(missing.size(), [&](std::size_t i) {
-    features_[missing[i]] = compute_features(*map_->keyframes[missing[i]].cloud, config_);
+    entries_[missing[i]].features = compute_features(*map_->keyframes[missing[i]].cloud, config_);
   });
+  for (const std::uint32_t i : missing) num_bytes_ += bytes_of(*entries_[i].features);
+  forget_oldest();
+}
+
+void FeatureStore::forget_oldest() {
+  std::vector<std::uint32_t> unused;
+  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+    if (entries_[i].features && entries_[i].last_used < now_) unused.push_back(i);
+  }
+  std::ranges::sort(unused, {}, [&](std::uint32_t i) { return std::pair(entries_[i].last_used, i); });
+  for (const std::uint32_t i : unused) {
+    if (num_bytes_ <= max_bytes_) return;
+    num_bytes_ -= bytes_of(*entries_[i].features);
+    entries_[i].features.reset();
+  }
 }
 
 const Features& FeatureStore::at(std::uint32_t index) const {
-  ADIT_CHECK(features_.at(index).has_value(), "features are prepared before they are asked for");
-  return *features_[index];
+  ADIT_CHECK(entries_.at(index).features.has_value(), "features are prepared before they are asked for");
+  return *entries_[index].features;
 }
 
 Agent::Agent(std::shared_ptr<const RobotMap> map, std::shared_ptr<FeatureStore> features,
@@ -90,14 +120,19 @@ Message Agent::to(RobotId peer, decltype(Message::body) body) const {
 }
 
 Hello Agent::hello() const {
-  Hello hello;
+  std::map<RobotId, Hello::Known> known;
   for (const auto& [robot, graph] : known_.robots) {
-    const auto peer = peers_.find(robot);
-    const std::size_t num_places = peer == peers_.end() ? 0 : peer->second.places.size();
-    hello.known.push_back(
-        {robot, static_cast<std::uint32_t>(graph.nodes.size()), static_cast<std::uint32_t>(num_places)});
+    known[robot].num_nodes = static_cast<std::uint32_t>(graph.nodes.size());
   }
-  hello.num_loops = static_cast<std::uint32_t>(known_.loops.size());
+  for (const auto& [robot, peer] : peers_) known[robot].num_places = peer.num_places;
+  for (const auto& [robot, loops] : registered_) {
+    known[robot].num_loops = static_cast<std::uint32_t>(loops.size());
+  }
+  Hello hello;
+  for (auto& [robot, entry] : known) {
+    entry.robot = robot;
+    hello.known.push_back(entry);
+  }
   return hello;
 }
 
@@ -111,20 +146,16 @@ std::vector<Message> Agent::on(const Message& message) {
 
 Agent::Replies Agent::on(RobotId from, const Hello& theirs) {
   Replies replies;
-  const auto append = [&](const Replies& more) { replies.insert(replies.end(), more.begin(), more.end()); };
+  const auto append = [&](Replies more) { std::ranges::move(more, std::back_inserter(replies)); };
   if (!theirs.answer) {
     Hello mine = hello();
     mine.answer = true;
     replies.push_back(to(from, std::move(mine)));
   }
   append(graph_news(from, theirs));
-  if (theirs.num_loops != known_.loops.size()) {
-    std::vector<LoopClosure> loops;
-    for (const auto& [ends, loop] : known_.loops) loops.push_back(loop);
-    append(in_messages(from, loops));
-  }
+  append(loop_news(from, theirs));
   // Clouds that were asked for in an earlier meeting and never came are asked for again.
-  append(searches(from) ? cloud_requests(from) : place_news(from, theirs));
+  append(searches(from) ? cloud_request(from) : place_news(from, theirs));
   return replies;
 }
 
@@ -165,11 +196,27 @@ Agent::Replies Agent::place_news(RobotId peer, const Hello& theirs) const {
   return replies;
 }
 
-Agent::Replies Agent::in_messages(RobotId peer, const std::vector<LoopClosure>& loops) const {
+Agent::Replies Agent::loop_news(RobotId peer, const Hello& theirs) const {
   Replies replies;
-  in_parts(loops, kLoopsPerMessage, [&](std::size_t, std::vector<LoopClosure> part) {
-    replies.push_back(to(peer, Loops{std::move(part)}));
-  });
+  for (const auto& [author, loops] : registered_) {
+    if (author == peer) continue;
+    const auto known = std::ranges::find(theirs.known, author, &Hello::Known::robot);
+    const std::size_t has = known == theirs.known.end() ? 0 : known->num_loops;
+    std::ranges::move(loops_from(peer, author, has), std::back_inserter(replies));
+  }
+  return replies;
+}
+
+Agent::Replies Agent::loops_from(RobotId peer, RobotId author, std::size_t first) const {
+  Replies replies;
+  const std::vector<Ends>& all = registered_.at(author);
+  for (; first < all.size(); first += kLoopsPerMessage) {
+    Loops part{author, static_cast<std::uint32_t>(first), {}};
+    for (std::size_t l = first; l < std::min(all.size(), first + kLoopsPerMessage); ++l) {
+      part.loops.push_back(known_.loops.at(all[l]));
+    }
+    replies.push_back(to(peer, std::move(part)));
+  }
   return replies;
 }
 
@@ -192,18 +239,29 @@ Agent::Replies Agent::on(RobotId from, const Places& part) {
     return !map_->places.empty() && same_grid(place.context, map_->places.front());
   });
   if (!searches(from) || !comparable) return {};
+  for (auto& [robot, other] :
+       peers_) {  // an unfinished transfer gives way to a new one, and starts anew later
+    if (robot == from) continue;
+    other.num_places -= static_cast<std::uint32_t>(other.places.size());
+    other.places = {};
+  }
   Peer& peer = peers_[from];
-  if (part.first > peer.places.size()) return {};
-  for (const Places::Place& place : part.places) peer.places.emplace(place.index, place.context);
+  if (part.first > peer.num_places) return {};
+  for (std::size_t i = peer.num_places - part.first; i < part.places.size(); ++i) {
+    peer.places.push_back(part.places[i]);
+    ++peer.num_places;
+  }
   if (!part.last) return {};
   find_candidates(from);
-  return cloud_requests(from);
+  return cloud_request(from);
 }
 
-void Agent::find_candidates(RobotId peer_id) {
-  Peer& peer = peers_[peer_id];
+std::vector<LoopCandidate> Agent::best_candidates(RobotId peer_id) const {
   PlaceIndex index(config_.place);
-  for (const auto& [k, context] : peer.places) index.add({peer_id, k}, context);
+  std::set<std::uint32_t> added;  // a confused peer may name a keyframe twice
+  for (const Places::Place& place : peers_.at(peer_id).places) {
+    if (added.insert(place.index).second) index.add({peer_id, place.index}, place.context);
+  }
   const std::vector<std::uint32_t> queries = searchable_indices(*map_);
   std::vector<std::optional<LoopCandidate>> best(queries.size());
   parallel_for_each(
@@ -212,25 +270,45 @@ void Agent::find_candidates(RobotId peer_id) {
         best[i] = index.best_match({map_->id, queries[i]}, map_->places[queries[i]], peer_id);
       },
       16);
+  std::vector<LoopCandidate> found;
   for (const std::optional<LoopCandidate>& candidate : best) {
-    if (!candidate || known_.loops.contains({candidate->query, candidate->match})) continue;
-    std::vector<LoopCandidate>& waiting = peer.waiting[candidate->match.index];
-    if (std::ranges::find(waiting, candidate->query, &LoopCandidate::query) == waiting.end()) {
-      waiting.push_back(*candidate);
-    }
+    if (candidate && !known_.loops.contains({candidate->query, candidate->match}))
+      found.push_back(*candidate);
   }
+  std::ranges::sort(found, {},
+                    [](const LoopCandidate& c) { return std::tuple(c.distance, c.query, c.match); });
+  return found;
 }
 
-Agent::Replies Agent::cloud_requests(RobotId peer_id) const {
+std::size_t Agent::num_tried() const {
+  const auto own = registered_.find(map_->id);
+  std::size_t num = own == registered_.end() ? 0 : own->second.size();
+  for (const auto& [robot, peer] : peers_) {
+    for (const auto& [index, candidates] : peer.waiting) num += candidates.size();
+  }
+  return num;
+}
+
+void Agent::find_candidates(RobotId peer_id) {
+  std::vector<LoopCandidate> found = best_candidates(peer_id);
+  Peer& peer = peers_[peer_id];
+  peer.places = {};
+  const auto in_all = static_cast<std::size_t>(config_.max_candidates);
+  const std::size_t room =
+      std::max(in_all - std::min(in_all, num_tried()), static_cast<std::size_t>(config_.candidates_per_peer));
+  found.resize(std::min(found.size(), room));
+  for (const LoopCandidate& candidate : found) peer.waiting[candidate.match.index].push_back(candidate);
+}
+
+Agent::Replies Agent::cloud_request(RobotId peer_id) const {
   const auto peer = peers_.find(peer_id);
-  if (peer == peers_.end()) return {};
-  std::vector<std::uint32_t> indices;
-  for (const auto& [index, candidates] : peer->second.waiting) indices.push_back(index);
-  Replies replies;
-  in_parts(indices, kCloudsPerMessage, [&](std::size_t, std::vector<std::uint32_t> part) {
-    replies.push_back(to(peer_id, CloudRequest{std::move(part)}));
-  });
-  return replies;
+  if (peer == peers_.end() || peer->second.waiting.empty()) return {};
+  CloudRequest request;
+  for (const auto& [index, candidates] : peer->second.waiting) {
+    if (request.indices.size() == kCloudsPerMessage) break;
+    request.indices.push_back(index);
+  }
+  return {to(peer_id, std::move(request))};
 }
 
 Agent::Replies Agent::on(RobotId from, const CloudRequest& request) const {
@@ -273,6 +351,7 @@ Agent::Replies Agent::on(RobotId from, const Clouds& clouds) {
       own.push_back(candidate.query.index);
     }
   }
+  if (jobs.empty()) return {};  // nor is more asked for: this peer has sent nothing of use
   features_->prepare(own);
   std::vector<Features> theirs(clouds.clouds.size());
   parallel_for_each(theirs.size(), [&](std::size_t c) {
@@ -280,18 +359,33 @@ Agent::Replies Agent::on(RobotId from, const Clouds& clouds) {
     cloud.points = clouds.clouds[c].points;
     theirs[c] = compute_features(cloud, config_.registration);
   });
-  Loops found;
-  found.loops.resize(jobs.size());
+  std::vector<LoopClosure> found(jobs.size());
   parallel_for_each(jobs.size(),
-                    [&](std::size_t i) { found.loops[i] = verify(jobs[i].first, theirs[jobs[i].second]); });
-  for (const LoopClosure& loop : found.loops) known_.loops.try_emplace({loop.from, loop.to}, loop);
-  return in_messages(from, found.loops);
+                    [&](std::size_t i) { found[i] = verify(jobs[i].first, theirs[jobs[i].second]); });
+  std::vector<Ends>& registered = registered_[map_->id];
+  const std::size_t before = registered.size();
+  for (LoopClosure& loop : found) {
+    const Ends ends{loop.from, loop.to};
+    if (known_.loops.try_emplace(ends, std::move(loop)).second) registered.push_back(ends);
+  }
+  Replies replies = loops_from(from, map_->id, before);
+  std::ranges::move(cloud_request(from), std::back_inserter(replies));
+  return replies;
 }
 
-Agent::Replies Agent::on(RobotId /*from*/, const Loops& loops) {
-  for (const LoopClosure& loop : loops.loops) {
+Agent::Replies Agent::on(RobotId /*from*/, const Loops& part) {
+  const auto is_authors = [&](const LoopClosure& loop) {
+    return loop.from.robot == part.author && loop.from.robot < loop.to.robot;
+  };
+  if (part.author == map_->id || !std::ranges::all_of(part.loops, is_authors)) return {};
+  const auto known = registered_.find(part.author);
+  const std::size_t has = known == registered_.end() ? 0 : known->second.size();
+  if (part.first > has) return {};  // a part before it was lost; the next Hello asks for it
+  for (std::size_t l = has - part.first; l < part.loops.size(); ++l) {
     // The graph that a loop's ends belong to may still be on its way; `solve` leaves the loop out until then.
-    if (loop.from.robot < loop.to.robot) known_.loops.try_emplace({loop.from, loop.to}, loop);
+    const Ends ends{part.loops[l].from, part.loops[l].to};
+    known_.loops.try_emplace(ends, part.loops[l]);
+    registered_[part.author].push_back(ends);
   }
   return {};
 }

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "adit/core/format.hpp"
+#include "adit/fleet/condensed_graph.hpp"
 
 namespace adit {
 namespace {
@@ -35,18 +36,44 @@ OdometryChain chain_of(const RobotGraph& graph) {
   return {std::move(poses), steps};
 }
 
+/// The chains of those robots that have loops, each made once.
+class Chains {
+ public:
+  explicit Chains(const FleetGraph& fleet) : fleet_(fleet) {}
+  const OdometryChain& of(RobotId robot) {
+    const auto known = chains_.find(robot);
+    return known != chains_.end() ? known->second
+                                  : chains_.emplace(robot, chain_of(fleet_.robots.at(robot))).first->second;
+  }
+
+ private:
+  const FleetGraph& fleet_;
+  std::map<RobotId, OdometryChain> chains_;
+};
+
+/// Indices into a list of loops.
+using LoopsOfPairs = std::map<RobotPair, std::vector<std::size_t>>;
+
+LoopsOfPairs loops_of_pairs(const FleetSolution& solution) {
+  LoopsOfPairs of_pairs;
+  for (const PairOutcome& pair : solution.pairs) of_pairs[{pair.a, pair.b}] = {};
+  for (std::size_t l = 0; l < solution.loops.size(); ++l) {
+    const LoopClosure& loop = solution.loops[l].loop;
+    of_pairs[{loop.from.robot, loop.to.robot}].push_back(l);
+  }
+  return of_pairs;
+}
+
 /// Runs PCM on the loops of one pair (indices into `loops`), marks the ones it keeps and fills in the clique
 /// sizes.
-void keep_consistent(const FleetGraph& fleet, const BackEndConfig& config,
-                     const std::vector<std::size_t>& of_pair, std::vector<LoopOutcome>& loops,
-                     PairOutcome& pair) {
+void keep_consistent(Chains& chains, const BackEndConfig& config, const std::vector<std::size_t>& of_pair,
+                     std::vector<LoopOutcome>& loops, PairOutcome& pair) {
   std::vector<PcmLoop> measured;
   for (const std::size_t l : of_pair) {
     const LoopClosure& loop = loops[l].loop;
     measured.push_back({loop.from.index, loop.to.index, loop.T_from_to, loop_information(config)});
   }
-  const PcmResult result =
-      pcm(chain_of(fleet.robots.at(pair.a)), chain_of(fleet.robots.at(pair.b)), measured, config.pcm);
+  const PcmResult result = pcm(chains.of(pair.a), chains.of(pair.b), measured, config.pcm);
   for (const std::size_t kept : result.largest) loops[of_pair[kept]].in_clique = true;
   pair.clique = result.largest.size();
   pair.second_clique = result.second.size();
@@ -165,29 +192,37 @@ FleetGraph part_of(const FleetGraph& fleet, const std::vector<RobotId>& robots) 
   return part;
 }
 
-std::string most_common_reason(const FleetGraph& fleet, const PairOutcome& pair) {
-  std::map<std::string, int> counts;
+/// What was tried between two robots, registered or not.
+struct Tried {
+  std::size_t num = 0;
+  std::map<std::string, int> reasons;
+};
+
+std::map<RobotPair, Tried> tried_by_pair(const FleetGraph& fleet) {
+  std::map<RobotPair, Tried> by_pair;
   for (const auto& [ends, loop] : fleet.loops) {
-    if (ends.first.robot == pair.a && ends.second.robot == pair.b) ++counts[loop.reason];
+    Tried& tried = by_pair[{ends.first.robot, ends.second.robot}];
+    ++tried.num;
+    ++tried.reasons[loop.reason];
   }
-  const auto most = std::ranges::max_element(counts, {}, &std::pair<const std::string, int>::second);
-  return most == counts.end() ? "" : most->first;
+  return by_pair;
 }
 
-std::string refusal(const FleetGraph& fleet, const PairOutcome& pair, std::size_t num_tried,
+std::string refusal(const FleetGraph& fleet, const PairOutcome& pair, const Tried& tried,
                     std::size_t num_used) {
   for (const RobotId robot : {pair.a, pair.b}) {
     if (fleet.robots.at(robot).nodes.empty()) {
       return format("the keyframe policy left no keyframe of {}", fleet.robots.at(robot).name);
     }
   }
-  if (num_tried == 0) {
+  if (tried.num == 0) {
     return format("no keyframe of {} resembled one of {}", fleet.robots.at(pair.a).name,
                   fleet.robots.at(pair.b).name);
   }
   if (pair.num_loops == 0) {
-    return format("none of {} candidates could be registered, mostly because: {}", num_tried,
-                  most_common_reason(fleet, pair));
+    const auto most =
+        std::ranges::max_element(tried.reasons, {}, &decltype(tried.reasons)::value_type::second);
+    return format("none of {} candidates could be registered, mostly because: {}", tried.num, most->first);
   }
   return format("only {} of {} loops agree with the odometries of both robots", num_used, pair.num_loops);
 }
@@ -210,37 +245,31 @@ std::vector<PairOutcome> all_pairs(const FleetGraph& fleet) {
 }
 
 void run_pcm(const FleetGraph& fleet, const BackEndConfig& config, FleetSolution& solution) {
+  const LoopsOfPairs of_pairs = loops_of_pairs(solution);
+  Chains chains(fleet);
   for (PairOutcome& pair : solution.pairs) {
-    std::vector<std::size_t> of_pair;
-    for (std::size_t l = 0; l < solution.loops.size(); ++l) {
-      const LoopClosure& loop = solution.loops[l].loop;
-      if (loop.from.robot == pair.a && loop.to.robot == pair.b) of_pair.push_back(l);
-    }
+    const std::vector<std::size_t>& of_pair = of_pairs.at({pair.a, pair.b});
     pair.num_loops = of_pair.size();
     if (!config.pcm_on || of_pair.empty()) {
       for (const std::size_t l : of_pair) solution.loops[l].in_clique = true;
     } else {
-      keep_consistent(fleet, config, of_pair, solution.loops, pair);
+      keep_consistent(chains, config, of_pair, solution.loops, pair);
     }
   }
 }
 
 void decide_merges(const FleetGraph& fleet, const BackEndConfig& config, FleetSolution& solution) {
+  const LoopsOfPairs of_pairs = loops_of_pairs(solution);
+  std::map<RobotPair, Tried> tried = tried_by_pair(fleet);
   for (PairOutcome& pair : solution.pairs) {
-    const auto is_of_pair = [&](const LoopClosure& loop) {
-      return loop.from.robot == pair.a && loop.to.robot == pair.b;
-    };
-    const auto num_used = static_cast<std::size_t>(std::ranges::count_if(
-        solution.loops, [&](const LoopOutcome& l) { return l.in_use() && is_of_pair(l.loop); }));
+    const std::vector<std::size_t>& of_pair = of_pairs.at({pair.a, pair.b});
+    const auto num_used = static_cast<std::size_t>(
+        std::ranges::count_if(of_pair, [&](std::size_t l) { return solution.loops[l].in_use(); }));
     pair.merged = num_used >= static_cast<std::size_t>(config.min_loops);
     if (pair.merged) continue;
-    const auto num_tried = static_cast<std::size_t>(
-        std::ranges::count_if(fleet.loops, [&](const auto& entry) { return is_of_pair(entry.second); }));
-    pair.refused_reason = refusal(fleet, pair, num_tried, num_used);
+    pair.refused_reason = refusal(fleet, pair, tried[{pair.a, pair.b}], num_used);
     // Too few loops are no bridge: they must not join the maps through the back door either.
-    for (LoopOutcome& outcome : solution.loops) {
-      if (is_of_pair(outcome.loop)) outcome.weight = 0.0;
-    }
+    for (const std::size_t l : of_pair) solution.loops[l].weight = 0.0;
   }
 }
 
@@ -257,7 +286,7 @@ void solve_group(const FleetGraph& fleet, const std::vector<RobotId>& robots, co
   const PoseGraph graph = build_graph(part_of(fleet, robots),
                                       std::vector<const LoopOutcome*>(loops.begin(), loops.end()), config);
   const Solution<Pose> solved =
-      config.gnc_on ? optimize_gnc(graph, config.gnc) : optimize(graph, config.gnc.optimizer);
+      config.gnc_on ? solve_robustly(graph, config.gnc) : optimize(graph, config.gnc.optimizer);
   const std::size_t first_loop = graph.edges.size() - loops.size();
   for (std::size_t l = 0; l < loops.size(); ++l) {
     loops[l]->weight = solved.ok() ? solved.edge_weights[first_loop + l] : 0.0;

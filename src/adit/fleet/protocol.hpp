@@ -14,7 +14,7 @@
 
 namespace adit {
 
-inline constexpr std::uint8_t kProtocolVersion = 1;
+inline constexpr std::uint8_t kProtocolVersion = 2;
 inline constexpr std::size_t kPlacesPerMessage = 64;
 inline constexpr std::size_t kCloudsPerMessage = 16;
 inline constexpr std::size_t kNodesPerMessage = 512;
@@ -34,9 +34,9 @@ struct Hello {
     RobotId robot;
     std::uint32_t num_nodes = 0;
     std::uint32_t num_places = 0;
+    std::uint32_t num_loops = 0;  ///< Of those that this robot registered.
   };
   std::vector<Known> known;
-  std::uint32_t num_loops = 0;
   bool answer = false;  ///< This is the reply to a Hello.
 };
 
@@ -72,8 +72,11 @@ struct Clouds {
   std::vector<Cloud> clouds;
 };
 
-/// Registered loops, accepted and rejected ones alike, so that both robots know what was tried.
+/// Loops number first, first + 1, ... of those that `author`, who need not be the sender, registered:
+/// accepted and rejected ones alike, so that all know what was tried. They start at keyframes of the author.
 struct Loops {
+  RobotId author;
+  std::uint32_t first = 0;
   std::vector<LoopClosure> loops;
 };
 

@@ -3,39 +3,56 @@
 #include "adit/geometry/normals.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <tuple>
 
 #include "adit/core/check.hpp"
 
 namespace adit {
 namespace {
 
+/// One vector register (a type of GCC and Clang on every processor).
+using Four [[gnu::vector_size(16)]] = float;
+
 /// Sums over the neighbours of one point, of their offsets from it: small numbers, so floats lose nothing
 /// that matters.
 struct Scatter {
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  Eigen::Matrix3f sum_of_squares = Eigen::Matrix3f::Zero();
-  int num_neighbors = 0;
-
-  void add(const Eigen::Vector3f& offset, const Eigen::Matrix3f& square) {
-    sum += offset;
-    sum_of_squares += square;
-    ++num_neighbors;
-  }
+  Four sum = {};       ///< x, y, z; number of neighbours.
+  Four squares = {};   ///< xx, yy, zz.
+  Four products = {};  ///< xy, yz, zx.
 };
 
+/// The unit vector that a symmetric matrix of rank 2 maps to zero: the longest cross product of two rows.
+Eigen::Vector3d kernel_of(const Eigen::Matrix3d& m) {
+  Eigen::Vector3d longest = m.col(0).cross(m.col(1));
+  for (const Eigen::Vector3d& other :
+       {Eigen::Vector3d(m.col(1).cross(m.col(2))), Eigen::Vector3d(m.col(2).cross(m.col(0)))}) {
+    if (other.squaredNorm() > longest.squaredNorm()) longest = other;
+  }
+  return longest.normalized();
+}
+
 SurfacePoint surface_from(const Scatter& scatter, const Eigen::Vector3f& point) {
-  constexpr int kMinNeighbors = 3;
+  constexpr float kMinNeighbors = 3.0F;
   constexpr double kMinWidth = 1e-6;  // of l2 to l1: thinner is a line, whose normal is anything
   SurfacePoint out;
-  if (scatter.num_neighbors < kMinNeighbors) return out;
-  const double n = scatter.num_neighbors + 1.0;  // the point itself counts, at offset zero
-  const Eigen::Vector3d mean = scatter.sum.cast<double>() / n;
-  const Eigen::Matrix3d covariance = scatter.sum_of_squares.cast<double>() / n - mean * mean.transpose();
+  if (scatter.sum[3] < kMinNeighbors) return out;
+  const double n = static_cast<double>(scatter.sum[3]) + 1.0;  // the point itself counts, at offset zero
+  const Eigen::Vector3d mean =
+      Eigen::Vector3f(scatter.sum[0], scatter.sum[1], scatter.sum[2]).cast<double>() / n;
+  const auto& [xx, yy, zz] = std::tuple(scatter.squares[0], scatter.squares[1], scatter.squares[2]);
+  const auto& [xy, yz, zx] = std::tuple(scatter.products[0], scatter.products[1], scatter.products[2]);
+  Eigen::Matrix3f squares;
+  squares << xx, xy, zx, xy, yy, yz, zx, yz, zz;
+  const Eigen::Matrix3d covariance = squares.cast<double>() / n - mean * mean.transpose();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(covariance);
+  solver.computeDirect(covariance, Eigen::EigenvaluesOnly);
   const Eigen::Vector3d& l = solver.eigenvalues();  // ascending
   if (!(l[2] > 0.0) || !(l[1] > kMinWidth * l[2])) return out;
-  out.normal = solver.eigenvectors().col(0).cast<float>().normalized();
+  out.normal = kernel_of(covariance - l[0] * Eigen::Matrix3d::Identity()).cast<float>();
   if (out.normal.dot(point) > 0.0F) out.normal = -out.normal;
   out.linearity = static_cast<float>((l[2] - l[1]) / l[2]);
   out.planarity = static_cast<float>((l[1] - l[0]) / l[2]);
@@ -48,15 +65,35 @@ SurfacePoint surface_from(const Scatter& scatter, const Eigen::Vector3f& point) 
 std::vector<SurfacePoint> estimate_surface(const std::vector<Eigen::Vector3f>& points,
                                            const NeighborPairs& pairs, float radius) {
   ADIT_CHECK(pairs.num_points() == points.size(), "the pairs belong to these points");
+  std::vector<Four> padded;
+  padded.reserve(points.size());
+  for (const Eigen::Vector3f& p : points) padded.push_back(Four{p.x(), p.y(), p.z(), 0.0F});
   std::vector<Scatter> scatters(points.size());
+  std::vector<std::uint32_t> near;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    for (const Neighbor& neighbor : pairs.row(i)) {
-      if (neighbor.squared_distance > radius * radius) continue;
-      const Eigen::Vector3f offset = points[neighbor.index] - points[i];
-      const Eigen::Matrix3f square = offset * offset.transpose();
-      scatters[i].add(offset, square);
-      scatters[neighbor.index].add(-offset, square);
+    const std::span<const Neighbor> row = pairs.row(i);
+    // written whether near or not, because no processor can guess which are
+    near.resize(std::max(near.size(), row.size()));
+    std::size_t num_near = 0;
+    for (const Neighbor& neighbor : row) {
+      near[num_near] = neighbor.index;
+      num_near += neighbor.squared_distance <= radius * radius ? 1 : 0;
     }
+    Scatter own = scatters[i];
+    for (std::size_t k = 0; k < num_near; ++k) {
+      Scatter& other = scatters[near[k]];
+      const Four offset = padded[near[k]] - padded[i];
+      const Four squares = offset * offset;
+      const Four products = offset * Four{offset[1], offset[2], offset[0], 0.0F};
+      constexpr Four kOne = {0.0F, 0.0F, 0.0F, 1.0F};
+      own.sum += offset + kOne;
+      own.squares += squares;
+      own.products += products;
+      other.sum -= offset - kOne;
+      other.squares += squares;
+      other.products += products;
+    }
+    scatters[i] = own;
   }
   std::vector<SurfacePoint> out;
   out.reserve(points.size());

@@ -17,12 +17,16 @@ namespace adit {
 /// that no earlier search found. What is symmetric in a pair (a covariance, a pair feature) is thus computed
 /// once for both.
 struct NeighborPairs {
-  std::vector<std::uint32_t> row_begin;  ///< One a point, and the end of the last; empty for an empty cloud.
+  struct Row {
+    std::uint32_t begin = 0;
+    std::uint32_t end = 0;
+  };
+  std::vector<Row> rows;  ///< One a point, in any order of `neighbors`.
   std::vector<Neighbor> neighbors;
 
-  [[nodiscard]] std::size_t num_points() const { return row_begin.empty() ? 0 : row_begin.size() - 1; }
+  [[nodiscard]] std::size_t num_points() const { return rows.size(); }
   [[nodiscard]] std::span<const Neighbor> row(std::size_t i) const {
-    return std::span(neighbors).subspan(row_begin[i], row_begin[i + 1] - row_begin[i]);
+    return std::span(neighbors).subspan(rows[i].begin, rows[i].end - rows[i].begin);
   }
 };
 
@@ -30,5 +34,9 @@ struct NeighborPairs {
 /// that edge, so that a search reads half of 27 cells. Points with a NaN, infinite or absurd coordinate
 /// (beyond 10^6 radii from the origin) are in no pair. Throws ContractViolation unless radius > 0.
 [[nodiscard]] NeighborPairs find_pairs_within(const std::vector<Eigen::Vector3f>& points, float radius);
+
+/// The points' indices in the order of such cells: neighbours in space become neighbours in memory.
+[[nodiscard]] std::vector<std::uint32_t> order_by_cell(const std::vector<Eigen::Vector3f>& points,
+                                                       float cell_size);
 
 }  // namespace adit

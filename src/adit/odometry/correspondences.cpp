@@ -3,20 +3,24 @@
 #include "adit/odometry/correspondences.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "adit/core/vectors.hpp"
 
 namespace adit {
 namespace {
 
-// Share of a voxel by which searches look farther than they must, so that more points keep their neighbours.
-constexpr float kMargin = 0.05F;
+// Share of a voxel by which searches look farther than they must, so that their candidates are enough for
+// longer.
+constexpr float kMargin = 0.1F;
 // Share of the squared clearance that roundings cannot spoil.
 constexpr float kCertain = 0.9999F;
-// Stands for no neighbour.
-constexpr float kNowhere = 1e9F;
+// Coordinates of points that stand for none, and bounds that are none.
+constexpr float kNowhere = LocalMap::Candidates::kNowhere;
 
 constexpr std::size_t kBlock = Correspondences::kBlock;
+using Points = Correspondences::Points;
+using Followed = Correspondences::Followed;
 
 // The numbers of a pose.
 struct Constants {
@@ -33,62 +37,83 @@ struct Constants {
   }
 };
 
-// The functions below work on a block of points that lie as in Correspondences::Points.
-
-// out = T p
-ADIT_WIDE_VECTORS void transform(std::size_t stride, const Constants& constants, const float* __restrict p,
-                                 float* __restrict out) {
+ADIT_WIDE_VECTORS void transform(const Constants& constants, const Points& p, Points& out) {
   const Constants T = constants;
   for (std::size_t i = 0; i < kBlock; ++i) {
-    const auto x = static_cast<double>(p[i]);
-    const auto y = static_cast<double>(p[i + stride]);
-    const auto z = static_cast<double>(p[i + 2 * stride]);
-    out[i] = static_cast<float>(T.r00 * x + T.r01 * y + T.r02 * z + T.tx);
-    out[i + stride] = static_cast<float>(T.r10 * x + T.r11 * y + T.r12 * z + T.ty);
-    out[i + 2 * stride] = static_cast<float>(T.r20 * x + T.r21 * y + T.r22 * z + T.tz);
+    const auto x = static_cast<double>(p.x[i]);
+    const auto y = static_cast<double>(p.y[i]);
+    const auto z = static_cast<double>(p.z[i]);
+    out.x[i] = static_cast<float>(T.r00 * x + T.r01 * y + T.r02 * z + T.tx);
+    out.y[i] = static_cast<float>(T.r10 * x + T.r11 * y + T.r12 * z + T.ty);
+    out.z[i] = static_cast<float>(T.r20 * x + T.r21 * y + T.r22 * z + T.tz);
   }
 }
 
-// Marks points whose neighbour may be another by now. With m the way from the last search, d the distance to
-// its answer (or the farthest that counts) and c the clearance, d + m < c must hold, in squares.
-ADIT_WIDE_VECTORS void flag_stale(std::size_t stride, float max_distance, const float* __restrict at,
-                                  const float* __restrict searched, const float* __restrict neighbour,
-                                  const float* __restrict clearance2, const float* __restrict room2,
-                                  std::uint32_t* __restrict flags) {
-  const auto squared_distance = [&](std::size_t i, const float* to) {
-    const float x = at[i] - to[i];
-    const float y = at[i + stride] - to[i + stride];
-    const float z = at[i + 2 * stride] - to[i + 2 * stride];
-    return x * x + y * y + z * z;
-  };
+[[gnu::always_inline]] inline float squared_distance(const Points& a, const Points& b, std::size_t i) {
+  const float x = a.x[i] - b.x[i];
+  const float y = a.y[i] - b.y[i];
+  const float z = a.z[i] - b.z[i];
+  return x * x + y * y + z * z;
+}
+
+// Picks the nearest candidate of each point.
+ADIT_WIDE_VECTORS void choose(Followed& block) {
+  static_assert(LocalMap::Candidates::kNumber == 8);
+  const std::array<Points, 8>& candidates = block.candidates;
   for (std::size_t i = 0; i < kBlock; ++i) {
-    const float m2 = squared_distance(i, searched);
-    const float d2 = std::min(squared_distance(i, neighbour), max_distance * max_distance);
-    const float rest = kCertain * clearance2[i] - d2 - m2;
-    flags[i] = static_cast<std::uint32_t>(!(m2 < room2[i])) | static_cast<std::uint32_t>(!(rest > 0.0F)) |
+    float best2 = squared_distance(block.at, candidates[0], i);
+    float x = candidates[0].x[i];
+    float y = candidates[0].y[i];
+    float z = candidates[0].z[i];
+    // Written out, for a loop in here would keep the outer one from vectors.
+    const auto consider = [&](const Points& candidate) __attribute__((always_inline)) {
+      const float d2 = squared_distance(block.at, candidate, i);
+      x = d2 < best2 ? candidate.x[i] : x;
+      y = d2 < best2 ? candidate.y[i] : y;
+      z = d2 < best2 ? candidate.z[i] : z;
+      best2 = d2 < best2 ? d2 : best2;
+    };
+    consider(candidates[1]);
+    consider(candidates[2]);
+    consider(candidates[3]);
+    consider(candidates[4]);
+    consider(candidates[5]);
+    consider(candidates[6]);
+    consider(candidates[7]);
+    block.neighbour.x[i] = x;
+    block.neighbour.y[i] = y;
+    block.neighbour.z[i] = z;
+  }
+}
+
+// Marks points that need a search. With m the way from the last one, d the distance to the nearest candidate
+// (or the farthest that counts) and c the clearance, they do not if d + m < c; here in squares.
+ADIT_WIDE_VECTORS void mark_stale(const Followed& block, float max_distance,
+                                  std::array<std::uint32_t, kBlock>& stale) {
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const float m2 = squared_distance(block.at, block.searched, i);
+    const float d2 = std::min(squared_distance(block.at, block.neighbour, i), max_distance * max_distance);
+    const float rest = kCertain * block.clearance2[i] - d2 - m2;
+    stale[i] = static_cast<std::uint32_t>(!(m2 < block.room2[i])) |
+               static_cast<std::uint32_t>(!(rest > 0.0F)) |
                static_cast<std::uint32_t>(!(rest * rest > 4.0F * d2 * m2));
   }
 }
 
-ADIT_WIDE_VECTORS void make_residuals(std::size_t stride, const Constants& constants, float max_distance,
-                                      const float* __restrict p, const float* __restrict at,
-                                      const float* __restrict neighbour, Correspondences::Block& block) {
+ADIT_WIDE_VECTORS void make_residuals(const Constants& constants, float max_distance, const Followed& from,
+                                      Correspondences::Block& block) {
   const Constants T = constants;
   for (std::size_t i = 0; i < kBlock; ++i) {
-    const float dx = at[i] - neighbour[i];
-    const float dy = at[i + stride] - neighbour[i + stride];
-    const float dz = at[i + 2 * stride] - neighbour[i + 2 * stride];
-    const float d2 = dx * dx + dy * dy + dz * dz;
+    const float d2 = squared_distance(from.at, from.neighbour, i);
     block.found[i] = d2 < max_distance * max_distance ? 1.0 : 0.0;
   }
   for (std::size_t i = 0; i < kBlock; ++i) {
-    const auto x = static_cast<double>(p[i]);
-    const auto y = static_cast<double>(p[i + stride]);
-    const auto z = static_cast<double>(p[i + 2 * stride]);
-    const double ex = T.r00 * x + T.r01 * y + T.r02 * z + T.tx - static_cast<double>(neighbour[i]);
-    const double ey = T.r10 * x + T.r11 * y + T.r12 * z + T.ty - static_cast<double>(neighbour[i + stride]);
-    const double ez =
-        T.r20 * x + T.r21 * y + T.r22 * z + T.tz - static_cast<double>(neighbour[i + 2 * stride]);
+    const auto x = static_cast<double>(from.source.x[i]);
+    const auto y = static_cast<double>(from.source.y[i]);
+    const auto z = static_cast<double>(from.source.z[i]);
+    const double ex = T.r00 * x + T.r01 * y + T.r02 * z + T.tx - static_cast<double>(from.neighbour.x[i]);
+    const double ey = T.r10 * x + T.r11 * y + T.r12 * z + T.ty - static_cast<double>(from.neighbour.y[i]);
+    const double ez = T.r20 * x + T.r21 * y + T.r22 * z + T.tz - static_cast<double>(from.neighbour.z[i]);
     block.px[i] = x;
     block.py[i] = y;
     block.pz[i] = z;
@@ -98,53 +123,60 @@ ADIT_WIDE_VECTORS void make_residuals(std::size_t stride, const Constants& const
   }
 }
 
+void set(Points& points, std::size_t i, const Eigen::Vector3f& p) {
+  points.x[i] = p.x();
+  points.y[i] = p.y();
+  points.z[i] = p.z();
+}
+
 }  // namespace
 
 Correspondences::Correspondences(std::span<const Eigen::Vector3f> source, const LocalMap& map,
                                  double max_distance)
     : map_(&map),
       max_distance_(static_cast<float>(max_distance)),
-      stride_((source.size() + kBlock - 1) / kBlock * kBlock),
-      source_(3 * stride_),
-      at_(3 * stride_),
-      searched_(3 * stride_),
-      neighbour_(3 * stride_, kNowhere),
-      clearance2_(stride_, kNowhere * kNowhere),
-      room2_(stride_, kNowhere * kNowhere) {
-  for (std::size_t i = 0; i < source.size(); ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      source_[i + axis * stride_] = source[i][static_cast<Eigen::Index>(axis)];
-    clearance2_[i] = 0.0F;
+      blocks_((source.size() + kBlock - 1) / kBlock) {
+  for (std::size_t i = 0; i < blocks_.size() * kBlock; ++i) {
+    Followed& block = blocks_[i / kBlock];
+    const bool real = i < source.size();
+    set(block.source, i % kBlock, real ? source[i] : Eigen::Vector3f::Zero());
+    block.clearance2[i % kBlock] = real ? 0.0F : kNowhere * kNowhere;
+    block.room2[i % kBlock] = kNowhere * kNowhere;
+    if (real) continue;
+    for (Points& candidate : block.candidates)
+      set(candidate, i % kBlock, Eigen::Vector3f::Constant(kNowhere));
   }
 }
 
 void Correspondences::residuals(std::size_t index, const Pose& T_map_base, Block& block) {
-  const std::size_t begin = index * kBlock;
   const Constants T(T_map_base);
-  transform(stride_, T, &source_[begin], &at_[begin]);
+  Followed& followed = blocks_[index];
+  transform(T, followed.source, followed.at);
+  choose(followed);
   std::array<std::uint32_t, kBlock> stale;
-  flag_stale(stride_, max_distance_, &at_[begin], &searched_[begin], &neighbour_[begin], &clearance2_[begin],
-             &room2_[begin], stale.data());
+  mark_stale(followed, max_distance_, stale);
+  bool any = false;
   for (std::size_t i = 0; i < kBlock; ++i)
-    if (stale[i] != 0) search(begin + i);
-  make_residuals(stride_, T, max_distance_, &source_[begin], &at_[begin], &neighbour_[begin], block);
+    if (stale[i] != 0) {
+      search(followed, i);
+      any = true;
+    }
+  if (any) choose(followed);
+  make_residuals(T, max_distance_, followed, block);
 }
 
-void Correspondences::search(std::size_t i) {
-  const Eigen::Vector3f query(at_[i], at_[i + stride_], at_[i + 2 * stride_]);
-  const float margin = kMargin * static_cast<float>(map_->voxel_size());
-  const LocalMap::Found found = map_->search(query, max_distance_, margin);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    searched_[i + axis * stride_] = query[static_cast<Eigen::Index>(axis)];
-    neighbour_[i + axis * stride_] =
-        found.nearest ? found.nearest->point[static_cast<Eigen::Index>(axis)] : kNowhere;
-  }
+void Correspondences::search(Followed& block, std::size_t i) const {
+  const Eigen::Vector3f query(block.at.x[i], block.at.y[i], block.at.z[i]);
+  const LocalMap::Candidates found =
+      map_->search(query, max_distance_, kMargin * static_cast<float>(map_->voxel_size()));
+  set(block.searched, i, query);
+  for (std::size_t k = 0; k < found.points.size(); ++k) set(block.candidates[k], i, found.points[k]);
   const auto squared = [](float bound) {
     const float b = std::clamp(bound, 0.0F, kNowhere);
     return b * b;
   };
-  clearance2_[i] = squared(found.clearance);
-  room2_[i] = squared(found.room);
+  block.clearance2[i] = squared(found.clearance);
+  block.room2[i] = squared(found.room);
 }
 
 }  // namespace adit

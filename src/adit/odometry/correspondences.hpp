@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -12,10 +11,11 @@
 
 namespace adit {
 
-/// A scan's nearest neighbours in the map (LocalMap::nearest), from one pose to the next. A point whose
-/// neighbour was d away, with all others at least c away, keeps it without a search as long as the triangle
-/// inequality says that no other can have come nearer: after a motion by m while the new distance to the
-/// neighbour is below c - m. That is exact, and most points hardly move in the later iterations of ICP.
+/// A scan's nearest neighbours in the map (LocalMap::nearest), from one pose to the next. Each point keeps
+/// the candidates of its last search, when all others were at least c away. As long as it has moved by m
+/// since and a candidate is nearer than c - m, no other point can be the nearest, says the triangle
+/// inequality, and no search is needed. That is exact, and in the later iterations of ICP most points hardly
+/// move.
 class Correspondences {
  public:
   /// Points handled together.
@@ -33,25 +33,29 @@ class Correspondences {
   /// `source` in the base frame; the map must stay as it is while this is used.
   Correspondences(std::span<const Eigen::Vector3f> source, const LocalMap& map, double max_distance);
 
-  [[nodiscard]] std::size_t num_blocks() const { return stride_ / kBlock; }
+  [[nodiscard]] std::size_t num_blocks() const { return blocks_.size(); }
   /// Block `index` of the source at this pose. Several blocks may be asked for at the same time.
   void residuals(std::size_t index, const Pose& T_map_base, Block& block);
 
- private:
-  /// x of all points, then y, then z: `stride_` floats each.
-  using Points = std::vector<float>;
+  struct Points {
+    std::array<float, kBlock> x, y, z;
+  };
+  /// What is kept of a block. Places behind the last point never need a search.
+  struct Followed {
+    Points source;     ///< Base frame; all others map frame.
+    Points at;         ///< The same at the last pose.
+    Points neighbour;  ///< The nearest candidate to that.
+    Points searched;   ///< Where the last search for each was made,
+    std::array<Points, LocalMap::Candidates::kNumber> candidates;  ///< its answer,
+    std::array<float, kBlock> clearance2, room2;                   ///< and the squares of its bounds.
+  };
 
-  void search(std::size_t i);
+ private:
+  void search(Followed& block, std::size_t i) const;
 
   const LocalMap* map_;
   float max_distance_;
-  std::size_t stride_;  ///< Number of points rounded up to whole blocks; what is behind them never counts.
-  Points source_;       ///< Base frame.
-  Points at_;           ///< The same in the map frame at the last pose.
-  Points searched_;     ///< Where the last search for each was made,
-  Points neighbour_;    ///< its answer,
-  std::vector<float> clearance2_;  ///< and the squares of the bounds of LocalMap::Found.
-  std::vector<float> room2_;
+  std::vector<Followed> blocks_;
 };
 
 }  // namespace adit

@@ -25,6 +25,10 @@ Four min(Four a, Four b) { return a < b ? a : b; }
 Four max(Four a, Four b) { return a < b ? b : a; }
 Four all(float x) { return Four{x, x, x, x}; }
 float sum(Four v) { return (v[0] + v[1]) + (v[2] + v[3]); }
+float least(Four v) {
+  v = min(v, __builtin_shuffle(v, FourInts{2, 3, 0, 1}));
+  return std::min(v[0], v[1]);
+}
 
 // A block of points is a row of groups: four x, four y, four z.
 constexpr std::size_t kGroup = 12;
@@ -42,39 +46,35 @@ struct Offsets {
   [[nodiscard]] Four squared_norms() const { return x * x + y * y + z * z; }
 };
 
-struct NearestTwo {
-  float first = kNowhere;
-  float second = kNowhere;
-};
+// Smallest of the squared distances from `q` to the points of a block.
+float nearest_in_block(const float* block, std::size_t num_points, const Eigen::Vector3f& q) {
+  Four first = all(kNowhere);
+  for (const float* group = block; group < block + num_points * kGroup / 4; group += kGroup)
+    first = min(first, Offsets(group, q).squared_norms());
+  return least(first);
+}
 
-// Smallest two squared distances from `q` to the points of a block.
-NearestTwo nearest_two(const float* block, std::size_t num_points, const Eigen::Vector3f& q) {
+// In each of four lanes the two smallest squared distances seen, where their points are, and the third.
+struct NearestOfLanes {
   Four first = all(kNowhere);
   Four second = all(kNowhere);
-  for (const float* group = block; group < block + num_points * kGroup / 4; group += kGroup) {
-    const Four d2 = Offsets(group, q).squared_norms();
-    second = min(second, max(first, d2));
-    first = min(first, d2);
-  }
-  // The two halves with each other, then the two lanes that are left.
-  const Four first_half = __builtin_shuffle(first, FourInts{2, 3, 0, 1});
-  const Four second_half = __builtin_shuffle(second, FourInts{2, 3, 0, 1});
-  second = min(min(second, second_half), max(first, first_half));
-  first = min(first, first_half);
-  return {std::min(first[0], first[1]), std::min({second[0], second[1], std::max(first[0], first[1])})};
-}
+  Four third = all(kNowhere);
+  FourInts first_at = {};
+  FourInts second_at = {};
 
-// The point of a block at this squared distance from `q`.
-Eigen::Vector3f point_at(const float* block, const Eigen::Vector3f& q, float d2) {
-  std::size_t k = 0;
-  while (true) {
-    const FourInts here = Offsets(block + k * kGroup / 4, q).squared_norms() == d2;
-    for (int lane = 0; lane < 4; ++lane, ++k)
-      if (here[lane] != 0)
-        return {block[position_in_block(k, 0)], block[position_in_block(k, 1)],
-                block[position_in_block(k, 2)]};
+  void add(const Four& d2, std::int32_t at) {
+    const FourInts ats = {at, at, at, at};
+    const FourInts before_first = d2 < first;
+    const Four rest = max(first, d2);
+    const FourInts rest_at = before_first ? first_at : ats;
+    first = min(first, d2);
+    first_at = before_first ? ats : first_at;
+    const FourInts before_second = rest < second;
+    third = min(third, max(second, rest));
+    second = min(second, rest);
+    second_at = before_second ? rest_at : second_at;
   }
-}
+};
 
 // out = T p for `n` points of three coordinates each.
 ADIT_WIDE_VECTORS void transform(const Eigen::Matrix<double, 3, 4>& T, std::size_t n,
@@ -116,83 +116,97 @@ LocalMap::LocalMap(double voxel_size, int max_points_per_voxel)
       min_squared_spacing_(static_cast<float>(voxel_size * voxel_size / max_points_per_voxel)),
       block_size_((max_points_per_voxel_ + 3U) / 4U * kGroup) {
   ADIT_CHECK(max_points_per_voxel > 0, "a map voxel holds at least one point");
+  ADIT_CHECK(max_points_per_voxel < 1 << kCountBits, "a map voxel holds at most 255 points");
 }
 
-std::size_t LocalMap::num_points() const {
-  std::size_t sum = 0;
-  for (const std::uint32_t n : num_points_) sum += n;
-  return sum;
-}
+std::size_t LocalMap::num_points() const { return points().size(); }
 
 std::vector<Eigen::Vector3f> LocalMap::points() const {
+  VoxelBricks::Reader voxels(voxels_);
   std::vector<Eigen::Vector3f> out;
-  for (std::size_t i = 0; i < num_points_.size(); ++i)
-    for (std::size_t k = 0; k < num_points_[i]; ++k)
+  for (std::size_t i = 0; i < first_.size(); ++i) {
+    if (first_[i].hasNaN()) continue;
+    for (std::size_t k = 0; k < count_of(voxels(keys_[i])); ++k)
       out.emplace_back(block(i)[position_in_block(k, 0)], block(i)[position_in_block(k, 1)],
                        block(i)[position_in_block(k, 2)]);
+  }
   return out;
 }
 
 void LocalMap::add(std::span<const Eigen::Vector3f> points_base, const Pose& T_map_base) {
   if (points_base.empty()) return;
-  std::size_t n = points_base.size();
+  const std::size_t n = points_base.size();
   new_points_.resize(n);
   new_keys_.resize(n);
-  new_voxels_.resize(n);
+  new_places_.resize(n);
   transform(T_map_base.matrix().topRows<3>(), n, points_base.data()->data(), new_points_.data()->data());
   grid_.keys_of(new_points_, new_keys_);
   // First all voxels, then all points: what comes next is then known and under way from memory.
   constexpr std::size_t kAhead = 8;
   for (std::size_t i = 0; i < n; ++i) {
-    if (i + kAhead < n) table_.prefetch(new_keys_[i + kAhead]);
-    if (new_keys_[i] != VoxelKey::none()) new_voxels_[i] = voxel_for(new_keys_[i]);
+    if (i + kAhead < n) voxels_.prefetch(new_keys_[i + kAhead]);
+    if (new_keys_[i] != VoxelKey::none()) new_places_[i] = voxels_.position_of(new_keys_[i]);
   }
   for (std::size_t i = 0; i < n; ++i) {
-    if (i + kAhead < n) __builtin_prefetch(block(new_voxels_[i + kAhead]));
-    if (new_keys_[i] != VoxelKey::none()) add_point(new_points_[i], new_voxels_[i]);
+    if (i + kAhead < n && new_keys_[i + kAhead] != VoxelKey::none())
+      __builtin_prefetch(coordinates_.data() + block_of(voxels_[new_places_[i + kAhead]]) * block_size_);
+    if (new_keys_[i] != VoxelKey::none()) add_point(new_points_[i], new_keys_[i], voxels_[new_places_[i]]);
   }
 }
 
-void LocalMap::add_point(const Eigen::Vector3f& point, std::uint32_t voxel) {
-  std::uint32_t& num_points = num_points_[voxel];
-  float* x = block(voxel);
-  if (num_points >= max_points_per_voxel_ || nearest_two(x, num_points, point).first < min_squared_spacing_)
+void LocalMap::add_point(const Eigen::Vector3f& point, VoxelKey key, std::uint32_t& voxel) {
+  const std::uint32_t count = count_of(voxel);
+  if (count == 0) {
+    voxel = new_block(key, point) << kCountBits;
+  } else if (count >= max_points_per_voxel_ ||
+             nearest_in_block(block(block_of(voxel)), count, point) < min_squared_spacing_) {
     return;
-  if (num_points == 0) first_[voxel] = point;
+  }
   for (std::size_t axis = 0; axis < 3; ++axis)
-    x[position_in_block(num_points, axis)] = point[static_cast<Eigen::Index>(axis)];
-  ++num_points;
+    block(block_of(voxel))[position_in_block(count, axis)] = point[static_cast<Eigen::Index>(axis)];
+  ++voxel;
 }
 
-std::uint32_t LocalMap::voxel_for(VoxelKey key) {
-  const auto next = free_.empty() ? static_cast<std::uint32_t>(keys_.size()) : free_.back();
-  if (const auto known = table_.find_or_insert(key, next)) return *known;
+std::uint32_t LocalMap::new_block(VoxelKey key, const Eigen::Vector3f& first) {
   if (free_.empty()) {
+    ADIT_CHECK(keys_.size() < std::size_t{1} << (32U - kCountBits), "the map has no room for more voxels");
     keys_.push_back(key);
-    num_points_.push_back(0);
-    first_.emplace_back();
+    first_.push_back(first);
     coordinates_.resize(coordinates_.size() + block_size_, kNowhere);
-  } else {
-    keys_[next] = key;
-    free_.pop_back();
+    return static_cast<std::uint32_t>(keys_.size() - 1);
   }
-  return next;
+  const std::uint32_t number = free_.back();
+  free_.pop_back();
+  keys_[number] = key;
+  first_[number] = first;
+  return number;
 }
 
 void LocalMap::remove_beyond(const Eigen::Vector3f& centre, double max_distance) {
   const auto max2 = static_cast<float>(max_distance * max_distance);
   for (std::uint32_t i = 0; i < first_.size(); ++i) {
     if (!((first_[i] - centre).squaredNorm() > max2)) continue;
-    table_.erase(keys_[i]);
-    num_points_[i] = 0;
+    voxels_.clear(keys_[i]);
     first_[i].setConstant(std::numeric_limits<float>::quiet_NaN());
     std::fill_n(block(i), block_size_, kNowhere);
     free_.push_back(i);
   }
 }
 
-LocalMap::Found LocalMap::search(const Eigen::Vector3f& query, float max_distance, float margin) const {
-  Found out;
+std::optional<LocalMap::Neighbour> LocalMap::nearest(const Eigen::Vector3f& query, float max_distance) const {
+  const Candidates candidates = search(query, max_distance, 0.0F);
+  Neighbour best{{}, max_distance * max_distance};
+  for (const Eigen::Vector3f& candidate : candidates.points) {
+    const float d2 = (candidate - query).squaredNorm();
+    if (d2 < best.squared_distance) best = {candidate, d2};
+  }
+  if (!(best.squared_distance < max_distance * max_distance)) return {};
+  return best;
+}
+
+LocalMap::Candidates LocalMap::search(const Eigen::Vector3f& query, float max_distance, float margin) const {
+  Candidates out;
+  out.points.fill(Eigen::Vector3f::Constant(Candidates::kNowhere));
   const auto key = grid_.key_of(query);
   if (!key) return out;
   const float size = grid_.voxel_size();
@@ -201,50 +215,59 @@ LocalMap::Found LocalMap::search(const Eigen::Vector3f& query, float max_distanc
                                       Slabs(to_lower.z(), size)};
   float best2 = max_distance * max_distance;
   float limit2 = (max_distance + margin) * (max_distance + margin);
-  float others2 = kNowhere;
-  std::optional<std::uint32_t> best_voxel;
+  float skipped2 = kNowhere;
+  NearestOfLanes near;
+  VoxelBricks::Reader voxels(voxels_);
   // From near to far along each axis: where one voxel is out of the limit, so are those behind it.
   for (std::size_t z = 0; z < 3; ++z) {
     const float gap2_z = slabs[2].gap2[z];
     if (gap2_z >= limit2) {
-      others2 = std::min(others2, gap2_z);
+      skipped2 = std::min(skipped2, gap2_z);
       break;
     }
     for (std::size_t y = 0; y < 3; ++y) {
       const float gap2_yz = slabs[1].gap2[y] + gap2_z;
       if (gap2_yz >= limit2) {
-        others2 = std::min(others2, gap2_yz);
+        skipped2 = std::min(skipped2, gap2_yz);
         break;
       }
       for (std::size_t x = 0; x < 3; ++x) {
         const float gap2 = slabs[0].gap2[x] + gap2_yz;
         if (gap2 >= limit2) {
-          others2 = std::min(others2, gap2);
+          skipped2 = std::min(skipped2, gap2);
           break;
         }
-        const auto voxel =
-            table_.find(key->shifted(slabs[0].offset[x], slabs[1].offset[y], slabs[2].offset[z]));
-        if (!voxel) continue;
-        const NearestTwo two = nearest_two(block(*voxel), num_points_[*voxel], query);
-        if (two.first < best2) {
-          if (best_voxel) others2 = std::min(others2, best2);
-          others2 = std::min(others2, two.second);
-          best2 = two.first;
-          best_voxel = voxel;
+        const std::uint32_t voxel =
+            voxels(key->shifted(slabs[0].offset[x], slabs[1].offset[y], slabs[2].offset[z]));
+        if (voxel == 0) continue;
+        const std::size_t begin = block_of(voxel) * block_size_ / kGroup;
+        const std::size_t end = begin + (count_of(voxel) + 3) / 4;
+        for (std::size_t group = begin; group < end; ++group)
+          near.add(Offsets(&coordinates_[group * kGroup], query).squared_norms(),
+                   static_cast<std::int32_t>(group));
+        const float nearest2 = least(near.first);
+        if (nearest2 < best2) {
+          best2 = nearest2;
           const float limit = std::sqrt(best2) + margin;
           limit2 = limit * limit;
-        } else {
-          others2 = std::min(others2, two.first);
         }
       }
     }
   }
-  if (best_voxel) out.nearest = {point_at(block(*best_voxel), query, best2), best2};
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    const auto point = [&](float d2, std::int32_t group) -> Eigen::Vector3f {
+      if (d2 == kNowhere) return Eigen::Vector3f::Constant(Candidates::kNowhere);
+      const float* x = &coordinates_[static_cast<std::size_t>(group) * kGroup + lane];
+      return {x[0], x[4], x[8]};
+    };
+    out.points[2 * lane] = point(near.first[lane], near.first_at[lane]);
+    out.points[2 * lane + 1] = point(near.second[lane], near.second_at[lane]);
+  }
   // Beyond the neighbourhood nothing is nearer than its border, wherever the query goes. That settles it
   // where the nearest point is within; else the query must stay in its voxel.
   const float rounding = kRounding * query.cwiseAbs().maxCoeff();
   const float to_face = std::min({slabs[0].near, slabs[1].near, slabs[2].near});
-  out.clearance = std::sqrt(others2) - rounding;
+  out.clearance = std::sqrt(std::min(skipped2, least(near.third))) - rounding;
   out.room = kNowhere;
   if (out.clearance > size + to_face - rounding) {
     if (best2 < size * size)
@@ -261,11 +284,13 @@ LocalMap::Moments LocalMap::moments_within(const Eigen::Vector3f& centre, float 
   Four count = {};
   Four sums[3] = {};
   Four squares[6] = {};
+  VoxelBricks::Reader voxels(voxels_);
   for (int i = 0; i < 27; ++i) {
-    const auto voxel = table_.find(key->shifted(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-    if (!voxel) continue;
-    const float* end = block(*voxel) + num_points_[*voxel] * kGroup / 4;
-    for (const float* group = block(*voxel); group < end; group += kGroup) {
+    const std::uint32_t voxel = voxels(key->shifted(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+    if (voxel == 0) continue;
+    const float* points = block(block_of(voxel));
+    const float* end = points + count_of(voxel) * kGroup / 4;
+    for (const float* group = points; group < end; group += kGroup) {
       const Offsets offset(group, centre);
       const FourInts within = offset.squared_norms() < radius * radius;
       // Unused places: infinity times 0 would not be 0.

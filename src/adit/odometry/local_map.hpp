@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "adit/core/pose.hpp"
-#include "adit/geometry/voxel_grid.hpp"
+#include "adit/geometry/voxel_bricks.hpp"
 
 namespace adit {
 
@@ -22,11 +22,12 @@ class LocalMap {
     float squared_distance = 0.0F;
   };
 
-  /// The answer of `search`, and how long it stands: `nearest` stays the answer for a query that has moved by
-  /// m < room, as long as its distance (or the greatest that counts, if there is none) is below clearance -
-  /// m.
-  struct Found {
-    std::optional<Neighbour> nearest;
+  /// Points near a query, and how long they are enough to know the nearest: for a query that has moved by
+  /// m < room it is among them, or farther than clearance - m.
+  struct Candidates {
+    static constexpr std::size_t kNumber = 8;
+    static constexpr float kNowhere = 1e9F;  ///< Coordinates of points that stand for none.
+    std::array<Eigen::Vector3f, kNumber> points;
     float clearance = 0.0F;  ///< Metres: all other points that the search is about are at least so far.
     float room = 0.0F;       ///< Metres: so far the query may move until the search is about other points.
   };
@@ -42,8 +43,8 @@ class LocalMap {
   LocalMap(double voxel_size, int max_points_per_voxel);
 
   [[nodiscard]] double voxel_size() const { return static_cast<double>(grid_.voxel_size()); }
-  [[nodiscard]] bool empty() const { return table_.size() == 0; }
-  [[nodiscard]] std::size_t num_voxels() const { return table_.size(); }
+  [[nodiscard]] bool empty() const { return num_voxels() == 0; }
+  [[nodiscard]] std::size_t num_voxels() const { return first_.size() - free_.size(); }
   [[nodiscard]] std::size_t num_points() const;
   [[nodiscard]] std::vector<Eigen::Vector3f> points() const;
 
@@ -53,36 +54,38 @@ class LocalMap {
   /// Removes each voxel whose first point is farther than `max_distance` from `centre`.
   void remove_beyond(const Eigen::Vector3f& centre, double max_distance);
 
-  /// The nearest point strictly nearer than `max_distance`, of the 27 voxels around the query; voxels within
-  /// `margin` of it are looked at as well, so that the clearance says more.
-  [[nodiscard]] Found search(const Eigen::Vector3f& query, float max_distance, float margin) const;
-  [[nodiscard]] std::optional<Neighbour> nearest(const Eigen::Vector3f& query, float max_distance) const {
-    return search(query, max_distance, 0.0F).nearest;
-  }
+  /// The nearest point strictly nearer than `max_distance`, of the 27 voxels around the query.
+  [[nodiscard]] std::optional<Neighbour> nearest(const Eigen::Vector3f& query, float max_distance) const;
+  /// The same point and others; with more `margin`, metres, they are enough for longer.
+  [[nodiscard]] Candidates search(const Eigen::Vector3f& query, float max_distance, float margin) const;
   /// Of the points nearer than `radius` (at most one voxel) to `centre`.
   [[nodiscard]] Moments moments_within(const Eigen::Vector3f& centre, float radius) const;
 
  private:
-  [[nodiscard]] const float* block(std::size_t voxel) const {
-    return coordinates_.data() + voxel * block_size_;
+  // What `voxels_` says of a voxel that holds points: number of its block and of its points.
+  static constexpr std::uint32_t kCountBits = 8;
+  [[nodiscard]] static std::uint32_t block_of(std::uint32_t voxel) { return voxel >> kCountBits; }
+  [[nodiscard]] static std::uint32_t count_of(std::uint32_t voxel) {
+    return voxel & ((1U << kCountBits) - 1U);
   }
-  [[nodiscard]] float* block(std::size_t voxel) { return coordinates_.data() + voxel * block_size_; }
-  [[nodiscard]] std::uint32_t voxel_for(VoxelKey key);
-  void add_point(const Eigen::Vector3f& point, std::uint32_t voxel);
+
+  [[nodiscard]] const float* block(std::size_t number) const { return &coordinates_[number * block_size_]; }
+  [[nodiscard]] float* block(std::size_t number) { return &coordinates_[number * block_size_]; }
+  [[nodiscard]] std::uint32_t new_block(VoxelKey key, const Eigen::Vector3f& first);
+  void add_point(const Eigen::Vector3f& point, VoxelKey key, std::uint32_t& voxel);
 
   VoxelGrid grid_;
   std::uint32_t max_points_per_voxel_;
   float min_squared_spacing_;
   std::size_t block_size_;  ///< Floats a voxel.
-  VoxelTable table_;
-  std::vector<VoxelKey> keys_;             ///< Of each block.
-  std::vector<std::uint32_t> num_points_;  ///< Of each block; 0 where it is free for the next new voxel.
-  std::vector<Eigen::Vector3f> first_;     ///< First point of each block; NaN where it is free.
-  std::vector<float> coordinates_;         ///< Unused places hold infinity: never near anything.
-  std::vector<std::uint32_t> free_;
+  VoxelBricks voxels_;
+  std::vector<VoxelKey> keys_;               ///< Of each block.
+  std::vector<Eigen::Vector3f> first_;       ///< First point of each block; NaN where it is free.
+  std::vector<float> coordinates_;           ///< Unused places hold infinity: never near anything.
+  std::vector<std::uint32_t> free_;          ///< Blocks for the next new voxels.
   std::vector<Eigen::Vector3f> new_points_;  ///< Of the scan that is being added,
   std::vector<VoxelKey> new_keys_;           ///< their voxels,
-  std::vector<std::uint32_t> new_voxels_;    ///< and the blocks of these.
+  std::vector<std::uint32_t> new_places_;    ///< and where these lie in `voxels_`.
 };
 
 }  // namespace adit

@@ -44,6 +44,18 @@ PlaceIndexConfig config_of(const std::string& search, double max_distance = 1.0)
   return config;
 }
 
+void expect_nearest(const std::vector<LoopCandidate>& found, std::vector<LoopCandidate> all,
+                    std::size_t wanted) {
+  std::ranges::stable_sort(all, {}, &LoopCandidate::distance);
+  all.resize(std::min(all.size(), wanted));
+  ASSERT_EQ(found.size(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(found[i].match, all[i].match);
+    EXPECT_EQ(found[i].distance, all[i].distance);
+    EXPECT_EQ(found[i].yaw, all[i].yaw);
+  }
+}
+
 TEST(PlaceIndex, FindsThePlaceAndTheTurn) {
   Rng rng(1);
   PlaceIndex index(config_of("ring_key", 0.2));
@@ -83,6 +95,49 @@ TEST(PlaceIndex, BruteForceIsTheLeastDistanceOfAll) {
     agreed += exact->match == quick->match ? 1 : 0;
   }
   EXPECT_GT(agreed, 3);
+}
+
+/// With a tenth of the sectors seen by neither, one or both; and all of them the same but for the turn.
+ScanContext patchy_place(Rng& rng) {
+  ScanContext place = random_place(rng, rng.uniform(0.0, 6.0), 77 + rng.below(40));
+  std::vector<float> heights;
+  for (int s = 0; s < place.num_sectors; ++s) {
+    const bool is_seen = rng.uniform() < 0.9;
+    for (int r = 0; r < place.num_rings; ++r) heights.push_back(is_seen ? place.height(r, s) : 0.0F);
+  }
+  return from_heights(place.num_rings, place.num_sectors, heights);
+}
+
+TEST(PlaceIndex, BoundsLeaveOutNothingThatComparingWithAllWouldFind) {
+  Rng rng(8);
+  for (const bool is_patchy : {false, true}) {
+    for (const double max_distance : {0.1, 0.4, 1.0}) {
+      PlaceIndex brute(config_of("brute_force", max_distance));
+      PlaceIndex every(config_of("every_shift", max_distance));
+      const auto place = [&] { return is_patchy ? patchy_place(rng) : random_place(rng); };
+      std::vector<ScanContext> places;
+      for (std::uint32_t i = 0; i < 300; ++i) {
+        places.push_back(i % 7 == 6 ? places[i / 2] : place());  // equal ones too
+        brute.add({kOther, i}, places.back());
+        every.add({kOther, i}, places.back());
+      }
+      for (int round = 0; round < 10; ++round) {
+        const ScanContext query = place();
+        std::vector<LoopCandidate> aligned;
+        std::vector<LoopCandidate> at_all;
+        for (std::uint32_t i = 0; i < places.size(); ++i) {
+          const ContextMatch a = compare(query, places[i]);
+          const ContextMatch b = compare_all_shifts(query, places[i]);
+          if (a.distance <= max_distance) aligned.push_back({{kSelf, 0}, {kOther, i}, a.yaw, a.distance});
+          if (b.distance <= max_distance) at_all.push_back({{kSelf, 0}, {kOther, i}, b.yaw, b.distance});
+        }
+        for (const std::size_t wanted : {1U, 5U, 1000U}) {
+          expect_nearest(brute.best_matches({kSelf, 0}, query, kOther, wanted), aligned, wanted);
+          expect_nearest(every.best_matches({kSelf, 0}, query, kOther, wanted), at_all, wanted);
+        }
+      }
+    }
+  }
 }
 
 TEST(PlaceIndex, ManyCandidatesAreBruteForce) {

@@ -10,6 +10,7 @@
 
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
+#include "adit/core/vectors.hpp"
 
 namespace adit {
 namespace {
@@ -21,48 +22,113 @@ void check_config(ScanContextConfig config) {
   ADIT_CHECK(valid.has_value(), valid.error().message.c_str());
 }
 
-/// Angle of (x, y) in [0, 2 pi), to 2e-4 rad: a minimax polynomial of atan on [0, 1], folded out.
-float rough_angle(float x, float y) {
-  constexpr float kHalfPi = std::numbers::pi_v<float> / 2.0F;
-  const float ax = std::abs(x);
-  const float ay = std::abs(y);
-  const float t = std::min(ax, ay) / std::max({ax, ay, std::numeric_limits<float>::min()});
-  const float s = t * t;
-  float angle = ((-0.0464964749F * s + 0.15931422F) * s - 0.327622764F) * s * t + t;
-  angle = ay > ax ? kHalfPi - angle : angle;
-  angle = x < 0.0F ? 2.0F * kHalfPi - angle : angle;
-  return y < 0.0F ? 4.0F * kHalfPi - angle : angle;
-}
+/// Points are sorted into cells this many at a time: their columns stay in the first-level cache.
+constexpr std::size_t kChunk = 512;
+/// Equal cells often follow each other, and each copy of the grid takes every fourth point, so that no
+/// maximum waits for the one before.
+constexpr std::size_t kCopies = 4;
 
-/// Sector s holds the angles from s to s + 1 widths, counted from x to y. A rough angle names the sector or
-/// one beside it; the sides of the two border rays decide. (An arc tangent a point would be two thirds of the
-/// descriptor's cost.)
-class Sectors {
+/// The polar grid in the numbers that the search for a point's cell needs.
+class PolarGrid {
  public:
-  explicit Sectors(int num_sectors)
-      : width_inverse_(static_cast<float>(num_sectors / (2.0 * std::numbers::pi))) {
+  explicit PolarGrid(const ScanContextConfig& config)
+      : num_rings(config.num_rings),
+        num_sectors(config.num_sectors),
+        max_radius(static_cast<float>(config.max_radius_m)),
+        rings_per_metre(static_cast<float>(config.num_rings) / max_radius),
+        sectors_per_radian(static_cast<float>(config.num_sectors / (2.0 * std::numbers::pi))),
+        height_offset(static_cast<float>(config.height_offset_m)) {
     for (int s = 0; s <= num_sectors; ++s) {
       const double angle = 2.0 * std::numbers::pi * s / num_sectors;
       borders_.emplace_back(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)));
     }
   }
 
-  [[nodiscard]] std::size_t of(float x, float y) const {
-    const std::size_t last = borders_.size() - 2;
-    const std::size_t guess = std::min(static_cast<std::size_t>(rough_angle(x, y) * width_inverse_), last);
-    if (is_before(guess, x, y)) return guess == 0 ? last : guess - 1;
-    if (!is_before(guess + 1, x, y)) return guess == last ? 0 : guess + 1;
-    return guess;
+  [[nodiscard]] int num_cells() const { return num_rings * num_sectors; }
+
+  /// The cell beside the border between the sectors `guess` and the next one, on the side of (x, y).
+  [[nodiscard]] int moved_to_its_side(int cell, float x, float y) const {
+    const int guess = cell / num_rings;
+    const int last = num_sectors - 1;
+    int sector = guess;
+    if (is_before(guess, x, y)) {
+      sector = guess == 0 ? last : guess - 1;
+    } else if (!is_before(guess + 1, x, y)) {
+      sector = guess == last ? 0 : guess + 1;
+    }
+    return cell + (sector - guess) * num_rings;
   }
+
+  const int num_rings;
+  const int num_sectors;
+  const float max_radius;
+  const float rings_per_metre;
+  const float sectors_per_radian;
+  const float height_offset;
 
  private:
-  [[nodiscard]] bool is_before(std::size_t border, float x, float y) const {
-    return borders_[border].x() * y - borders_[border].y() * x < 0.0F;
+  [[nodiscard]] bool is_before(int border, float x, float y) const {
+    const Eigen::Vector2f& b = borders_[static_cast<std::size_t>(border)];
+    return b.x() * y - b.y() * x < 0.0F;
   }
 
-  float width_inverse_;
   std::vector<Eigen::Vector2f> borders_;
 };
+
+/// Points, coordinate by coordinate, and what becomes of them.
+struct Chunk {
+  float x[kChunk];
+  float y[kChunk];
+  float height[kChunk];  ///< Above -height_offset_m; 0 where the point is left out.
+  int cell[kChunk];      ///< Sector times number of rings plus ring; 0 where the point is left out.
+  int is_on_border[kChunk];
+};
+
+/// Angles are found to 2e-4 rad, by a minimax polynomial of atan on [0, 1], folded out. That names the sector
+/// of all points but those beside a border, whose sides decide later: an arc tangent a point would be two
+/// thirds of the descriptor's cost. No branches, so that the loop runs in vector registers.
+ADIT_WIDE_VECTORS void find_cells(const PolarGrid& grid, const Eigen::Vector3f* points, std::size_t n,
+                                  Chunk& out) {
+  constexpr float kHalfPi = std::numbers::pi_v<float> / 2.0F;
+  constexpr float kAngleError = 1e-3F;
+  const float max_radius = grid.max_radius;
+  const float rings_per_metre = grid.rings_per_metre;
+  const float sectors_per_radian = grid.sectors_per_radian;
+  const float offset = grid.height_offset;
+  const int num_rings = grid.num_rings;
+  const float last_ring = static_cast<float>(num_rings - 1);
+  const float last_sector = static_cast<float>(grid.num_sectors - 1);
+  const float margin = kAngleError * sectors_per_radian;
+  const float* coordinates = points->data();
+  for (std::size_t k = 0; k < n; ++k) {
+    const float x = coordinates[3 * k];
+    const float y = coordinates[3 * k + 1];
+    const float height = coordinates[3 * k + 2] + offset;
+    const float radius = std::sqrt(x * x + y * y);
+    const float ax = std::abs(x);
+    const float ay = std::abs(y);
+    const float shorter = ax < ay ? ax : ay;
+    const float longer = ax < ay ? ay : ax;
+    const float t = shorter / (longer > std::numeric_limits<float>::min() ? longer : 1.0F);
+    const float u = t * t;
+    float angle = ((-0.0464964749F * u + 0.15931422F) * u - 0.327622764F) * u * t + t;
+    angle = ay > ax ? kHalfPi - angle : angle;
+    angle = x < 0.0F ? 2.0F * kHalfPi - angle : angle;
+    angle = y < 0.0F ? 4.0F * kHalfPi - angle : angle;
+    const bool is_kept =  // written so that NaN fails
+        radius <= max_radius && height > 0.0F && height <= std::numeric_limits<float>::max();
+    const float at_sector = is_kept ? angle * sectors_per_radian : 0.0F;
+    const float at_ring = is_kept ? radius * rings_per_metre : 0.0F;
+    const int sector = static_cast<int>(at_sector < last_sector ? at_sector : last_sector);
+    const int ring = static_cast<int>(at_ring < last_ring ? at_ring : last_ring);
+    const float share = at_sector - static_cast<float>(sector);
+    out.x[k] = x;
+    out.y[k] = y;
+    out.height[k] = is_kept ? height : 0.0F;
+    out.cell[k] = sector * num_rings + ring;
+    out.is_on_border[k] = is_kept && (share < margin || share > 1.0F - margin) ? 1 : 0;
+  }
+}
 
 int positive_modulo(int a, int n) { return ((a % n) + n) % n; }
 
@@ -75,26 +141,16 @@ float shifted_dot(const std::vector<float>& a, const std::vector<float>& b, std:
   return va.head(n - k).dot(vb.tail(n - k)) + va.tail(k).dot(vb.head(k));
 }
 
-int num_shared_sectors(const ScanContext& query, const ScanContext& match, std::size_t shift) {
+int num_shared_sectors(const ScanContext& query, const ScanContext& match, int shift) {
   const std::size_t n = query.norms.size();
+  const auto turn = static_cast<std::size_t>(shift);
   const auto seen = [&](std::size_t q, std::size_t m) {
     return query.norms[q] > 0.0F && match.norms[m] > 0.0F ? 1 : 0;
   };
   int shared = 0;
-  for (std::size_t s = 0; s + shift < n; ++s) shared += seen(s, s + shift);
-  for (std::size_t s = n - shift; s < n; ++s) shared += seen(s, s + shift - n);
+  for (std::size_t s = 0; s + turn < n; ++s) shared += seen(s, s + turn);
+  for (std::size_t s = n - turn; s < n; ++s) shared += seen(s, s + turn - n);
   return shared;
-}
-
-/// Equations 5 and 6: because the columns have unit length, the cosines of all sectors together are one dot
-/// product.
-double distance_at(const ScanContext& query, const ScanContext& match, int shift) {
-  const auto sectors = static_cast<std::size_t>(shift);
-  const int shared = num_shared_sectors(query, match, sectors);
-  if (shared == 0) return 1.0;
-  const auto cells = sectors * static_cast<std::size_t>(query.num_rings);
-  const double cosines = shifted_dot(query.unit_columns, match.unit_columns, cells);
-  return std::clamp(1.0 - cosines / shared, 0.0, 1.0);
 }
 
 /// The shift at which the sector keys are nearest: their norms do not change, so it is where their product is
@@ -122,7 +178,7 @@ ContextMatch best_around(const ScanContext& query, const ScanContext& match, int
       best.shift = shift;
     }
   }
-  best.yaw = wrap_angle(2.0 * std::numbers::pi * best.shift / query.num_sectors);
+  best.yaw = yaw_of_shift(best.shift, query.num_sectors);
   return best;
 }
 
@@ -153,21 +209,25 @@ bool ScanContext::empty() const {
 
 ScanContext describe(const PointCloud& cloud_base, const ScanContextConfig& config) {
   check_config(config);
-  const Sectors sectors(config.num_sectors);
-  const auto num_rings = static_cast<std::size_t>(config.num_rings);
-  const auto max_radius = static_cast<float>(config.max_radius_m);
-  const auto offset = static_cast<float>(config.height_offset_m);
-  const float rings_per_metre = static_cast<float>(config.num_rings) / max_radius;
-  std::vector<float> heights(num_rings * static_cast<std::size_t>(config.num_sectors), 0.0F);
-  for (const Eigen::Vector3f& p : cloud_base.points) {
-    const float radius = std::sqrt(p.x() * p.x() + p.y() * p.y());
-    const float height = p.z() + offset;
-    // Written so that NaN fails.
-    if (!(radius <= max_radius && height > 0.0F && height <= std::numeric_limits<float>::max())) continue;
-    const std::size_t ring = std::min(static_cast<std::size_t>(radius * rings_per_metre), num_rings - 1);
-    float& cell = heights[sectors.of(p.x(), p.y()) * num_rings + ring];
-    cell = std::max(cell, height);
+  const PolarGrid grid(config);
+  const auto num_cells = static_cast<std::size_t>(grid.num_cells());
+  std::vector<float> heights(kCopies * num_cells, 0.0F);
+  Chunk chunk;
+  for (std::size_t begin = 0; begin < cloud_base.size(); begin += kChunk) {
+    const std::size_t n = std::min(kChunk, cloud_base.size() - begin);
+    find_cells(grid, &cloud_base.points[begin], n, chunk);
+    for (std::size_t k = 0; k < n; ++k) {
+      int cell = chunk.cell[k];
+      if (chunk.is_on_border[k] != 0) cell = grid.moved_to_its_side(cell, chunk.x[k], chunk.y[k]);
+      float& highest = heights[k % kCopies * num_cells + static_cast<std::size_t>(cell)];
+      highest = chunk.height[k] > highest ? chunk.height[k] : highest;
+    }
   }
+  for (std::size_t copy = 1; copy < kCopies; ++copy) {
+    for (std::size_t c = 0; c < num_cells; ++c)
+      heights[c] = std::max(heights[c], heights[copy * num_cells + c]);
+  }
+  heights.resize(num_cells);
   return from_heights(config.num_rings, config.num_sectors, heights);
 }
 
@@ -183,7 +243,7 @@ ScanContext from_heights(int num_rings, int num_sectors, std::span<const float> 
   context.num_sectors = num_sectors;
   context.unit_columns.assign(heights.begin(), heights.end());
   for (int s = 0; s < num_sectors; ++s) {
-    const float norm = cells.col(s).matrix().stableNorm();
+    const auto norm = static_cast<float>(cells.col(s).cast<double>().matrix().norm());
     context.norms.push_back(norm);
     context.sector_key.push_back(cells.col(s).mean());
     Eigen::Map<Eigen::ArrayXf> unit(context.unit_columns.data() + static_cast<std::ptrdiff_t>(s) * num_rings,
@@ -192,6 +252,20 @@ ScanContext from_heights(int num_rings, int num_sectors, std::span<const float> 
   }
   for (int r = 0; r < num_rings; ++r) context.ring_key.push_back(cells.row(r).mean());
   return context;
+}
+
+/// Equations 5 and 6: because the columns have unit length, the cosines of all sectors together are one dot
+/// product.
+double distance_at(const ScanContext& query, const ScanContext& match, int shift) {
+  const int shared = num_shared_sectors(query, match, shift);
+  if (shared == 0) return 1.0;
+  const auto cells = static_cast<std::size_t>(shift) * static_cast<std::size_t>(query.num_rings);
+  const double cosines = shifted_dot(query.unit_columns, match.unit_columns, cells);
+  return std::clamp(1.0 - cosines / shared, 0.0, 1.0);
+}
+
+double yaw_of_shift(int shift, int num_sectors) {
+  return wrap_angle(2.0 * std::numbers::pi * shift / num_sectors);
 }
 
 ContextMatch compare(const ScanContext& query, const ScanContext& match) {

@@ -72,6 +72,9 @@ struct ContextMatch {
   double yaw = 0.0;  ///< Heading of the query in the frame of the match: shift as an angle in (-pi, pi].
 };
 
+/// The distance at one shift, 0 to num_sectors - 1.
+[[nodiscard]] double distance_at(const ScanContext& query, const ScanContext& match, int shift);
+
 /// Aligns the sector keys over all shifts, then compares the columns at that shift and the 3 (a tenth of half
 /// the sectors) to either side. Two contexts that share no sector have distance 1. Of equal distances the
 /// smallest shift wins. Throws ContractViolation when the grids differ in size. Source: the same paper,
@@ -80,6 +83,9 @@ struct ContextMatch {
 
 /// The least distance over all shifts: slower than `compare`, never worse; its oracle.
 [[nodiscard]] ContextMatch compare_all_shifts(const ScanContext& query, const ScanContext& match);
+
+/// A shift as an angle in (-pi, pi].
+[[nodiscard]] double yaw_of_shift(int shift, int num_sectors);
 
 /// One byte a cell (heights in steps of a 255th of the greatest), for messages: 1.2 kB with the default grid.
 /// `decode` gives heights back to 0.2 % of the greatest. Errors: a truncated or malformed buffer.

@@ -6,7 +6,12 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <limits>
+#include <utility>
+
+#include "adit/core/check.hpp"
+#include "adit/core/vectors.hpp"
 
 namespace adit {
 namespace {
@@ -66,6 +71,48 @@ struct NearerVisitor {
   }
 };
 
+/// A box's squared distance, rounded down, and below it the number of the box: the least key is the nearest
+/// box.
+constexpr unsigned kIndexBits = 15;
+constexpr std::uint32_t kDone = ~std::uint32_t{0};
+constexpr std::uint32_t index_in(std::uint32_t key) { return key & ((1U << kIndexBits) - 1U); }
+constexpr std::size_t kBoxes = 16;
+constexpr std::size_t kAxes = 4;
+
+/// The keys of sixteen boxes; `low` and `high` hold sixteen values a direction.
+ADIT_WIDE_VECTORS void box_keys(const float* low, const float* high, const float* at,
+                                std::uint32_t first_index, std::uint32_t* keys) {
+  constexpr float kFar = 131071.0F;  // all the other bits
+  for (std::uint32_t b = 0; b < kBoxes; ++b) {
+    float sum = 0.0F;
+    for (std::size_t d = 0; d < kAxes; ++d) {
+      const float below = low[d * kBoxes + b] - at[d];
+      const float above = at[d] - high[d * kBoxes + b];
+      float gap = below > above ? below : above;
+      gap = gap > 0.0F ? gap : 0.0F;
+      sum += gap * gap;
+    }
+    sum = sum < kFar ? sum : kFar;
+    keys[b] = static_cast<std::uint32_t>(static_cast<std::int32_t>(sum)) << kIndexBits | (first_index + b);
+  }
+}
+
+ADIT_WIDE_VECTORS std::uint32_t least(const std::uint32_t* keys, std::size_t n) {
+  std::uint32_t out = kDone;
+  for (std::size_t k = 0; k < n; ++k) out = keys[k] < out ? keys[k] : out;
+  return out;
+}
+
+template <class Visitor>
+void visit(const DescriptorBlock& block, const DescriptorQuery& query, Visitor& visitor) {
+  std::array<std::uint16_t, DescriptorBlock::kLanes> distances;
+  const auto bound = static_cast<std::uint16_t>(std::min(visitor.bound, kMaxSquaredDistance));
+  for (std::uint32_t near = near_lanes(block, query, bound, distances); near != 0; near &= near - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(near));
+    if (distances[lane] <= visitor.bound) visitor.found(block.indices[lane], distances[lane]);
+  }
+}
+
 }  // namespace
 
 std::uint32_t squared_distance(const Descriptor& a, const Descriptor& b) {
@@ -77,41 +124,65 @@ std::uint32_t squared_distance(const Descriptor& a, const Descriptor& b) {
   return sum;
 }
 
+DescriptorIndex::Shelf::Shelf() {
+  for (std::size_t d = 0; d < kDirections; ++d) {
+    std::ranges::fill(low[d], std::numeric_limits<float>::infinity());
+    std::ranges::fill(high[d], -std::numeric_limits<float>::infinity());
+  }
+}
+
 DescriptorIndex::DescriptorIndex(const std::vector<Descriptor>& descriptors) {
   if (descriptors.empty()) return;
+  ADIT_CHECK(descriptors.size() <= std::size_t{1} << 23U, "groups are numbered by 15 bits");
   const Eigen::MatrixXf directions = principal_directions(descriptors, kDirections);
   for (int d = 0; d < kDescriptorSize; ++d) {
-    for (int k = 0; k < kDirections; ++k) directions_[d][k] = directions(d, k);
+    for (std::size_t k = 0; k < kDirections; ++k)
+      directions_[d][k] = directions(d, static_cast<Eigen::Index>(k));
   }
   std::vector<Item> items;
   items.reserve(descriptors.size());
   for (std::uint32_t i = 0; i < descriptors.size(); ++i) items.push_back({project(descriptors[i]), i});
-  leaves_.resize((items.size() + DescriptorBlock::kLanes - 1) / DescriptorBlock::kLanes);
-  boxes_.reserve(2 * leaves_.size());
-  build(items, 0, static_cast<std::uint32_t>(leaves_.size()), descriptors);
+  const auto parts = [](std::size_t n, std::size_t size) { return (n + size - 1) / size; };
+  blocks_.resize(parts(items.size(), DescriptorBlock::kLanes));
+  block_boxes_.resize(parts(blocks_.size(), kShelf));
+  group_boxes_.resize(parts(block_boxes_.size(), kShelf));
+  build(items, 0, static_cast<std::uint32_t>(blocks_.size()), descriptors);
 }
 
-void DescriptorIndex::build(std::span<Item> items, std::uint32_t first_leaf, std::uint32_t last_leaf,
-                            const std::vector<Descriptor>& descriptors) {
-  Box box{items.front().at, items.front().at};
-  for (const Item& item : items) {
-    box.low = item.at < box.low ? item.at : box.low;
-    box.high = item.at > box.high ? item.at : box.high;
+void DescriptorIndex::enclose(std::vector<Shelf>& shelves, std::size_t box, Projection low, Projection high) {
+  Shelf& shelf = shelves[box / kShelf];
+  for (std::size_t d = 0; d < kDirections; ++d) {
+    shelf.low[d][box % kShelf] = std::min(shelf.low[d][box % kShelf], low[d]);
+    shelf.high[d][box % kShelf] = std::max(shelf.high[d][box % kShelf], high[d]);
   }
-  boxes_.push_back(box);
-  if (last_leaf - first_leaf == 1) {
-    for (const Item& item : items) leaves_[first_leaf].append(descriptors[item.index], item.index);
+}
+
+/// Splits in the direction of the widest extent, at a border of blocks and, while there are several, of
+/// groups.
+void DescriptorIndex::build(std::span<Item> items, std::uint32_t first_block, std::uint32_t last_block,
+                            const std::vector<Descriptor>& descriptors) {
+  Projection low = items.front().at;
+  Projection high = items.front().at;
+  for (const Item& item : items) {
+    low = item.at < low ? item.at : low;
+    high = item.at > high ? item.at : high;
+  }
+  if (last_block - first_block == 1) {
+    enclose(block_boxes_, first_block, low, high);
+    enclose(group_boxes_, first_block / kShelf, low, high);
+    for (const Item& item : items) blocks_[first_block].append(descriptors[item.index], item.index);
     return;
   }
-  const Projection extent = box.high - box.low;
-  int axis = 0;
-  for (int k = 1; k < kDirections; ++k) axis = extent[k] > extent[axis] ? k : axis;
-  const std::uint32_t middle_leaf = first_leaf + (last_leaf - first_leaf) / 2;
-  const std::size_t middle = (middle_leaf - first_leaf) * DescriptorBlock::kLanes;
+  const Projection extent = high - low;
+  std::size_t widest = 0;
+  for (std::size_t d = 1; d < kDirections; ++d) widest = extent[d] > extent[widest] ? d : widest;
+  std::uint32_t half = (last_block - first_block) / 2;
+  if (last_block - first_block > kShelf) half = std::max(half / kShelf, 1U) * kShelf;
+  const std::size_t middle = half * DescriptorBlock::kLanes;
   std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(middle), items.end(),
-                   [axis](const Item& a, const Item& b) { return a.at[axis] < b.at[axis]; });
-  build(items.first(middle), first_leaf, middle_leaf, descriptors);
-  build(items.subspan(middle), middle_leaf, last_leaf, descriptors);
+                   [widest](const Item& a, const Item& b) { return a.at[widest] < b.at[widest]; });
+  build(items.first(middle), first_block, first_block + half, descriptors);
+  build(items.subspan(middle), first_block + half, last_block, descriptors);
 }
 
 DescriptorIndex::Projection DescriptorIndex::project(const Descriptor& descriptor) const {
@@ -123,52 +194,35 @@ DescriptorIndex::Projection DescriptorIndex::project(const Descriptor& descripto
 
 template <class Visitor>
 void DescriptorIndex::search(const Descriptor& descriptor, Visitor& visitor) const {
-  if (leaves_.empty()) return;
   const DescriptorQuery query(descriptor);
-  const Projection at = project(descriptor);
-  // rounding errs by less than that, so nothing that is near enough is passed over
-  const auto is_beyond = [&](float squared_gap) {
-    return squared_gap > 1.0001F * static_cast<float>(visitor.bound) + 0.25F;
+  const Projection projection = project(descriptor);
+  float at[kDirections];
+  std::memcpy(at, &projection, sizeof(at));
+  // Distances are whole numbers, and rounding in a box's distance errs by less than 1/4 + a 10,000th.
+  const auto is_beyond = [&](std::uint32_t key) {
+    return key >> kIndexBits > visitor.bound + (visitor.bound >> 11U);
   };
-  const auto squared_gap_to = [&](std::uint32_t node) {
-    const Box& box = boxes_[node];
-    const Projection below = box.low - at;
-    const Projection above = at - box.high;
-    Projection gap = below > above ? below : above;
-    gap = gap > 0.0F ? gap : Projection{};
-    gap *= gap;
-    return gap[0] + gap[1] + gap[2] + gap[3];
-  };
-  struct Subtree {
-    std::uint32_t node;
-    std::uint32_t first;  // leaves [first, last)
-    std::uint32_t last;
-    float squared_gap;
-  };
-  std::array<Subtree, 32> waiting;
-  std::size_t num_waiting = 0;
-  Subtree now{0, 0, static_cast<std::uint32_t>(leaves_.size()), squared_gap_to(0)};
-  std::array<std::uint16_t, DescriptorBlock::kLanes> distances;
+  std::vector<std::uint32_t> group_keys(group_boxes_.size() * kShelf);
+  for (std::uint32_t s = 0; s < group_boxes_.size(); ++s) {
+    const Shelf& shelf = group_boxes_[s];
+    box_keys(shelf.low[0], shelf.high[0], at, s * kShelf, &group_keys[std::size_t{s} * kShelf]);
+  }
   while (true) {
-    while (now.last - now.first > 1 && !is_beyond(now.squared_gap)) {
-      const std::uint32_t middle = now.first + (now.last - now.first) / 2;
-      const std::uint32_t right = now.node + 2 * (middle - now.first);
-      const Subtree children[2] = {{now.node + 1, now.first, middle, squared_gap_to(now.node + 1)},
-                                   {right, middle, now.last, squared_gap_to(right)}};
-      const bool left_is_nearer = children[0].squared_gap <= children[1].squared_gap;
-      now = children[left_is_nearer ? 0 : 1];
-      waiting[num_waiting++] = children[left_is_nearer ? 1 : 0];
+    const std::uint32_t group_key = least(group_keys.data(), group_keys.size());
+    if (is_beyond(group_key)) return;
+    const std::uint32_t group = index_in(group_key);
+    group_keys[group] = kDone;
+    std::uint32_t block_keys[kShelf];
+    const Shelf& shelf = block_boxes_[group];
+    box_keys(shelf.low[0], shelf.high[0], at, 0, block_keys);
+    while (true) {
+      const std::uint32_t block_key = least(block_keys, kShelf);
+      if (is_beyond(block_key)) break;
+      block_keys[index_in(block_key)] = kDone;
+      const DescriptorBlock& block = blocks_[group * kShelf + index_in(block_key)];
+      visit(block, query, visitor);
+      if (visitor.is_done()) return;
     }
-    if (!is_beyond(now.squared_gap)) {
-      const DescriptorBlock& block = leaves_[now.first];
-      const auto bound = static_cast<std::uint16_t>(std::min(visitor.bound, kMaxSquaredDistance));
-      for (std::uint32_t near = near_lanes(block, query, bound, distances); near != 0; near &= near - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(near));
-        if (distances[lane] <= visitor.bound) visitor.found(block.indices[lane], distances[lane]);
-      }
-    }
-    if (num_waiting == 0 || visitor.is_done()) return;
-    now = waiting[--num_waiting];
   }
 }
 

@@ -23,9 +23,10 @@ struct NearestTwo {
   bool operator==(const NearestTwo&) const = default;
 };
 
-/// Exact nearest neighbours among descriptors: a tree of boxes in the four directions in which they vary most
-/// (nine tenths of the variance of real scans), with sixteen descriptors a leaf that are compared at once.
-/// Among equally near ones the smaller index wins. Immutable; searches are thread-safe.
+/// Exact nearest neighbours among descriptors: sixteen a block, compared at once, and sixteen blocks a group,
+/// each with its box in the four directions in which descriptors vary most (nine tenths of the variance of
+/// real scans). The boxes' distances are found without a branch and visited in ascending order. Among equally
+/// near descriptors the smaller index wins. Immutable; searches are thread-safe.
 class DescriptorIndex {
  public:
   /// Throws ContractViolation when a descriptor has a squared norm above 32767 (three histograms of sum 100
@@ -40,28 +41,32 @@ class DescriptorIndex {
   [[nodiscard]] bool any_nearer(const Descriptor& query, std::uint32_t distance, std::uint32_t except) const;
 
  private:
-  static constexpr int kDirections = 4;
+  static constexpr std::size_t kDirections = 4;
+  static constexpr std::uint32_t kShelf = 16;
   /// One vector register (a type of GCC and Clang on every processor).
   using Projection [[gnu::vector_size(4 * kDirections)]] = float;
   struct Item {
     Projection at;
     std::uint32_t index;
   };
-  /// In preorder: the left child of a node follows it, the right child follows the left one's subtree, which
-  /// has one node less than twice its leaves.
-  struct Box {
-    Projection low;
-    Projection high;
+  /// Sixteen boxes side by side, for vector registers.
+  struct Shelf {
+    Shelf();  ///< Of empty boxes, infinitely far from everything.
+
+    float low[kDirections][kShelf];
+    float high[kDirections][kShelf];
   };
+  static void enclose(std::vector<Shelf>& shelves, std::size_t box, Projection low, Projection high);
   [[nodiscard]] Projection project(const Descriptor& descriptor) const;
-  void build(std::span<Item> items, std::uint32_t first_leaf, std::uint32_t last_leaf,
+  void build(std::span<Item> items, std::uint32_t first_block, std::uint32_t last_block,
              const std::vector<Descriptor>& descriptors);
   template <class Visitor>
   void search(const Descriptor& query, Visitor& visitor) const;
 
   Projection directions_[kDescriptorSize] = {};
-  std::vector<Box> boxes_;
-  std::vector<DescriptorBlock> leaves_;
+  std::vector<Shelf> group_boxes_;
+  std::vector<Shelf> block_boxes_;  ///< One a group.
+  std::vector<DescriptorBlock> blocks_;
 };
 
 }  // namespace adit

@@ -9,25 +9,59 @@
 
 namespace adit {
 
+namespace {
+
+/// One point a voxel, visited cell by cell, so that neighbours in space are neighbours in memory.
+struct Thinned {
+  Thinned(const PointCloud& cloud, double voxel_size, float cell_size) {
+    const std::vector<Eigen::Vector3f> centroids = voxel_centroids(cloud, voxel_size).points;
+    const std::vector<std::uint32_t> order = order_by_cell(centroids, cell_size);
+    points.resize(order.size());
+    places.resize(order.size());
+    for (std::uint32_t k = 0; k < order.size(); ++k) {
+      points[k] = centroids[order[k]];
+      places[order[k]] = k;
+    }
+  }
+  std::vector<Eigen::Vector3f> points;
+  std::vector<std::uint32_t> places;  ///< In `points`, of the voxels in the order in which they first occur.
+};
+
+}  // namespace
+
 /// Faster PFH (Lim et al., section III-B): one neighbour search serves the normals and the histograms.
 Features compute_features(const PointCloud& cloud, const RegistrationConfig& config) {
   const auto voxel = static_cast<float>(config.voxel_size);
   const float feature_radius = voxel * static_cast<float>(config.feature_radius_voxels);
   const float normal_radius = voxel * static_cast<float>(config.normal_radius_voxels);
-  const std::vector<Eigen::Vector3f> points = voxel_centroids(cloud, config.voxel_size).points;
-  const NeighborPairs pairs = find_pairs_within(points, feature_radius);
-  std::vector<SurfacePoint> surface = estimate_surface(points, pairs, normal_radius);
+  const Thinned thinned(cloud, config.voxel_size, feature_radius);
+  const NeighborPairs pairs = find_pairs_within(thinned.points, feature_radius);
+  std::vector<SurfacePoint> surface = estimate_surface(thinned.points, pairs, normal_radius);
   for (SurfacePoint& s : surface)
     s.valid = s.valid && s.linearity <= static_cast<float>(config.max_linearity);
-  const FpfhResult fpfh = compute_fpfh(points, surface, pairs);
+  const FpfhResult fpfh = compute_fpfh(thinned.points, surface, pairs);
   Features features;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!fpfh.usable[i]) continue;
-    features.points.push_back(points[i]);
-    features.normals.push_back(surface[i].normal);
-    features.descriptors.push_back(fpfh.descriptors[i]);
+  for (const std::uint32_t k : thinned.places) {
+    if (!fpfh.usable[k]) continue;
+    features.points.push_back(thinned.points[k]);
+    features.normals.push_back(surface[k].normal);
+    features.descriptors.push_back(fpfh.descriptors[k]);
   }
   return features;
+}
+
+OrientedPoints compute_surface(const PointCloud& cloud, const RegistrationConfig& config) {
+  const auto radius = static_cast<float>(config.voxel_size * config.normal_radius_voxels);
+  const Thinned thinned(cloud, config.voxel_size, radius);
+  const NeighborPairs pairs = find_pairs_within(thinned.points, radius);
+  const std::vector<SurfacePoint> surface = estimate_surface(thinned.points, pairs, radius);
+  OrientedPoints out;
+  for (const std::uint32_t k : thinned.places) {
+    if (!surface[k].valid) continue;
+    out.points.push_back(thinned.points[k]);
+    out.normals.push_back(surface[k].normal);
+  }
+  return out;
 }
 
 }  // namespace adit

@@ -28,4 +28,7 @@ struct Features : OrientedPoints {
 /// no error; what it means shows in the verdict of the registration.
 [[nodiscard]] Features compute_features(const PointCloud& cloud, const RegistrationConfig& config);
 
+/// The same without descriptors, of all points that have a surface around them.
+[[nodiscard]] OrientedPoints compute_surface(const PointCloud& cloud, const RegistrationConfig& config);
+
 }  // namespace adit

@@ -15,7 +15,7 @@ constexpr std::size_t kGrain = 512;
 /// More points make the answer no better.
 constexpr std::size_t kSample = 2500;
 /// Enough to tell which minimum a start leads to.
-constexpr std::size_t kSearchSample = 1000;
+constexpr std::size_t kSearchSample = 600;
 
 /// Proportional to the mean diagonal of the translational and of the rotational block: free of units.
 Vector6 gauss_newton_step(const PlaneEquations& sum) {

@@ -103,4 +103,12 @@ Registration register_clouds(const PointCloud& a, const PointCloud& b, const Reg
   return register_features(features[0], features[1], config);
 }
 
+Pose align_clouds(const PointCloud& a, const PointCloud& b, const Pose& T_a_b,
+                  const RegistrationConfig& config) {
+  const std::array<const PointCloud*, 2> clouds = {&a, &b};
+  std::array<OrientedPoints, 2> surfaces;
+  parallel_for_each(2, [&](std::size_t k) { surfaces[k] = compute_surface(*clouds[k], config); });
+  return align_to_planes(surfaces[0], KdTree(surfaces[0].points), surfaces[1], T_a_b, config);
+}
+
 }  // namespace adit

@@ -43,4 +43,9 @@ struct Registration {
 [[nodiscard]] Registration register_clouds(const PointCloud& a, const PointCloud& b,
                                            const RegistrationConfig& config);
 
+/// The pose near `T_a_b` at which the clouds' surfaces fit best: point-to-plane from this one guess, without
+/// features and without a verdict. For guesses that are good to `refine_distance_voxels`, as odometry's are.
+[[nodiscard]] Pose align_clouds(const PointCloud& a, const PointCloud& b, const Pose& T_a_b,
+                                const RegistrationConfig& config);
+
 }  // namespace adit

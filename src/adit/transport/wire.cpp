@@ -148,11 +148,13 @@ void put(Writer& out, const Hello::Known& known) {
   out.scalar(known.robot.value);
   out.scalar(known.num_nodes);
   out.scalar(known.num_places);
+  out.scalar(known.num_loops);
 }
 void get(Reader& in, Hello::Known& known) {
   known.robot.value = in.scalar<std::uint8_t>();
   known.num_nodes = in.scalar<std::uint32_t>();
   known.num_places = in.scalar<std::uint32_t>();
+  known.num_loops = in.scalar<std::uint32_t>();
 }
 
 void put(Writer& out, const GraphNode& node) {
@@ -215,12 +217,10 @@ void get(Reader& in, LoopClosure& loop) {
 
 void put(Writer& out, const Hello& hello) {
   out.vector(hello.known);
-  out.scalar(hello.num_loops);
   out.scalar(static_cast<std::uint8_t>(hello.answer ? 1 : 0));
 }
 void get(Reader& in, Hello& hello) {
   in.vector(hello.known);
-  hello.num_loops = in.scalar<std::uint32_t>();
   hello.answer = in.scalar<std::uint8_t>() != 0;
 }
 
@@ -254,8 +254,16 @@ void get(Reader& in, CloudRequest& request) { in.vector(request.indices); }
 void put(Writer& out, const Clouds& clouds) { out.vector(clouds.clouds); }
 void get(Reader& in, Clouds& clouds) { in.vector(clouds.clouds); }
 
-void put(Writer& out, const Loops& loops) { out.vector(loops.loops); }
-void get(Reader& in, Loops& loops) { in.vector(loops.loops); }
+void put(Writer& out, const Loops& loops) {
+  out.scalar(loops.author.value);
+  out.scalar(loops.first);
+  out.vector(loops.loops);
+}
+void get(Reader& in, Loops& loops) {
+  loops.author.value = in.scalar<std::uint8_t>();
+  loops.first = in.scalar<std::uint32_t>();
+  in.vector(loops.loops);
+}
 
 using Body = decltype(Message::body);
 

@@ -32,14 +32,14 @@ std::vector<Message> one_of_each() {
   const std::vector<float> heights(20 * 60, 1.5F);
   const ScanContext context = from_heights(20, 60, heights);
   GraphNode node{{1234567890123456789}, a_loop().T_from_to, Matrix6::Identity() * 0.5};
-  return {{{0}, {1}, Hello{{{{0}, 5, 6}, {{1}, 7, 8}}, 3, true}},
+  return {{{0}, {1}, Hello{{{{0}, 5, 6, 3}, {{1}, 7, 8, 0}}, true}},
           {{1}, {0}, GraphPart{{2}, "robot_2", 4, {node, node}}},
           {{1}, {0}, Places{9, {{11, context}}, true}},
           {{0}, {1}, CloudRequest{{1, 2, 3}}},
           {{1},
            {0},
            Clouds{{{5, {Eigen::Vector3f(1.0F, -2.0F, 3.0F), Eigen::Vector3f(0.0025F, 160.0F, -160.0F)}}}}},
-          {{0}, {1}, Loops{{a_loop()}}}};
+          {{0}, {1}, Loops{{0}, 3, {a_loop()}}}};
 }
 
 TEST(Wire, EveryKindOfMessageComesBack) {
@@ -55,7 +55,7 @@ TEST(Wire, EveryKindOfMessageComesBack) {
 }
 
 TEST(Wire, NumbersOfGraphAndLoopsTravelExactly) {
-  const Result<Message> back = decode(encode({{0}, {1}, Loops{{a_loop()}}}));
+  const Result<Message> back = decode(encode({{0}, {1}, Loops{{0}, 3, {a_loop()}}}));
   ASSERT_TRUE(back.has_value());
   const LoopClosure& loop = std::get<Loops>(back->body).loops.at(0);
   EXPECT_LT((loop.T_from_to.matrix() - a_loop().T_from_to.matrix()).norm(), 1e-15);
