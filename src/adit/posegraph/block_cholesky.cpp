@@ -22,8 +22,8 @@ constexpr double kMinPivot = 1e-13;  // relative to the diagonal element that th
 // the update; each lower trapezoid counts.
 class Front {
  public:
-  Front(const BlockSymbolic& symbolic, const Supernode& node, Index d, std::vector<double>& factor,
-        std::vector<double>& updates)
+  Front(const BlockSymbolic& symbolic, const Supernode& node, Index d, LargeBuffer& factor,
+        LargeBuffer& updates)
       : symbolic_(symbolic),
         node_(node),
         d_(d),
@@ -106,10 +106,10 @@ class Front {
 }  // namespace
 
 BlockCholesky::BlockCholesky(std::shared_ptr<const BlockSymbolic> symbolic, std::size_t block_size)
-    : symbolic_(std::move(symbolic)), block_size_(block_size) {
-  factor_.resize(symbolic_->factor_size * block_size * block_size);
-  updates_.resize(symbolic_->update_room * block_size * block_size);
-}
+    : symbolic_(std::move(symbolic)),
+      block_size_(block_size),
+      factor_(symbolic_->factor_size * block_size * block_size),
+      updates_(symbolic_->update_room * block_size * block_size) {}
 
 std::optional<std::size_t> BlockCholesky::factorize(const std::vector<double>& values) {
   const BlockSymbolic& sym = *symbolic_;

@@ -8,6 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "adit/core/large_buffer.hpp"
+
 namespace adit {
 
 /// Which blocks of a symmetric block matrix may differ from zero: its lower triangle by columns. Each column
@@ -52,8 +54,8 @@ class BlockCholesky {
  private:
   std::shared_ptr<const BlockSymbolic> symbolic_;
   std::size_t block_size_;
-  std::vector<double> factor_;   // the supernodes' columns, one after another
-  std::vector<double> updates_;  // room for what supernodes hand to their parents
+  LargeBuffer factor_;   // the supernodes' columns, one after another
+  LargeBuffer updates_;  // room for what supernodes hand to their parents
 };
 
 }  // namespace adit

@@ -30,10 +30,11 @@ constexpr double kFirstLambda = 1e-6;
 constexpr double kSmallestLambda = 1e-11;
 constexpr double kLargestLambda = 1e8;
 
-// Of the steps by an earlier factor: residual left, of the linear system, and rounds after which a new factor
-// pays.
+// Of the steps by an earlier factor: residual left, of the linear system; rounds after which a new factor
+// pays; share of the squared residual that a round leaves where those will not do.
 constexpr double kForcing = 0.05;
-constexpr int kMaxRounds = 8;
+constexpr int kMaxRounds = 3;
+constexpr double kHopeless = 0.3;
 constexpr double kLittle = 0.1;  // of the gain that ends the search: such a step needs no further rounds
 
 template <class P>
@@ -168,6 +169,7 @@ class Minimizer {
       z = cholesky_.solve(r);
       const double next = r.dot(z);
       if (next <= enough) return x;
+      if (next > kHopeless * rz) break;
       p = z + next / rz * p;
       rz = next;
     }
