@@ -29,6 +29,11 @@ constexpr double kSmallestMu =
 constexpr double kLargestMu = 1e3;  // above, the surrogate is the truncated cost itself
 constexpr int kMaxRounds = 20;      // of settling; a few are the rule
 constexpr int kMaxRestarts = 2;
+// Groups of rejected loops that get a second hearing: loops of one cluster, at least this many, whose ends
+// lie near one another; and how many groups.
+constexpr std::size_t kGroup = 3;
+constexpr std::size_t kNear = 12;
+constexpr std::size_t kMaxGroups = 8;
 // An odometry edge whose chi2 is this many bounds, twice as many standard deviations, is bent.
 constexpr double kBent = 4.0;
 // A cluster of loops at least this share of the largest one's size is as good a witness; and an answer that
@@ -180,6 +185,24 @@ class Search {
     return static_cast<double>(largest_rejected) < kRival * static_cast<double>(largest_kept);
   }
 
+  // Loops that hold only together are lost together: where a stretch has bent, each of them alone seems
+  // false. With a whole group back in use the stretch straightens, if the group is true; the objective
+  // decides.
+  [[nodiscard]] Solution<P> reconsider(Solution<P> s, const LoopClusters& clusters) const {
+    OptimizerConfig warm = config_.optimizer;
+    warm.initialization = "none";
+    for (const std::vector<std::size_t>& group : rejected_groups(s, clusters)) {
+      std::vector<double> weights = s.edge_weights;
+      for (const std::size_t e : group) weights[e] = 1.0;
+      Solution<P> other = continued(s, s.poses, warm, weights);
+      if (other.ok()) other = settle(graduate(std::move(other), kFirstMu), false);
+      const int iterations = other.iterations;
+      if (other.ok() && objective(other) < objective(s)) s = std::move(other);
+      s.iterations = iterations;
+    }
+    return s;
+  }
+
   // Alternates between the poses for these loops and the loops for these poses; both lower the objective, so
   // that it ends. True loops that were lost on the way come back.
   // With `unbend`, a chain that false loops have bent beyond what the solver straightens is found anew.
@@ -232,6 +255,43 @@ class Search {
  private:
   [[nodiscard]] static std::size_t largest_of(const LoopClusters& clusters) {
     return clusters.sizes.empty() ? 0 : *std::ranges::max_element(clusters.sizes);
+  }
+
+  // Of clusters that are kept for the most part; the largest group first.
+  [[nodiscard]] std::vector<std::vector<std::size_t>> rejected_groups(const Solution<P>& s,
+                                                                      const LoopClusters& clusters) const {
+    std::vector<std::size_t> kept(clusters.sizes.size(), 0);
+    for (std::size_t e = 0; e < graph_.edges.size(); ++e)
+      if (clusters.of_edge[e] != LoopClusters::kNone && s.edge_weights[e] > 0.5) ++kept[clusters.of_edge[e]];
+    std::vector<std::size_t> rest;
+    for (std::size_t e = 0; e < graph_.edges.size(); ++e) {
+      const std::size_t cluster = clusters.of_edge[e];
+      if (cluster != LoopClusters::kNone && 2 * kept[cluster] > clusters.sizes[cluster] &&
+          s.edge_weights[e] < 0.5)
+        rest.push_back(e);
+    }
+    const auto near = [](std::size_t a, std::size_t b) { return (a < b ? b - a : a - b) <= kNear; };
+    const auto together = [&](std::size_t e, std::size_t f) {
+      const auto& a = graph_.edges[e];
+      const auto& b = graph_.edges[f];
+      return clusters.of_edge[e] == clusters.of_edge[f] &&
+             ((near(a.from, b.from) && near(a.to, b.to)) || (near(a.from, b.to) && near(a.to, b.from)));
+    };
+    std::vector<std::vector<std::size_t>> groups;
+    while (!rest.empty()) {
+      std::vector<std::size_t> group = {rest.front()};
+      rest.erase(rest.begin());
+      for (std::size_t k = 0; k < group.size(); ++k) {
+        const auto joins = std::stable_partition(rest.begin(), rest.end(),
+                                                 [&](std::size_t e) { return !together(group[k], e); });
+        group.insert(group.end(), joins, rest.end());
+        rest.erase(joins, rest.end());
+      }
+      if (group.size() >= kGroup) groups.push_back(std::move(group));
+    }
+    std::ranges::stable_sort(groups, std::ranges::greater(), &std::vector<std::size_t>::size);
+    groups.resize(std::min(groups.size(), kMaxGroups));
+    return groups;
   }
 
   // One more solve, counted on top of those before.
@@ -290,6 +350,7 @@ Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config
     again.iterations = 0;
     if (!improve_from(std::move(again))) break;
   }
+  if (best.ok()) best = search.reconsider(std::move(best), clusters);
   best.cost_initial = given.cost_initial;
   if (const std::size_t rejected = num_rejected(best); rejected > 0)
     best.notes.push_back(format("{} loops rejected", rejected));
