@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// What a growing fleet costs each robot: 4 to 64 robots drive 1 km each through one mine, all meet all, and one
-/// of them solves. Keyframes are made up, but true to kind: clouds of a generated mine with their descriptors.
+/// What a growing fleet costs each robot: 4 to 64 robots drive 1 km each through one mine, all meet all, and
+/// one of them solves. Keyframes are made up, but true to kind: clouds of a generated mine with their
+/// descriptors.
 #include <malloc.h>
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -19,13 +20,13 @@
 namespace adit::bench {
 namespace {
 
-constexpr int kStreets = 8;          // drifts each way
-constexpr double kBlock = 60.0;      // metres between them
+constexpr int kStreets = 8;      // drifts each way
+constexpr double kBlock = 60.0;  // metres between them
 constexpr double kHalfWidth = 2.5;
 constexpr double kHeight = 3.0;
 constexpr double kSight = 12.0;
 constexpr double kSampling = 0.8;
-constexpr double kStep = 2.0;        // metres between keyframes
+constexpr double kStep = 2.0;  // metres between keyframes
 constexpr int kKeyframes = 500;
 
 /// A square of drifts with rough walls, boulders along them and rooms of different width; every point of its
@@ -70,7 +71,8 @@ class Mine {
   }
   static bool in_other_street(double along) {
     const double to_street = along - kBlock * std::round(along / kBlock);
-    return std::abs(to_street) < kHalfWidth && along > -kHalfWidth && along < kBlock * kStreets - kBlock + kHalfWidth;
+    return std::abs(to_street) < kHalfWidth && along > -kHalfWidth &&
+           along < kBlock * kStreets - kBlock + kHalfWidth;
   }
 
   void add_street(bool along_x, int street, double middle, const Pose& T_base_world, Rng& rng,
@@ -79,7 +81,8 @@ class Mine {
     const double first = std::ceil((middle - kSight) / kSampling) * kSampling;
     for (double s = first; s < middle + kSight; s += kSampling) {
       if (s < -kHalfWidth || s > kBlock * (kStreets - 1) + kHalfWidth) continue;
-      const double width = kHalfWidth * (0.8 + 0.4 * unit(mix64(name, static_cast<std::uint64_t>(1000 + s / 15.0))));
+      const double width =
+          kHalfWidth * (0.8 + 0.4 * unit(mix64(name, static_cast<std::uint64_t>(1000 + s / 15.0))));
       const auto add = [&](double t, double z) {
         const Vector3 p = along_x ? Vector3(s, street * kBlock + t, z) : Vector3(street * kBlock + t, s, z);
         const Vector3 q = T_base_world * p;
@@ -89,7 +92,8 @@ class Mine {
       };
       if (!in_other_street(s)) {
         for (const int side : {-1, 1}) {
-          const bool boulder = unit(mix64(name, mix64(static_cast<std::uint64_t>(2000 + s / 3.0), side > 0))) < 0.25;
+          const bool boulder =
+              unit(mix64(name, mix64(static_cast<std::uint64_t>(2000 + s / 3.0), side > 0))) < 0.25;
           for (double z = 0.2; z < kHeight; z += kSampling) {
             const double in = boulder && z < 1.4 ? 0.9 : 0.0;
             add(side * (width - in + 0.35 * relief(name, side + 1, s, z)), z);
@@ -147,8 +151,8 @@ RobotMap drive(const Mine& mine, RobotId id) {
       const Pose step = truth[k - 1].inverse() * truth[k];
       const double metres = step.translation().norm();
       covariance = odometry_covariance(OdometryNoise{}, metres);
-      const Vector6 noise = covariance.diagonal().cwiseSqrt().cwiseProduct(
-          Vector6::NullaryExpr([&] { return rng.normal(); }));
+      const Vector6 noise =
+          covariance.diagonal().cwiseSqrt().cwiseProduct(Vector6::NullaryExpr([&] { return rng.normal(); }));
       T_odom_base = T_odom_base * step * Pose::exp(noise);
     }
     const Stamp stamp{std::int64_t{k} * 1'000'000'000};
@@ -165,19 +169,17 @@ RobotMap drive(const Mine& mine, RobotId id) {
 
 double heap_mb() { return static_cast<double>(mallinfo2().uordblks + mallinfo2().hblkhd) * 1e-6; }
 
+double num_robots(double num_met) { return num_met + 1.0; }
+
 /// All robots meet all others twice, as `adit slam` lets them; then the first solves.
-Work fleet(double num_robots) {
+Work fleet(double num_met) {
   set_num_threads(1);
   const Mine mine;
   std::vector<std::shared_ptr<const RobotMap>> maps;
-  for (int r = 0; r < static_cast<int>(num_robots); ++r) {
+  for (int r = 0; r < static_cast<int>(num_robots(num_met)); ++r)
     maps.push_back(std::make_shared<const RobotMap>(drive(mine, {static_cast<std::uint8_t>(r)})));
-  }
   return [maps] {
     const double before_mb = heap_mb();
-    const auto now = [] { return std::chrono::steady_clock::now(); };
-    const auto seconds = [](auto from, auto to) { return std::chrono::duration<double>(to - from).count(); };
-    const auto start = now();
     AgentConfig config;
     config.registration.voxel_size = 0.6;
     config.max_candidates = 128;
@@ -189,37 +191,31 @@ Work fleet(double num_robots) {
       agents.emplace_back(map, std::make_shared<FeatureStore>(map, config.registration), config);
       bus.join(agents.back());
     }
-    std::vector<double> rounds;
     for (int round = 0; round < 2; ++round) {
-      const auto begin = now();
       for (std::size_t a = 0; a < agents.size(); ++a) {
         for (std::size_t b = a + 1; b < agents.size(); ++b) (void)bus.meet(agents[a].id(), agents[b].id());
       }
-      rounds.push_back(seconds(begin, now()));
     }
-    const auto met = now();
     const double after_mb = heap_mb();
     const FleetSolution solution = agents.front().solve({});
-    const auto solved = now();
     double sent = 0.0;
     for (const auto& map : maps) sent += static_cast<double>(bus.bytes_sent(map->id));
     const auto robots = static_cast<double>(maps.size());
-    double accepted = 0.0;
-    double merged = 0.0;
-    for (const LoopOutcome& loop : solution.loops) accepted += loop.in_use() ? 1.0 : 0.0;
-    for (const PairOutcome& pair : solution.pairs) merged += pair.merged ? 1.0 : 0.0;
-    return Figures{{"s_per_robot", (seconds(start, met)) / robots}, {"round1", rounds[0]}, {"round2", rounds[1]},
-                   {"solve_s", seconds(met, solved)},
-                   {"mb_per_robot", (after_mb - before_mb) / robots},
-                   {"sent_mb_per_robot", sent * 1e-6 / robots},
-                   {"tried", static_cast<double>(agents.front().known().loops.size())},
-                   {"loops", accepted}, {"acc", double(solution.loops.size())},
-                   {"merged", merged}, {"pairs", double(solution.pairs.size())},
-                   {"components", static_cast<double>(solution.components.size())}};
+    const auto count = [](const auto& items, const auto& property) {
+      return static_cast<double>(std::ranges::count_if(items, property));
+    };
+    return Figures{
+        {"mb_per_robot", (after_mb - before_mb) / robots},
+        {"sent_mb_per_robot", sent * 1e-6 / robots},
+        {"registrations", static_cast<double>(agents.front().known().loops.size())},
+        {"loops_in_use", count(solution.loops, [](const LoopOutcome& loop) { return loop.in_use(); })},
+        {"pairs_merged", count(solution.pairs, [](const PairOutcome& pair) { return pair.merged; })},
+        {"components", static_cast<double>(solution.components.size())}};
   };
 }
 
-const Growth growth("fleet/growth", "A robot's share of a fleet", "robots", {4, 8, 16, 32, 64}, fleet);
+const Growth growth("fleet/robots_met", "A robot's share of a fleet, 1 km each, one thread",
+                    "robots that it met", {3, 7, 15, 31, 63}, fleet, num_robots);
 
 }  // namespace
 }  // namespace adit::bench

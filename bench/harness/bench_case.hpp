@@ -48,10 +48,12 @@ struct Side {
   Side(const std::string& case_name, const std::string& side, Prepare prepare);
 };
 
-/// A curve of cost over size: adit alone, one process a size, drawn into docs/figures/.
+/// A curve of cost over size: adit alone, one process a size, drawn into docs/figures/. With `shares`, the
+/// time is that of one of `shares(size)` equal parts of the work.
 struct Growth {
   Growth(const std::string& name, const std::string& title, const std::string& size_label,
-         std::vector<double> sizes, std::function<Work(double size)> prepare);
+         std::vector<double> sizes, std::function<Work(double size)> prepare,
+         std::function<double(double size)> shares = {});
 };
 
 /// Writes the inputs of a topic (scans, clouds, graphs) into a folder, for programs outside this repository

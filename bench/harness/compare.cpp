@@ -132,7 +132,7 @@ GrowthResult grow(const GrowthInfo& info, const CompareConfig& config) {
     Runner runner = started("adit", {config.program, "serve", info.name, std::to_string(size)});
     for (int i = 0;
          i < kRuns && runner.result.skipped.empty() && (i == 0 || runner.seconds.back() < kLongRun); ++i)
-      run_once(runner, 1.0, true);
+      run_once(runner, info.shares ? info.shares(size) : 1.0, true);
     runner.result.seconds = spread_of(runner.seconds);
     result.points.push_back({size, std::move(runner.result)});
   }

@@ -22,8 +22,10 @@ Side::Side(const std::string& case_name, const std::string& side, Prepare prepar
 }
 
 Growth::Growth(const std::string& name, const std::string& title, const std::string& size_label,
-               std::vector<double> sizes, std::function<Work(double size)> prepare) {
-  registry().growths[name] = {name, title, size_label, std::move(sizes), std::move(prepare)};
+               std::vector<double> sizes, std::function<Work(double size)> prepare,
+               std::function<double(double size)> shares) {
+  registry().growths[name] = {
+      name, title, size_label, std::move(sizes), std::move(prepare), std::move(shares)};
 }
 
 Export::Export(const std::string& topic, std::function<void(const std::filesystem::path& folder)> write) {

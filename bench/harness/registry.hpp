@@ -17,6 +17,7 @@ struct GrowthInfo {
   std::string size_label;
   std::vector<double> sizes;
   std::function<Work(double)> prepare;
+  std::function<double(double)> shares;
 };
 
 struct Registry {

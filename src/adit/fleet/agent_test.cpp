@@ -35,13 +35,13 @@ struct TwoRobots {
   std::vector<Pose> truth_1 = street(50.0, 14.0, 0.5);
   std::vector<Agent> agents;
 
-  explicit TwoRobots(std::uint64_t seed = 3) {
+  explicit TwoRobots(std::uint64_t seed = 3, const AgentConfig& config = lenient()) {
     const test::BoxWorld world(seed);
     agents.reserve(2);
     for (const auto& [id, truth] : {std::pair{0, &truth_0}, std::pair{1, &truth_1}}) {
       const auto map = std::make_shared<const RobotMap>(
           test::drive(world, {static_cast<std::uint8_t>(id)}, *truth, id == 0 ? 0.002 : -0.002));
-      agents.emplace_back(map, std::make_shared<FeatureStore>(map, lenient().registration), lenient());
+      agents.emplace_back(map, std::make_shared<FeatureStore>(map, config.registration), config);
     }
   }
 
@@ -240,6 +240,50 @@ TEST(Agent, GraphPartAfterALostOneWaitsForIt) {
   send(0);
   send(1);  // overlaps what is known
   EXPECT_EQ(fleet.agents[0].known().robots.at({2}).nodes.size(), 3U);
+}
+
+TEST(Agent, RegistersTheMostSimilarCandidatesWhereItMayNotRegisterAll) {
+  TwoRobots all;
+  all.meet();
+  AgentConfig config = lenient();
+  config.max_candidates = 0;
+  config.candidates_per_peer = 2;
+  TwoRobots few(3, config);
+  few.meet();
+  ASSERT_GT(all.agents[0].known().loops.size(), 4U);
+  ASSERT_EQ(few.agents[0].known().loops.size(), 2U);
+  // It looks with every fourth keyframe, and of what it finds takes the best.
+  double best = std::numeric_limits<double>::infinity();
+  for (const auto& [ends, loop] : all.agents[0].known().loops)
+    if (ends.first.index % 4 == 0) best = std::min(best, loop.place_distance);
+  double best_of_few = std::numeric_limits<double>::infinity();
+  for (const auto& [ends, loop] : few.agents[0].known().loops) {
+    EXPECT_EQ(ends.first.index % 4, 0U);
+    best_of_few = std::min(best_of_few, loop.place_distance);
+  }
+  EXPECT_EQ(best_of_few, best);
+}
+
+TEST(FeatureStore, ForgetsWhatWasUsedLongestAgoAndKeepsItsBound) {
+  const test::BoxWorld world(3);
+  const auto map = std::make_shared<const RobotMap>(test::drive(world, {0}, street(0.0, 20.0, 0.0), 0.0));
+  const RegistrationConfig config = lenient().registration;
+  FeatureStore measure(map, config);
+  measure.prepare({0, 1});
+  FeatureStore store(map, config, measure.num_bytes());  // room for two or so
+  store.prepare({0});
+  store.prepare({1});
+  const Features first = store.at(1);
+  for (std::uint32_t i = 2; i < 8; ++i) {
+    store.prepare({1, i});
+    EXPECT_NO_THROW((void)store.at(i));
+  }
+  EXPECT_THROW((void)store.at(0), ContractViolation);
+  EXPECT_EQ(store.at(1).points, first.points);
+  store.prepare({0, 1, 2, 3});  // what is asked for at once is there, whatever the bound
+  for (const std::uint32_t i : {0U, 1U, 2U, 3U}) EXPECT_NO_THROW((void)store.at(i));
+  store.prepare({5});
+  EXPECT_LE(store.num_bytes(), measure.num_bytes());
 }
 
 }  // namespace
