@@ -34,7 +34,7 @@ const struct GraphCases {
     for (const std::string name : kGraphNames) {
       Case({.name = "posegraph/" + name,
             .work = "least squares from the guess in the file",
-            .peer = "ceres",
+            .peer = name == "torus3D" ? "ceres-chordal" : "ceres",  // from the guess: a poor minimum
             .aim = 4.0});
       Side("posegraph/" + name, "adit", [name] { return optimizing(name); });
     }
