@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "support/synthetic_scan.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/odometry/odometry.hpp"
 #include "harness/bench_case.hpp"
+#include "support/synthetic_scan.hpp"
 
 namespace adit::bench {
 namespace {
