@@ -60,8 +60,9 @@ class FeatureStore {
 /// exist, descriptors on another grid, covariances that are none) is left out and stops nobody.
 ///
 /// What it costs in a large fleet: a robot registers at most `max_candidates` candidates, those of the peers
-/// it meets first, and of each later peer the best `candidates_per_peer`, which it looks for with every fourth
-/// keyframe, so that time a robot grows slower than the number of robots it meets. Beside its own map an agent stores
+/// it meets first, and of each later peer the best `candidates_per_peer`, which it looks for with every
+/// fourth keyframe, so that time a robot grows slower than the number of robots it meets. Beside its own map
+/// an agent stores
 ///  - of each robot that it heard of the graph, 0.4 kB a keyframe, and the candidates that this robot
 ///    registered, 0.6 kB each: with n keyframes a robot and r robots at most
 ///    r (0.4 n + 0.6 (max_candidates + r candidates_per_peer)) kB;
