@@ -19,6 +19,8 @@ namespace {
 struct Options {
   std::string preset;
   std::string seed;
+  std::string arrangement;
+  std::string routes;
   std::string out;
 };
 
@@ -32,9 +34,12 @@ Result<WorldConfig> config_of(const Options& options, const Common& common) {
   if (!options.preset.empty()) config.preset = options.preset;
   if (!std::ranges::count(world_presets(), config.preset))
     usage_error(format("--preset {}: the presets are {}", config.preset, fmt::join(world_presets(), ", ")));
-  if (!options.seed.empty())
-    if (const Result<> set = set_field(fields, "world.seed", options.seed); !set)
-      usage_error(set.error().message);
+  for (const auto& [key, value] :
+       {std::pair("world.seed", options.seed), std::pair("world.arrangement", options.arrangement),
+        std::pair("world.routes", options.routes)}) {
+    if (value.empty()) continue;
+    if (const Result<> set = set_field(fields, key, value); !set) usage_error(set.error().message);
+  }
   return config;
 }
 
@@ -90,8 +95,15 @@ void add_world(Program& program) {
   CLI::App* command =
       program.add_command("world", "Make a procedural tunnel network with the routes of four robots",
                           [options](const Common& common) { return run(*options, common); });
-  command->add_option("--preset", options->preset, "zab (default), mine or metro");
+  command->add_option("--preset", options->preset,
+                      format("{} (default zab)", fmt::join(world_presets(), ", ")));
   command->add_option("--seed", options->seed, "Another seed, another network of the same kind (default 1)");
+  command->add_option("--arrangement", options->arrangement,
+                      "single (default), or two networks with two robots each: different, mirrored (one is "
+                      "the other's mirror image), copies (the same tunnels with other furniture), twins");
+  command->add_option(
+      "--routes", options->routes,
+      "meeting (default: every pair shares a stretch) or apart (robots keep to their tunnels)");
   command->add_option("--out", options->out, "Folder for world.ply and routes.yaml")->required();
 }
 

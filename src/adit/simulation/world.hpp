@@ -19,7 +19,7 @@ namespace adit {
 struct World {
   std::string name;
   TriangleMesh mesh;
-  std::vector<Route> routes;   ///< Four, each from an entrance of its own.
+  std::vector<Route> routes;   ///< Four; those of one network start apart.
   double tunnel_length = 0.0;  ///< Sum over the centre lines of all tunnels, metres.
 };
 
@@ -34,10 +34,18 @@ struct WorldConfig {
   double passage_spacing_factor = 1.0;
   double curvature_factor = 1.0;
   double facet_factor = 1.0;
+  /// Which robots have anything in common to merge by. Every arrangement but "single" stands two networks
+  /// side by side and lets two robots drive in each: "different", the networks of two seeds; "mirrored", a
+  /// network and its mirror image; "copies", the same tunnels twice, each with furniture and rock of its
+  /// own; "twins", the same twice to the last bit, which no measurement can tell apart.
+  std::string arrangement = "single";
+  std::string routes = "meeting";
+  std::uint64_t furniture_seed = 0;
 };
 
 /// "zab": two road and two rail tubes with irregular cross passages, after Zentrum am Berg. "mine": rough
 /// drifts with ramps and loops. "metro": two running tubes with identical stations and cross passages.
+/// "tiles": a grid of identical tiles whose blocks are all of different length.
 [[nodiscard]] std::vector<std::string> world_presets();
 
 inline Fields fields_of(WorldConfig& c) {
@@ -52,6 +60,22 @@ inline Fields fields_of(WorldConfig& c) {
       {"curvature_factor", &c.curvature_factor, "", 0.0, 3.0,
        "scales the curvature of the tunnels; 0: straight"},
       {"facet_factor", &c.facet_factor, "", 0.4, 4.0, "scales the longest edge of a wall's triangles"},
+      {"arrangement",
+       &c.arrangement,
+       "",
+       0,
+       0,
+       "one network, or two side by side with two robots in each",
+       {"single", "different", "mirrored", "copies", "twins"}},
+      {"routes",
+       &c.routes,
+       "",
+       0,
+       0,
+       "every pair of robots shares a stretch, or robots keep to parallel tunnels",
+       {"meeting", "apart"}},
+      {"furniture_seed", &c.furniture_seed, "", 0, 9e15,
+       "other furniture and rock in the same tunnels; 0: those of the seed"},
   };
 }
 

@@ -61,10 +61,18 @@ void add_cabinets(WorldPlan& plan, const Tube& tube, double spacing) {
   }
 }
 
-std::vector<Drive> draw_drives(const std::array<Tube, 2>& tubes) {
+std::vector<Drive> draw_drives(const std::array<Tube, 2>& tubes, const WorldConfig& config) {
   const auto east = [&](std::size_t i) { return tubes[i].line; };
   const auto west = [&](std::size_t i) { return reversed_line(tubes[i].line); };
   const auto through = [&](int index) { return passage_line(tubes, index); };
+  // Two trains' worth in each tube: what the tubes share is their looks.
+  if (config.routes == "apart")
+    return {
+        {"robot_0", 1.88, 441.0, 5.0, 2.6, {east(0)}},
+        {"robot_1", 1.84, 412.0, 5.0, 2.6, {west(0)}},
+        {"robot_2", 1.86, 405.0, 5.0, 2.6, {east(1)}},
+        {"robot_3", 1.82, 420.0, 5.0, 2.6, {west(1)}},
+    };
   return {
       {"robot_0", 1.88, 441.0, 5.0, 2.6, {east(0), through(5), east(1)}},
       {"robot_1", 1.84, 412.0, 5.0, 2.6, {east(1), through(7), east(0)}},
@@ -78,7 +86,7 @@ std::vector<Drive> draw_drives(const std::array<Tube, 2>& tubes) {
 WorldPlan plan_metro(const WorldConfig& config) {
   Rng rng(mix64(config.seed, 1));
   WorldPlan plan;
-  plan.relief = {mix64(config.seed, 2), {{5.0, 0.006 * config.relief_factor}}, 0.0, 0.0, 1.0};
+  plan.relief = {mix64(furniture_seed(config), 2), {{5.0, 0.006 * config.relief_factor}}, 0.0, 0.0, 1.0};
   plan.max_edge = 1.0 * config.facet_factor;
   const std::array<Tube, 2> tubes = draw_tubes(config.curvature_factor, rng);
   for (const Tube& tube : tubes) add_tunnel(plan, arch_profile(kTube), tube.line);
@@ -87,7 +95,7 @@ WorldPlan plan_metro(const WorldConfig& config) {
   for (int i = 1; i < kNumPitches; ++i)
     add_closed_tunnel(plan, arch_profile({3.2, 3.0, 1.6, 16}), passage_line(tubes, i));
   for (const Tube& tube : tubes) add_cabinets(plan, tube, kPitch * config.furniture_spacing_factor);
-  plan.drives = draw_drives(tubes);
+  plan.drives = draw_drives(tubes, config);
   return plan;
 }
 

@@ -111,23 +111,47 @@ void add_headings(WorldPlan& plan, const Network& nodes, const WorldConfig& conf
   }
 }
 
-std::vector<Drive> draw_drives(const Network& nodes, const WorldConfig& config) {
+/// A robot's way through the nodes and how far along it the robot drives.
+struct Way {
+  std::vector<int> nodes;
+  double length;
+};
+
+/// Ways that every pair of robots shares a stretch of, around the middle of the mine.
+std::array<Way, 4> meeting_ways() {
   const auto a = [](int column) { return junction(column, 0); };
   const auto b = [](int column) { return junction(column, 1); };
   const auto c = [](int column) { return junction(column, 2); };
-  const std::array<std::vector<int>, 4> ways{{
-      {kNumJunctions + 0, a(0), a(1), b(1), b(2), c(2), c(3), b(3)},
-      {kNumJunctions + 1, a(3), b(3), b(2), b(1), a(1), a(2), a(3)},
-      {kNumJunctions + 2, c(0), c(1), b(1), b(2), a(2), a(3), b(3)},
-      {kNumJunctions + 3, c(3), b(3), b(2), b(1), b(0), a(0), a(1)},
+  return {{
+      {{kNumJunctions + 0, a(0), a(1), b(1), b(2), c(2), c(3), b(3)}, 438.0},
+      {{kNumJunctions + 1, a(3), b(3), b(2), b(1), a(1), a(2), a(3)}, 402.0},
+      {{kNumJunctions + 2, c(0), c(1), b(1), b(2), a(2), a(3), b(3)}, 427.0},
+      {{kNumJunctions + 3, c(3), b(3), b(2), b(1), b(0), a(0), a(1)}, 415.0},
   }};
-  const std::array lengths{438.0, 402.0, 427.0, 415.0};
+}
+
+/// Two robots pass one another in the first row of drifts, two in the last, and nobody leaves its row.
+std::array<Way, 4> parallel_ways() {
+  const auto a = [](int column) { return junction(column, 0); };
+  const auto c = [](int column) { return junction(column, kRows - 1); };
+  constexpr double kLength = 260.0;
+  return {{
+      {{kNumJunctions + 0, a(0), a(1), a(2), a(3)}, kLength},
+      {{kNumJunctions + 1, a(3), a(2), a(1), a(0)}, kLength},
+      {{kNumJunctions + 2, c(0), c(1), c(2), c(3)}, kLength},
+      {{kNumJunctions + 3, c(3), c(2), c(1), c(0)}, kLength},
+  }};
+}
+
+std::vector<Drive> draw_drives(const Network& nodes, const WorldConfig& config) {
+  const std::array<Way, 4> ways = config.routes == "meeting" ? meeting_ways() : parallel_ways();
   const std::array speeds{1.87, 1.83, 1.85, 1.81};
   std::vector<Drive> all;
   for (std::size_t i = 0; i < ways.size(); ++i) {
-    Drive drive{"robot_" + std::to_string(i), speeds[i], lengths[i], 5.0, 5.0, {}};
-    for (std::size_t k = 1; k < ways[i].size(); ++k)
-      drive.legs.push_back(drift_line(nodes, ways[i][k - 1], ways[i][k], config));
+    const std::vector<int>& way = ways[i].nodes;
+    Drive drive{"robot_" + std::to_string(i), speeds[i], ways[i].length, 5.0, 5.0, {}};
+    for (std::size_t k = 1; k < way.size(); ++k)
+      drive.legs.push_back(drift_line(nodes, way[k - 1], way[k], config));
     all.push_back(std::move(drive));
   }
   return all;
@@ -139,14 +163,16 @@ WorldPlan plan_mine(const WorldConfig& config) {
   Rng rng(mix64(config.seed, 1));
   WorldPlan plan;
   // Blasted rock: the width wanders over tens of metres, edges of boulders stand out by decimetres.
-  plan.relief = {mix64(config.seed, 2), {{18.0, 0.35}, {3.2, 0.22}, {1.1, 0.06}}, 0.12, 5.0, 420.0};
+  plan.relief = {
+      mix64(furniture_seed(config), 2), {{18.0, 0.35}, {3.2, 0.22}, {1.1, 0.06}}, 0.12, 5.0, 420.0};
   for (ReliefOctave& octave : plan.relief.octaves) octave.amplitude *= config.relief_factor;
   plan.max_edge = 0.6 * config.facet_factor;
   plan.flat_floor = false;
   const Network nodes = draw_network(rng);
   add_drifts(plan, nodes, config, rng);
   add_junctions(plan, nodes, rng);
-  add_headings(plan, nodes, config, rng);
+  Rng furniture = furniture_rng(config, rng);
+  add_headings(plan, nodes, config, furniture);
   plan.drives = draw_drives(nodes, config);
   return plan;
 }

@@ -14,6 +14,14 @@ void add_block(WorldPlan& plan, const Vector3& from, const Vector3& to, const Pr
 
 }  // namespace
 
+std::uint64_t furniture_seed(const WorldConfig& config) {
+  return config.furniture_seed == 0 ? config.seed : config.furniture_seed;
+}
+
+Rng furniture_rng(const WorldConfig& config, const Rng& after_tunnels) {
+  return config.furniture_seed == 0 ? after_tunnels : Rng(mix64(config.furniture_seed, 3));
+}
+
 void add_tunnel(WorldPlan& plan, const Profile& profile, const Polyline& line) {
   plan.spaces.push_back(sweep(profile, line, Ends::open));
   plan.tunnel_length += length_of(line);

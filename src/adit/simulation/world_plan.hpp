@@ -27,6 +27,12 @@ struct WorldPlan {
 [[nodiscard]] WorldPlan plan_zab(const WorldConfig& config);
 [[nodiscard]] WorldPlan plan_mine(const WorldConfig& config);
 [[nodiscard]] WorldPlan plan_metro(const WorldConfig& config);
+[[nodiscard]] WorldPlan plan_tiles(const WorldConfig& config);
+
+/// What furniture and rock are drawn from, so that they can differ in tunnels that are the same.
+[[nodiscard]] std::uint64_t furniture_seed(const WorldConfig& config);
+/// Draws on where the tunnels were drawn, or anew where the furniture has a seed of its own.
+[[nodiscard]] Rng furniture_rng(const WorldConfig& config, const Rng& after_tunnels);
 
 /// Adds a tunnel along `line`, open at both ends, and its length.
 void add_tunnel(WorldPlan& plan, const Profile& profile, const Polyline& line);

@@ -29,6 +29,7 @@ WorldPlan plan_of(const std::string& preset, std::uint64_t seed) {
   WorldConfig config;
   config.seed = seed;
   if (preset == "zab") return plan_zab(config);
+  if (preset == "tiles") return plan_tiles(config);
   return preset == "mine" ? plan_mine(config) : plan_metro(config);
 }
 
@@ -192,7 +193,7 @@ TEST_P(WorldOf, IsSoundAndDrivable) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Presets, WorldOf,
-                         testing::Combine(testing::Values("zab", "mine", "metro"),
+                         testing::Combine(testing::Values("zab", "mine", "metro", "tiles"),
                                           testing::Values<std::uint64_t>(1, 2)),
                          [](const auto& suite) {
                            return std::get<0>(suite.param) + std::to_string(std::get<1>(suite.param));
@@ -216,6 +217,123 @@ TEST(World, EverySeedGivesDrivableRoutes) {
           ASSERT_GE(shared.along + shared.opposite, 30.0) << preset << seed << " pair " << a << b;
         }
     }
+}
+
+World coarse_world(const std::string& preset, const std::string& arrangement, const std::string& routes) {
+  WorldConfig config;
+  config.preset = preset;
+  config.arrangement = arrangement;
+  config.routes = routes;
+  config.facet_factor = 4.0;
+  Result<World> world = make_world(config);
+  EXPECT_TRUE(world);
+  return std::move(*world);
+}
+
+/// Metres of the first route near the second, either way.
+double shared_metres(const World& world, std::size_t a, std::size_t b) {
+  const Shared shared = shared_stretch(world.routes[a], world.routes[b]);
+  return shared.along + shared.opposite;
+}
+
+class ArrangementOf : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
+
+TEST_P(ArrangementOf, TwoRobotsShareEachNetworkAndNothingElse) {
+  const auto& [preset, arrangement] = GetParam();
+  const World world = coarse_world(preset, arrangement, "meeting");
+  ASSERT_EQ(world.routes.size(), 4U);
+  EXPECT_EQ(world.name, preset + "-" + arrangement);
+  ASSERT_TRUE(check_mesh(world.mesh));
+  expect_rays_hit_something_unless_they_leave_through_a_portal(world);
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t b = a + 1; b < 4; ++b) {
+      const bool same_network = a / 2 == b / 2;
+      if (same_network)
+        EXPECT_GE(shared_metres(world, a, b), 30.0) << a << b;
+      else
+        EXPECT_EQ(shared_metres(world, a, b), 0.0) << a << b;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ArrangementOf,
+                         testing::Combine(testing::Values("zab", "mine", "metro", "tiles"),
+                                          testing::Values("different", "mirrored", "copies", "twins")),
+                         [](const auto& suite) {
+                           return std::get<0>(suite.param) + "_" + std::get<1>(suite.param);
+                         });
+
+/// The second network's vertices, as they would stand where the first one is.
+std::vector<Eigen::Vector3f> second_half(const World& world, const World& single) {
+  const std::size_t n = single.mesh.vertices.size();
+  std::vector<Eigen::Vector3f> half(world.mesh.vertices.begin() + static_cast<std::ptrdiff_t>(n),
+                                    world.mesh.vertices.end());
+  const auto dy = static_cast<float>(world.routes[2].waypoints[0].y() - single.routes[0].waypoints[0].y());
+  for (Eigen::Vector3f& vertex : half) vertex.y() -= dy;
+  return half;
+}
+
+TEST(World, TwinsAreTheSameAndCopiesDifferInTheirFurniture) {
+  const World single = coarse_world("zab", "single", "meeting");
+  const std::vector<Eigen::Vector3f> twin = second_half(coarse_world("zab", "twins", "meeting"), single);
+  ASSERT_EQ(twin.size(), single.mesh.vertices.size());
+  for (std::size_t i = 0; i < twin.size(); ++i) ASSERT_LT((twin[i] - single.mesh.vertices[i]).norm(), 1e-3F);
+  const World copies = coarse_world("zab", "copies", "meeting");
+  EXPECT_NE(second_half(copies, single).size(), twin.size());
+  for (std::size_t i = 0; i < single.routes[0].waypoints.size(); ++i) {
+    const Vector3 step = copies.routes[2].waypoints[i] - single.routes[0].waypoints[i];
+    EXPECT_NEAR(step.x(), 0.0, 1e-9);
+  }
+}
+
+TEST(World, AMirrorImageTurnsLeftIntoRight) {
+  const World world = coarse_world("tiles", "mirrored", "meeting");
+  const auto turn_of = [&](std::size_t robot) {  // Sum of the signed turns of the whole route.
+    const std::vector<Vector3>& way = world.routes[robot].waypoints;
+    double sum = 0.0;
+    for (std::size_t i = 2; i < way.size(); ++i)
+      sum += (way[i - 1] - way[i - 2]).cross(way[i] - way[i - 1]).z();
+    return sum;
+  };
+  for (std::size_t robot = 0; robot < 2; ++robot) {
+    EXPECT_NEAR(length_of(world.routes[robot]), length_of(world.routes[robot + 2]), 1e-6);
+    EXPECT_NEAR(turn_of(robot), -turn_of(robot + 2), 1e-6);
+  }
+  const EdgeStatistics edges = edge_statistics(world.mesh);
+  EXPECT_LT(edges.num_inconsistent, 40U);
+}
+
+TEST(World, RoutesApartShareNothingAcrossTheirTunnels) {
+  for (const std::string& preset : world_presets()) {
+    const World world = coarse_world(preset, "single", "apart");
+    ASSERT_EQ(world.routes.size(), 4U);
+    for (std::size_t a = 0; a < 2; ++a)
+      for (std::size_t b = 2; b < 4; ++b) EXPECT_EQ(shared_metres(world, a, b), 0.0) << preset << a << b;
+    if (preset == "zab")
+      EXPECT_EQ(shared_metres(world, 0, 1) + shared_metres(world, 2, 3), 0.0);
+    else
+      EXPECT_GE(std::min(shared_metres(world, 0, 1), shared_metres(world, 2, 3)), 30.0) << preset;
+  }
+}
+
+TEST(World, FurnitureHasASeedOfItsOwn) {
+  WorldConfig config;
+  config.facet_factor = 4.0;
+  config.furniture_seed = 7;
+  const Result<World> other = make_world(config);
+  ASSERT_TRUE(other);
+  const World own = coarse_world("zab", "single", "meeting");
+  EXPECT_NE(other->mesh.vertices.size(), own.mesh.vertices.size());
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(other->routes[i].waypoints == own.routes[i].waypoints);
+}
+
+TEST(World, NoTwoBlocksOfATileRowAreEquallyLong) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const WorldPlan plan = plan_of("tiles", seed);
+    const Polyline& row = plan.drives[0].legs[0];
+    EXPECT_NEAR(std::remainder(length_of(row), 20.0), 0.0, 1e-9);
+  }
+  EXPECT_FALSE(plan_of("tiles", 1).drives[0].legs[2] == plan_of("tiles", 2).drives[0].legs[2] &&
+               plan_of("tiles", 1).drives[0].legs[0] == plan_of("tiles", 3).drives[0].legs[0]);
 }
 
 TEST(World, SameSeedSameBytesWithAnyNumberOfThreads) {

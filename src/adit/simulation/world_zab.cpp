@@ -170,8 +170,8 @@ Polyline lane(const Tube& tube, double heading) {
 
 /// Lengths and speeds of the paper's table of trajectories. Every pair shares a stretch around the passages
 /// between the second and the third tube, most of them in opposite directions.
-std::vector<Drive> draw_drives(const std::array<Tube, kNumTubes>& tubes,
-                               const std::vector<Passage>& passages) {
+std::vector<Drive> meeting_drives(const std::array<Tube, kNumTubes>& tubes,
+                                  const std::vector<Passage>& passages) {
   const auto east = [&](std::size_t i) { return lane(tubes[i], 1.0); };
   const auto west = [&](std::size_t i) { return lane(tubes[i], -1.0); };
   // A lane may lie beyond the tube's middle, where the passage's line ends.
@@ -184,13 +184,23 @@ std::vector<Drive> draw_drives(const std::array<Tube, kNumTubes>& tubes,
   };
 }
 
+/// Each robot stays in its own tube: all they have in common are the two mouths of each passage.
+std::vector<Drive> parallel_drives(const std::array<Tube, kNumTubes>& tubes) {
+  return {
+      {"robot_0", 1.89, 392.0, 4.0, 3.2, {lane(tubes[0], 1.0)}},
+      {"robot_1", 1.84, 392.0, 4.0, 3.2, {lane(tubes[1], -1.0)}},
+      {"robot_2", 1.87, 392.0, 4.0, 3.2, {lane(tubes[2], 1.0)}},
+      {"robot_3", 1.85, 392.0, 4.0, 3.2, {lane(tubes[3], -1.0)}},
+  };
+}
+
 }  // namespace
 
 WorldPlan plan_zab(const WorldConfig& config) {
   Rng rng(mix64(config.seed, 1));
   WorldPlan plan;
   // Concrete cast in formwork: waves of a centimetre and a rough skin of millimetres.
-  plan.relief = {mix64(config.seed, 2), {{7.0, 0.010}, {1.7, 0.004}}, 0.0, 0.0, 1.0};
+  plan.relief = {mix64(furniture_seed(config), 2), {{7.0, 0.010}, {1.7, 0.004}}, 0.0, 0.0, 1.0};
   for (ReliefOctave& octave : plan.relief.octaves) octave.amplitude *= config.relief_factor;
   plan.max_edge = 1.0 * config.facet_factor;
 
@@ -201,8 +211,9 @@ WorldPlan plan_zab(const WorldConfig& config) {
   for (Tube& tube : tubes)
     if (tube.is_road())
       for (int i = 0; i < 2; ++i) add_lay_by(plan, tube, rng);
-  for (Tube& tube : tubes) add_furniture(plan, tube, 45.0 * config.furniture_spacing_factor, rng);
-  plan.drives = draw_drives(tubes, passages);
+  Rng furniture = furniture_rng(config, rng);
+  for (Tube& tube : tubes) add_furniture(plan, tube, 45.0 * config.furniture_spacing_factor, furniture);
+  plan.drives = config.routes == "meeting" ? meeting_drives(tubes, passages) : parallel_drives(tubes);
   return plan;
 }
 
