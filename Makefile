@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # A thin front: each target installs what it needs (tools/setup.sh does nothing where all is there) and builds.
 .DEFAULT_GOAL := build
-.PHONY: build demo test bench lint docs clean
+.PHONY: build demo test bench bench-merge lint docs clean
 
 build/%/build.ninja: CMakeLists.txt CMakePresets.json
 	@tools/setup.sh
@@ -20,6 +20,9 @@ test: build
 
 bench:
 	tools/bench.sh $(BENCH)
+
+bench-merge:
+	tools/bench_merge.sh $(BENCH)
 
 lint: build
 	tools/lint.sh

@@ -52,6 +52,7 @@ void add_simulate(Program& program);
 void add_odometry(Program& program);
 void add_slam(Program& program);
 void add_study(Program& program);
+void add_merge_study(Program& program);
 void add_evaluate(Program& program);
 void add_register(Program& program);
 void add_solve(Program& program);

@@ -20,4 +20,11 @@ Fields fields_of(RunConfig& c) {
   return fields;
 }
 
+RunConfig study_config() {
+  RunConfig config;
+  config.loops.place.max_distance = 0.05;
+  config.loops.registration.min_inliers = 50;
+  return config;
+}
+
 }  // namespace adit::app

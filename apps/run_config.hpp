@@ -23,4 +23,8 @@ struct RunConfig {
 };
 Fields fields_of(RunConfig& config);
 
+/// That pipeline with the thresholds of the studies. The paper's are unstated and, as it says, tuned to the
+/// site; these are tuned to zab.
+[[nodiscard]] RunConfig study_config();
+
 }  // namespace adit::app

@@ -133,16 +133,6 @@ Result<> write_report(const StudyResult& study, const std::vector<Table>& tables
   return done;
 }
 
-Result<std::vector<KeyframeSelection>> selections_of(const std::vector<std::string>& names) {
-  std::vector<KeyframeSelection> selections;
-  for (const std::string& name : names) {
-    const Result<KeyframeSelection> selection = keyframe_selection(name);
-    if (!selection) return tl::unexpected(selection.error());
-    selections.push_back(*selection);
-  }
-  return selections;
-}
-
 Result<> run_pairs(const std::vector<RobotRun>& runs, const std::vector<KeyframeSelection>& selections,
                    const RunConfig& config, const std::filesystem::path& dir, StudyResult& study) {
   Progress progress("robot pairs", runs.size() * (runs.size() - 1) / 2 * selections.size());
@@ -161,10 +151,7 @@ Result<> run_pairs(const std::vector<RobotRun>& runs, const std::vector<Keyframe
 
 Result<> study(const Options& options, const Common& common) {
   const auto start = std::chrono::steady_clock::now();
-  RunConfig config;
-  // The paper's thresholds are unstated and, as it says, tuned to the site; these are tuned to zab.
-  config.loops.place.max_distance = 0.05;
-  config.loops.registration.min_inliers = 50;
+  RunConfig config = study_config();
   WorldConfig built_in;
   if (const Result<> chosen = choose_lidar(options.lidar, config.simulation); !chosen)
     usage_error(chosen.error().message);

@@ -29,23 +29,6 @@ OdometryResult odometry_result(const std::string& method, const Trajectory& esti
   return result;
 }
 
-RobotResult robot_facts(const Recording& recording, const RobotMap& map) {
-  RobotResult result;
-  result.name = recording.name;
-  // What the robot drove while it recorded; its clock starts before the first whole sweep.
-  Trajectory driven;
-  for (const Stamp stamp : recording.scan_stamps) {
-    if (const Result<Pose> pose = pose_at(recording.truth, stamp)) driven.push_back({stamp, *pose});
-  }
-  const Trajectory& path = driven.empty() ? map.odometry : driven;
-  result.path_length_m = path_length(path);
-  result.duration_s = to_seconds(recording.scan_stamps.back() - recording.scan_stamps.front());
-  result.scans = static_cast<int>(recording.num_scans());
-  result.keyframes = static_cast<int>(map.keyframes.size());
-  for (const StampedPose& pose : driven) result.route.push_back(pose.T_world_body.translation());
-  return result;
-}
-
 std::string json_name(const std::string& method) {
   return method == "kiss-icp" ? "kiss_icp" : "kinematic_icp";
 }
@@ -78,7 +61,7 @@ Result<RobotRun> run_robot(const Recording& recording, RobotId id, const RobotSl
   run.map = std::make_shared<const RobotMap>(slam.map());
   if (run.map->keyframes.empty()) return fail(recording.name + ": no scan became a keyframe");
   run.truth = recording.truth;
-  run.result = robot_facts(recording, *run.map);
+  run.result = robot_facts(*run.map, run.truth);
   if (compare)
     run.result.odometry.push_back(odometry_result("kiss_icp", kiss_trajectory, run.truth, kiss_ms));
   run.result.odometry.push_back(
@@ -173,6 +156,23 @@ int wrong_in_use(const JudgedSolution& judged) {
 
 }  // namespace
 
+RobotResult robot_facts(const RobotMap& map, const Trajectory& truth) {
+  RobotResult result;
+  result.name = map.name;
+  // What the robot drove while it recorded; its clock starts before the first whole sweep.
+  Trajectory driven;
+  for (const StampedPose& scan : map.odometry) {
+    if (const Result<Pose> pose = pose_at(truth, scan.stamp)) driven.push_back({scan.stamp, *pose});
+  }
+  const Trajectory& path = driven.empty() ? map.odometry : driven;
+  result.path_length_m = path_length(path);
+  result.duration_s = to_seconds(map.odometry.back().stamp - map.odometry.front().stamp);
+  result.scans = static_cast<int>(map.odometry.size());
+  result.keyframes = static_cast<int>(map.keyframes.size());
+  for (const StampedPose& pose : driven) result.route.push_back(pose.T_world_body.translation());
+  return result;
+}
+
 Trajectory solved_trajectory(const RobotMap& map, const std::vector<Pose>& T_world_keyframe) {
   Trajectory trajectory;
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
@@ -200,6 +200,16 @@ std::vector<std::shared_ptr<const RobotMap>> selected_maps(const std::vector<con
     maps.push_back(std::make_shared<const RobotMap>(select_keyframes(*run->map, selection)));
   }
   return maps;
+}
+
+Result<std::vector<KeyframeSelection>> selections_of(const std::vector<std::string>& names) {
+  std::vector<KeyframeSelection> selections;
+  for (const std::string& name : names) {
+    const Result<KeyframeSelection> selection = keyframe_selection(name);
+    if (!selection) return tl::unexpected(selection.error());
+    selections.push_back(*selection);
+  }
+  return selections;
 }
 
 Result<JudgedSolution> judge(const std::vector<const RobotRun*>& runs, const Meeting& meeting,

@@ -24,9 +24,15 @@ struct RobotRun {
 Result<std::vector<RobotRun>> run_robots(const std::vector<Recording>& recordings,
                                          const RobotSlamConfig& config);
 
+/// What a robot drove and how many scans and keyframes it made of that, without its odometries.
+RobotResult robot_facts(const RobotMap& map, const Trajectory& truth);
+
 /// What those robots' maps are under a keyframe policy.
 std::vector<std::shared_ptr<const RobotMap>> selected_maps(const std::vector<const RobotRun*>& runs,
                                                            KeyframeSelection selection);
+
+/// The keyframe policies of those names.
+Result<std::vector<KeyframeSelection>> selections_of(const std::vector<std::string>& names);
 
 /// What the ground truth says about one solution of a meeting.
 struct JudgedSolution {

@@ -50,6 +50,32 @@ Result<> set_table(const Fields& fields, const std::string& prefix, const toml::
   return {};
 }
 
+/// Calls `use` with the parsed text; a syntax error says where it is.
+template <class Use>
+Result<> with_parsed(std::string_view text, const Use& use) {
+  try {
+    return use(toml::parse(text));
+  } catch (const toml::parse_error& error) {
+    const toml::source_position& at = error.source().begin;
+    return fail(format("line {}, column {}: {}", at.line, at.column, error.description()));
+  }
+}
+
+Result<> set_entries(const toml::table& file, std::string_view name, const std::function<Fields()>& entry) {
+  for (const auto& [key, node] : file) {
+    const toml::array* entries = key.str() == name ? node.as_array() : nullptr;
+    if (entries == nullptr)
+      return fail(format("line {}: '{}' is not expected here; the file is a list of [[{}]]",
+                         node.source().begin.line, key.str(), name));
+    for (const toml::node& item : *entries) {
+      const auto* table = item.as_table();
+      if (table == nullptr) return fail(format("line {}: a table is needed", item.source().begin.line));
+      if (const Result<> set = set_table(entry(), "", *table); !set) return set;
+    }
+  }
+  return {};
+}
+
 /// "kiss_icp" and "voxel_size" of kiss_icp.voxel_size.
 std::pair<std::string, std::string> split_key(const std::string& key) {
   const std::size_t dot = key.rfind('.');
@@ -97,18 +123,23 @@ std::string toml_value(const Field& field) {
 }  // namespace
 
 Result<> parse_config(const Fields& fields, std::string_view toml) {
-  try {
-    return set_table(fields, "", toml::parse(toml));
-  } catch (const toml::parse_error& error) {
-    const toml::source_position& at = error.source().begin;
-    return fail(format("line {}, column {}: {}", at.line, at.column, error.description()));
-  }
+  return with_parsed(toml, [&](const toml::table& file) { return set_table(fields, "", file); });
 }
 
 Result<> load_config(const std::filesystem::path& path, const Fields& fields) {
   const Result<std::string> bytes = read_bytes(path);
   if (!bytes) return tl::unexpected(bytes.error());
   const Result<> parsed = parse_config(fields, *bytes);
+  if (!parsed) return fail(path.string(), parsed.error());
+  return {};
+}
+
+Result<> load_entries(const std::filesystem::path& path, std::string_view name,
+                      const std::function<Fields()>& entry) {
+  const Result<std::string> bytes = read_bytes(path);
+  if (!bytes) return tl::unexpected(bytes.error());
+  const Result<> parsed =
+      with_parsed(*bytes, [&](const toml::table& file) { return set_entries(file, name, entry); });
   if (!parsed) return fail(path.string(), parsed.error());
   return {};
 }

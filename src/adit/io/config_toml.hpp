@@ -6,6 +6,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,12 @@ namespace adit {
 /// have been set.
 Result<> parse_config(const Fields& fields, std::string_view toml);
 Result<> load_config(const std::filesystem::path& path, const Fields& fields);
+
+/// A file that is a list: every table of the array `name`, written [[name]], sets the fields that `entry`
+/// hands out for it, in their order. Anything else at the top of the file is refused, and so is what
+/// `parse_config` refuses.
+Result<> load_entries(const std::filesystem::path& path, std::string_view name,
+                      const std::function<Fields()>& entry);
 
 /// All fields with their present values, grouped in tables; meaning, unit and range as comments.
 /// `parse_config` reads it back.

@@ -196,6 +196,46 @@ TEST(ConfigToml, ErrorsNameTheLine) {
   EXPECT_ERROR(load_config("/absent.toml", fields), "/absent.toml: no such file");
 }
 
+struct ListEntry {
+  std::string name;
+  int size = 1;
+};
+
+Result<std::vector<ListEntry>> entries_of(const TemporaryFolder& folder, const std::string& text) {
+  put_file(folder / "list.toml", text);
+  std::vector<ListEntry> entries;
+  return load_entries(folder / "list.toml", "box",
+                      [&]() -> Fields {
+                        ListEntry& entry = entries.emplace_back();
+                        return {{"name", &entry.name, "", 0, 0, "its name"},
+                                {"shape.size", &entry.size, "", 1, 9, "its size"}};
+                      })
+      .map([&] { return entries; });
+}
+
+TEST(ConfigToml, AListHasOneEntryATable) {
+  const TemporaryFolder folder;
+  const auto entries = entries_of(folder, "[[box]]\nname = 'a'\nshape = {size = 3}\n[[box]]\nname = 'b'\n");
+  ASSERT_TRUE(entries) << entries.error().message;
+  ASSERT_EQ(entries->size(), 2U);
+  EXPECT_EQ((*entries)[0].name, "a");
+  EXPECT_EQ((*entries)[0].size, 3);
+  EXPECT_EQ((*entries)[1].name, "b");
+  EXPECT_EQ((*entries)[1].size, 1);
+  EXPECT_TRUE(entries_of(folder, "")->empty());
+}
+
+TEST(ConfigToml, AListRefusesWhatIsNotItsOwn) {
+  const TemporaryFolder folder;
+  EXPECT_ERROR(entries_of(folder, "[[bok]]\n"), "line 1");
+  EXPECT_ERROR(entries_of(folder, "[box]\nname = 'a'\n"), "[[box]]");
+  EXPECT_ERROR(entries_of(folder, "box = [1]\n"), "a table is needed");
+  EXPECT_ERROR(entries_of(folder, "[[box]]\nnam = 'a'\n"), "did you mean");
+  EXPECT_ERROR(entries_of(folder, "[[box]]\nshape.size = 10\n"), "line 2");
+  EXPECT_ERROR(entries_of(folder, "[[box]\n"), "line 1");
+  EXPECT_ERROR(load_entries(folder / "absent.toml", "box", [] { return Fields{}; }), "absent.toml");
+}
+
 TEST(ConfigToml, MarkdownHasOneRowAField) {
   TestConfig config;
   const std::string text = to_markdown(fields_of(config));

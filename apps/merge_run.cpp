@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "merge_run.hpp"
+
+#include <algorithm>
+#include <ctime>
+
+#include "adit/evaluation/ate.hpp"
+#include "adit/evaluation/shared_stretch.hpp"
+
+namespace adit::app {
+namespace {
+
+/// Processor time of all threads so far: what a decision costs, whatever else the machine does meanwhile.
+double processor_s() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// What two robots know of each other, as if there were no others.
+FleetGraph between(const FleetGraph& all, RobotId a, RobotId b) {
+  FleetGraph pair;
+  for (const RobotId robot : {a, b}) pair.robots[robot] = all.robots.at(robot);
+  for (const auto& [ends, loop] : all.loops)
+    if (ends.first.robot == a && ends.second.robot == b) pair.loops.emplace(ends, loop);
+  return pair;
+}
+
+int loops_in_use(const FleetSolution& solution) {
+  return static_cast<int>(
+      std::ranges::count_if(solution.loops, [](const LoopOutcome& loop) { return loop.in_use(); }));
+}
+
+MergeEvidence::Robot evidence_of(const MergedRobot& robot, double odometry_ate_max_m) {
+  return {robot.path_length_m, robot.ate ? robot.ate->max_m : 0.0, odometry_ate_max_m};
+}
+
+/// The largest ATE of a robot; a robot without a pose to compare has none.
+double ate_max(const MergedRobot& robot) { return robot.ate ? robot.ate->max_m : 0.0; }
+double ate_pct(const MergedRobot& robot) { return robot.ate_max_over_path_pct().value_or(0.0); }
+
+Result<MergePair> run_pair(const std::vector<RobotRun>& runs, const Meeting& meeting, const MergeTruth& truth,
+                           std::array<std::size_t, 2> robots, const BackEndConfig& config) {
+  const auto [a, b] = robots;
+  const std::vector<const RobotRun*> both = {&runs[a], &runs[b]};
+  const FleetGraph known = between(meeting.agents.front().known(), runs[a].map->id, runs[b].map->id);
+  const Meeting of_two{{meeting.maps[a], meeting.maps[b]}, {}, {}};
+  const Result<JudgedSolution> judged = judge(both, of_two, solve(known, config));
+  if (!judged) return tl::unexpected(judged.error());
+  const PairResult result = pair_result(both, of_two, *judged);
+  MergePair pair;
+  pair.robots = {result.robots[0].name, result.robots[1].name};
+  pair.shared_m = truth.shared_m[a][b];
+  pair.refused_reason = result.refused_reason;
+  pair.registrations = static_cast<int>(known.loops.size());
+  pair.loops_in_use = loops_in_use(judged->solution);
+  pair.wrong_loops_in_use = result.wrong_loops_in_solution;
+  pair.ate_max_m = {ate_max(result.robots[0]), ate_max(result.robots[1])};
+  pair.ate_max_over_path_pct = {ate_pct(result.robots[0]), ate_pct(result.robots[1])};
+  pair.outcome = judge_merge({result.merged,
+                              pair.loops_in_use,
+                              pair.wrong_loops_in_use,
+                              {evidence_of(result.robots[0], truth.odometry_ate_max_m[a]),
+                               evidence_of(result.robots[1], truth.odometry_ate_max_m[b])}});
+  return pair;
+}
+
+/// The names of the robots of each group of indices.
+std::vector<std::vector<std::string>> named(const std::vector<RobotRun>& runs,
+                                            const std::vector<std::vector<std::size_t>>& groups) {
+  std::vector<std::vector<std::string>> names;
+  for (const std::vector<std::size_t>& group : groups) {
+    names.emplace_back();
+    for (const std::size_t robot : group) names.back().push_back(runs[robot].result.name);
+  }
+  return names;
+}
+
+/// Whether every map lies within one group of robots that anything at all joins.
+bool are_within(const std::vector<std::vector<std::string>>& maps,
+                const std::vector<std::vector<std::string>>& groups) {
+  return std::ranges::all_of(maps, [&](const std::vector<std::string>& map) {
+    return std::ranges::any_of(groups, [&](const std::vector<std::string>& group) {
+      return std::ranges::all_of(
+          map, [&](const std::string& robot) { return std::ranges::count(group, robot) > 0; });
+    });
+  });
+}
+
+/// The joint solution judged like a pair, over the robots that share a map with another.
+bool is_wrong(const MergeTruth& truth, const JointResult& result, int num_loops_in_use) {
+  MergeEvidence evidence{num_loops_in_use > 0, num_loops_in_use, result.wrong_loops_in_solution, {}};
+  for (std::size_t i = 0; i < result.robots.size(); ++i) {
+    const bool is_alone = std::ranges::any_of(result.components, [&](const std::vector<std::string>& map) {
+      return map.size() == 1 && map.front() == result.robots[i].name;
+    });
+    if (!is_alone) evidence.robots.push_back(evidence_of(result.robots[i], truth.odometry_ate_max_m[i]));
+  }
+  return judge_merge(evidence) == MergeOutcome::wrong;
+}
+
+MergeJoint joint_of(const std::vector<RobotRun>& runs, const MergeTruth& truth, const JointResult& result,
+                    int num_loops_in_use) {
+  constexpr double kAnything = 1e-3;
+  MergeJoint joint;
+  joint.maps = result.components;
+  joint.possible_maps = named(runs, groups_sharing(truth.shared_m, kMergeableShare));
+  joint.wrong = is_wrong(truth, result, num_loops_in_use) ||
+                !are_within(joint.maps, named(runs, groups_sharing(truth.shared_m, kAnything)));
+  joint.wrong_loops_in_use = result.wrong_loops_in_solution;
+  for (const MergedRobot& robot : result.robots) {
+    joint.ate_max_m = std::max(joint.ate_max_m, ate_max(robot));
+    joint.ate_max_over_path_pct = std::max(joint.ate_max_over_path_pct, ate_pct(robot));
+  }
+  return joint;
+}
+
+}  // namespace
+
+Result<MergeTruth> merge_truth(const std::vector<RobotRun>& runs) {
+  MergeTruth truth;
+  for (const RobotRun& a : runs) {
+    const Result<AteResult> odometry = ate(a.map->odometry, a.truth);
+    if (!odometry) return fail(a.result.name, odometry.error());
+    truth.odometry_ate_max_m.push_back(odometry->max_m);
+    std::vector<double>& row = truth.shared_m.emplace_back();
+    for (const RobotRun& b : runs) row.push_back(&a == &b ? 0.0 : shared_stretch_m(a.truth, b.truth));
+  }
+  return truth;
+}
+
+Result<MergeRun> run_merges(const std::vector<RobotRun>& runs, const MergeTruth& truth,
+                            KeyframeSelection selection, const RunConfig& config) {
+  std::vector<const RobotRun*> all;
+  for (const RobotRun& run : runs) all.push_back(&run);
+  const double start_s = processor_s();
+  const Result<Meeting> meeting = hold_meeting(selected_maps(all, selection), config);
+  if (!meeting) return tl::unexpected(meeting.error());
+  const FleetGraph& known = meeting->agents.front().known();
+  const FleetSolution solution = solve(known, config.back_end);
+  MergeRun result;
+  result.time_s = processor_s() - start_s;
+  result.keyframes = to_string(selection);
+  result.registrations = static_cast<int>(known.loops.size());
+  const Result<JudgedSolution> judged = judge(all, *meeting, solution);
+  if (!judged) return tl::unexpected(judged.error());
+  result.joint = joint_of(runs, truth, joint_result(all, *meeting, *judged), loops_in_use(solution));
+  for (std::size_t a = 0; a < runs.size(); ++a)
+    for (std::size_t b = a + 1; b < runs.size(); ++b) {
+      const Result<MergePair> pair = run_pair(runs, *meeting, truth, {a, b}, config.back_end);
+      if (!pair) return tl::unexpected(pair.error());
+      result.pairs.push_back(*pair);
+    }
+  return result;
+}
+
+void put_run(std::vector<MergeRun>& runs, MergeRun run) {
+  const auto old = std::ranges::find_if(runs, [&](const MergeRun& other) {
+    return other.world == run.world && other.keyframes == run.keyframes;
+  });
+  if (old == runs.end())
+    runs.push_back(std::move(run));
+  else
+    *old = std::move(run);
+}
+
+}  // namespace adit::app

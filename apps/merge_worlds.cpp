@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "merge_worlds.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <set>
+
+#include "adit/core/format.hpp"
+#include "adit/core/parallel.hpp"
+#include "adit/core/version.hpp"
+#include "adit/io/atomic_file.hpp"
+#include "adit/io/config_toml.hpp"
+#include "adit/io/crc32.hpp"
+#include "adit/io/robot_map_file.hpp"
+#include "adit/io/tum.hpp"
+#include "inputs.hpp"
+#include "progress.hpp"
+
+namespace adit::app {
+namespace {
+
+Fields fields_of(ListedWorld& c) {
+  Fields fields = {{"name", &c.name, "", 0, 0, "what tables and caches call the world"},
+                   {"group",
+                    &c.group,
+                    "",
+                    0,
+                    0,
+                    "tuned on, kept for the check, or beyond what measurement can decide",
+                    {"tuning", "check", "limit"}},
+                   {"noise_seed", &c.noise_seed, "", 0, 1e15, "of all noise of sensors and wheels"},
+                   {"routes_file", &c.routes_file, "", 0, 0, "routes.yaml of a mesh on disk"}};
+  append(fields, "world", adit::fields_of(c.generated));
+  return fields;
+}
+
+Result<> check(const std::deque<ListedWorld>& worlds) {
+  std::set<std::string> names;
+  for (const ListedWorld& world : worlds) {
+    if (world.name.empty()) return fail("an entry has no name");
+    if (!names.insert(world.name).second) return fail("two worlds are called '" + world.name + "'");
+  }
+  return {};
+}
+
+/// Everything that decides what the robots record.
+std::string key_of(ListedWorld world, RunConfig& config) {
+  Fields fields = fields_of(world);
+  append(fields, "simulation", adit::fields_of(config.simulation));
+  append(fields, "robot", adit::fields_of(config.robot));
+  return format("{:08x}", crc32(std::string(version()) + to_toml(fields)));
+}
+
+Result<World> world_of(const ListedWorld& world) {
+  return world.routes_file.empty() ? make_world(world.generated) : load_world({}, world.routes_file);
+}
+
+std::filesystem::path map_file(const std::filesystem::path& folder, std::size_t robot) {
+  return folder / format("{}.map", robot);
+}
+
+std::filesystem::path truth_file(const std::filesystem::path& folder, std::size_t robot) {
+  return folder / format("{}_truth.tum", robot);
+}
+
+/// Drives one recording and writes what it left.
+Result<> record(const Recording& recording, std::size_t robot, const RobotSlamConfig& config,
+                const std::filesystem::path& folder, Progress& progress) {
+  const auto observer = [&](std::size_t) {
+    progress.advance();
+    return !interrupted();
+  };
+  const Result<RobotMap> map = map_recording(recording, {static_cast<std::uint8_t>(robot)}, config, observer);
+  if (!map) return tl::unexpected(map.error());
+  return write_robot_map(map_file(folder, robot), *map).and_then([&] {
+    return write_tum(truth_file(folder, robot), recording.truth);
+  });
+}
+
+/// Drives all robots of the world; the folder appears whole or not at all.
+Result<> record_all(const ListedWorld& listed, const RunConfig& config, const std::filesystem::path& folder) {
+  const Result<World> world = world_of(listed);
+  if (!world) return tl::unexpected(world.error());
+  const Result<std::vector<Recording>> recordings = simulate(*world, config.simulation);
+  if (!recordings) return tl::unexpected(recordings.error());
+  Result<OutputDir> out = OutputDir::create(folder, "maps");
+  if (!out) return tl::unexpected(out.error());
+  std::size_t num_scans = 0;
+  for (const Recording& recording : *recordings) num_scans += recording.num_scans();
+  Progress progress(listed.name + ": scans", num_scans);
+  std::vector<Result<>> done(recordings->size());
+  parallel_for_each(recordings->size(), [&](std::size_t i) {
+    done[i] = record((*recordings)[i], i, config.robot, out->path(), progress);
+  });
+  const auto failed = std::ranges::find_if(done, [](const Result<>& result) { return !result; });
+  return failed == done.end() ? out->commit() : *failed;
+}
+
+Result<RobotRun> read_robot(const std::filesystem::path& folder, std::size_t robot) {
+  Result<RobotMap> map = read_robot_map(map_file(folder, robot));
+  if (!map) return tl::unexpected(map.error());
+  Result<Trajectory> truth = read_tum(truth_file(folder, robot));
+  if (!truth) return tl::unexpected(truth.error());
+  RobotRun run{std::make_shared<const RobotMap>(std::move(*map)), std::move(*truth), {}};
+  run.result = robot_facts(*run.map, run.truth);
+  return run;
+}
+
+}  // namespace
+
+Result<std::vector<ListedWorld>> read_world_list(const std::filesystem::path& list) {
+  std::deque<ListedWorld> worlds;  // Entries stay where they are while others are added.
+  const Result<> loaded =
+      load_entries(list, "world", [&] { return fields_of(worlds.emplace_back()); }).and_then([&] {
+        return check(worlds).map_error(
+            [&](const Error& error) { return Error{list.string() + ": " + error.message}; });
+      });
+  if (!loaded) return tl::unexpected(loaded.error());
+  for (ListedWorld& world : worlds)
+    if (!world.routes_file.empty())
+      world.routes_file = (list.parent_path() / world.routes_file).lexically_normal().string();
+  return std::vector<ListedWorld>(worlds.begin(), worlds.end());
+}
+
+bool is_available(const ListedWorld& world) {
+  return world.routes_file.empty() || std::filesystem::exists(world.routes_file);
+}
+
+Result<std::vector<RobotRun>> driven_robots(const ListedWorld& world, RunConfig config,
+                                            const std::filesystem::path& cache) {
+  config.simulation.seed = world.noise_seed;
+  const std::filesystem::path folder = cache / format("{}-{}", world.name, key_of(world, config));
+  if (!std::filesystem::exists(folder)) {
+    if (const Result<> recorded = record_all(world, config, folder); !recorded)
+      return tl::unexpected(recorded.error());
+  }
+  std::vector<RobotRun> runs;
+  for (std::size_t robot = 0; std::filesystem::exists(map_file(folder, robot)); ++robot) {
+    Result<RobotRun> run = read_robot(folder, robot);
+    if (!run) return fail(run.error().message + "; remove " + folder.string() + " and run again");
+    runs.push_back(std::move(*run));
+  }
+  if (runs.size() < 2) return fail(world.name + ": merging needs at least two robots");
+  return runs;
+}
+
+}  // namespace adit::app

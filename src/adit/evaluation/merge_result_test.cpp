@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/evaluation/merge_result.hpp"
+
+#include <gtest/gtest.h>
+
+#include "adit/core/check.hpp"
+
+namespace adit {
+namespace {
+
+MergeEvidence evidence(double ate_m, int wrong_loops) {
+  return {true, 10, wrong_loops, {{400.0, ate_m, 3.0}, {400.0, 0.5, 1.0}}};
+}
+
+TEST(JudgeMerge, ThePapersRuleDecidesSuccess) {
+  EXPECT_EQ(judge_merge(evidence(3.9, 0)), MergeOutcome::success);
+  EXPECT_EQ(judge_merge(evidence(4.1, 0)), MergeOutcome::bent);
+  MergeEvidence apart = evidence(3.9, 0);
+  apart.merged = false;
+  EXPECT_EQ(judge_merge(apart), MergeOutcome::refused);
+}
+
+TEST(JudgeMerge, AWrongPlaceIsToldFromDrift) {
+  EXPECT_EQ(judge_merge(evidence(6.9, 0)), MergeOutcome::bent);
+  EXPECT_EQ(judge_merge(evidence(7.1, 0)), MergeOutcome::wrong);
+  EXPECT_EQ(judge_merge(evidence(5.0, 4)), MergeOutcome::bent);
+  EXPECT_EQ(judge_merge(evidence(5.0, 5)), MergeOutcome::wrong);
+}
+
+TEST(JudgeMerge, OutcomesHaveNames) {
+  for (const MergeOutcome outcome :
+       {MergeOutcome::success, MergeOutcome::bent, MergeOutcome::refused, MergeOutcome::wrong})
+    EXPECT_EQ(merge_outcome(to_string(outcome)), outcome);
+  EXPECT_THROW((void)merge_outcome("perhaps"), ContractViolation);
+}
+
+MergePair pair_of(double shared_m, MergeOutcome outcome) {
+  MergePair pair;
+  pair.robots = {"robot_0", "robot_1"};
+  pair.shared_m = shared_m;
+  pair.outcome = outcome;
+  pair.refused_reason = outcome == MergeOutcome::refused ? "the tunnel was too smooth" : "";
+  return pair;
+}
+
+MergeRun made_up_run(const std::string& world, const std::string& group) {
+  MergeRun run;
+  run.world = world;
+  run.group = group;
+  run.keyframes = "all";
+  run.pairs = {pair_of(90.0, MergeOutcome::success), pair_of(60.0, MergeOutcome::refused),
+               pair_of(30.0, MergeOutcome::wrong), pair_of(0.0, MergeOutcome::refused),
+               pair_of(12.0, MergeOutcome::wrong)};
+  run.joint.maps = {{"robot_0", "robot_1"}, {"robot_2"}};
+  run.joint.possible_maps = {{"robot_0", "robot_1", "robot_2"}};
+  run.registrations = 500;
+  return run;
+}
+
+TEST(MergeCounts, PairsAreCountedByWhatTheyShare) {
+  MergeCounts counts;
+  counts.add(made_up_run("a", "tuning"));
+  counts.add(made_up_run("b", "tuning"));
+  EXPECT_EQ(counts.worlds, 2);
+  EXPECT_EQ(counts.mergeable, 6);
+  EXPECT_EQ(counts.success, 2);
+  EXPECT_EQ(counts.refused, 2);
+  EXPECT_EQ(counts.others, 4);
+  EXPECT_EQ(counts.kept_apart, 2);
+  EXPECT_EQ(counts.wrong, 4);
+  EXPECT_EQ(counts.joint_whole, 0);
+  EXPECT_EQ(counts.registrations, 1000);
+}
+
+TEST(MergeTables, NameEveryRefusalAndEveryWrongMerge) {
+  const std::vector<Table> tables = merge_tables({made_up_run("a", "tuning"), made_up_run("b", "check")});
+  ASSERT_EQ(tables.size(), 4U);
+  for (const Table& table : tables)
+    for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size()) << table.title;
+  EXPECT_EQ(tables[0].rows.size(), 2U);  // One a group.
+  EXPECT_EQ(tables[1].rows.size(), 2U);
+  EXPECT_EQ(tables[1].rows[0][9], "0+1 2 (0+1+2)");
+  EXPECT_EQ(tables[2].rows.size(), 4U);
+  EXPECT_EQ(tables[3].rows.size(), 2U);
+  EXPECT_EQ(tables[3].rows[0].back(), "the tunnel was too smooth");
+}
+
+TEST(MergeTables, LeaveOutWhatDidNotHappen) {
+  MergeRun run = made_up_run("a", "tuning");
+  run.pairs = {pair_of(90.0, MergeOutcome::success)};
+  EXPECT_EQ(merge_tables({run}).size(), 2U);
+}
+
+}  // namespace
+}  // namespace adit

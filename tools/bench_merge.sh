@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The adit authors
+# SPDX-License-Identifier: MIT
+# Measures which robots' maps are merged, refused or merged wrongly over the worlds of bench/merge/worlds.toml, and writes
+# the section "Merging" of docs/results.md. Arguments go to `adit merge-study`, for example
+#   tools/bench_merge.sh --keyframes all,tunnel_filter --groups tuning
+#   tools/bench_merge.sh --only zab-1,tiles-1 --threads 1 --set back_end.min_loops=3
+# build/merge keeps the robots' maps, so that a second run starts behind the odometry, and the results of all runs: worlds
+# and policies that a run leaves out keep theirs.
+#   ADIT_MERGE_FRESH=1    drives all worlds anew: needed after a change of simulation, odometry, keyframes or descriptors
+#   ADIT_MERGE_PAGE=FILE  writes the tables into that page instead
+set -euo pipefail
+cd "$(dirname "$0")/.."
+tools/setup.sh
+cmake --preset release >/dev/null
+cmake --build --preset release --target adit_program
+[ -z "${ADIT_MERGE_FRESH:-}" ] || rm -rf build/merge/maps
+build/release/adit merge-study --worlds bench/merge/worlds.toml --out build/merge \
+  --page "${ADIT_MERGE_PAGE:-docs/results.md}" "$@"
