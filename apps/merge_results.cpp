@@ -95,7 +95,8 @@ Result<std::vector<MergeRun>> read_merge_runs(const std::filesystem::path& file)
   if (!bytes) return tl::unexpected(bytes.error());
   try {
     std::vector<MergeRun> runs;
-    for (const Json& run : Json::parse(*bytes).at("runs")) runs.push_back(run_of(run));
+    const Json file_content = Json::parse(*bytes);
+    for (const Json& run : file_content.at("runs")) runs.push_back(run_of(run));
     return runs;
   } catch (const std::exception&) {
     return fail(file.string() + ": these are no results of this version; remove the file");
