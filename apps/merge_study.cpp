@@ -26,6 +26,7 @@ struct Options {
   std::vector<std::string> keyframes = {"all", "tunnel_filter"};
   std::vector<std::string> groups = {"tuning", "check"};
   std::vector<std::string> only;
+  std::string variant;
   bool json = false;
 };
 
@@ -80,6 +81,7 @@ Result<> run_world(const ListedWorld& world, const std::vector<KeyframeSelection
     if (!run) return fail(world.name, run.error());
     run->world = world.name;
     run->group = world.group;
+    if (!options.variant.empty()) run->keyframes += " " + options.variant;
     print_line(*run, options.json ? stderr : stdout);
     put_run(runs, std::move(*run));
   }
@@ -162,6 +164,9 @@ void add_merge_study(Program& program) {
       ->capture_default_str();
   command->add_option("--only", options->only, "Only the worlds of these names, whatever their group")
       ->delimiter(',');
+  command->add_option("--variant", options->variant,
+                      "Added to the policies' names, so that a run with other settings (--set) stands beside "
+                      "the usual one instead of replacing it");
   command->add_option("--lidar", options->lidar, "Simulated LiDAR")->capture_default_str();
   command->add_option("--page", options->page,
                       "Markdown file whose section between 'merging' marks takes the tables of all runs");

@@ -44,8 +44,9 @@ Result<> check(const std::deque<ListedWorld>& worlds) {
   return {};
 }
 
-/// Everything that decides what the robots record.
+/// Everything that decides what the robots record; a world may change its group.
 std::string key_of(ListedWorld world, RunConfig& config) {
+  world.group = ListedWorld{}.group;
   Fields fields = fields_of(world);
   append(fields, "simulation", adit::fields_of(config.simulation));
   append(fields, "robot", adit::fields_of(config.robot));

@@ -72,9 +72,10 @@ TEST(MergeStudy, KeepsTheMapsAndTheResultsOfEarlierRuns) {
   EXPECT_TRUE(page.ends_with("<!-- merging end -->\nThe end.\n"));
   EXPECT_NE(page.find("| short | all | 1 |"), std::string::npos) << page;
 
-  // Another configuration of the robots is another drive.
-  expect_done(study(folder, "--keyframes all --set robot.keyframes.distance_m=1"));
+  // Another configuration of the robots is another drive, and has a place of its own where it is named.
+  expect_done(study(folder, "--keyframes all --variant coarse --set robot.keyframes.distance_m=1"));
   EXPECT_EQ(test::num_entries(folder / "out/maps"), 2U);
+  EXPECT_NE(get_file(folder / "out/results.csv").find("short,check,all coarse,"), std::string::npos);
 }
 
 TEST(MergeStudy, TheLastRunsResultsAreTheSameFromTheCache) {

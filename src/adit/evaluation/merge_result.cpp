@@ -198,7 +198,7 @@ void MergeCounts::add(const MergeRun& run) {
     }
   }
   joint_wrong += run.joint.wrong ? 1 : 0;
-  joint_whole += run.joint.maps == run.joint.possible_maps ? 1 : 0;
+  joint_whole += run.joint.maps == run.joint.possible_maps && !run.joint.wrong ? 1 : 0;
   joint_wrong_loops += run.joint.wrong_loops_in_use;
   registrations += run.registrations;
   time_s += run.time_s;
