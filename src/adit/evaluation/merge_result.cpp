@@ -38,10 +38,6 @@ bool is_worse_than_drift(const MergeEvidence& evidence) {
   return error > kFactor * drift + kSlack;
 }
 
-std::string pair_text(const std::array<std::string, 2>& robots) {
-  return format("{} and {}", robots[0], robots[1]);
-}
-
 std::string share_text(int part, int total) {
   return total == 0 ? "-" : format("{} of {} ({:.0f} %)", part, total, 100.0 * part / total);
 }
@@ -141,24 +137,26 @@ Table refusals_table(const std::vector<MergeRun>& runs) {
   for (const MergeRun& run : runs)
     for (const MergePair& pair : run.pairs)
       if (pair.mergeable() && pair.outcome == MergeOutcome::refused)
-        table.rows.push_back({run.world, run.keyframes, pair_text(pair.robots),
+        table.rows.push_back({run.world, run.keyframes, maps_text({{pair.robots[0], pair.robots[1]}}),
                               format("{:.0f}", pair.shared_m), pair.refused_reason});
   return table;
 }
 
 Table wrong_table(const std::vector<MergeRun>& runs) {
   Table table{"Wrong merges",
-              "Pairs merged in a wrong place.",
+              "Each pair with the stretch that it shares and the largest ATE after the merge.",
               {},
-              {"World", "Keyframes", "Robots", "Shared (m)", "Loops in use", "Of them wrong", "Max ATE (m)"},
+              {"World", "Keyframes", "Pairs merged in a wrong place"},
               {}};
-  for (const MergeRun& run : runs)
+  for (const MergeRun& run : runs) {
+    std::string pairs;
     for (const MergePair& pair : run.pairs)
       if (pair.outcome == MergeOutcome::wrong)
-        table.rows.push_back({run.world, run.keyframes, pair_text(pair.robots),
-                              format("{:.0f}", pair.shared_m), format("{}", pair.loops_in_use),
-                              format("{}", pair.wrong_loops_in_use),
-                              format("{:.1f}", std::max(pair.ate_max_m[0], pair.ate_max_m[1]))});
+        pairs += format("{}{} ({:.0f} m shared, {:.0f} m off)", pairs.empty() ? "" : ", ",
+                        maps_text({{pair.robots[0], pair.robots[1]}}), pair.shared_m,
+                        std::max(pair.ate_max_m[0], pair.ate_max_m[1]));
+    if (!pairs.empty()) table.rows.push_back({run.world, run.keyframes, pairs});
+  }
   return table;
 }
 
