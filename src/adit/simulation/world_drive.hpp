@@ -28,7 +28,8 @@ struct LinePoint {
 [[nodiscard]] Polyline part_of(std::span<const Vector3> line, double begin, double end);
 
 /// What one robot does: `legs` are lines that cross (or touch) one after another, each followed from its
-/// crossing with the one before to that with the one after; the last one to where `length` is used up.
+/// crossing with the one before to that with the one after; the last one to where `length` is used up, or
+/// to its end where that comes a little earlier.
 struct Drive {
   std::string name;
   double speed_mps = 1.87;
@@ -39,7 +40,8 @@ struct Drive {
 };
 
 /// Rounds the corners and puts a waypoint about every metre. Throws ContractViolation when two legs do not
-/// meet or the legs are too short for the length: both are faults of a preset, not of its input.
+/// meet or the legs are a tenth or more too short for the length: both are faults of a preset, not of its
+/// input.
 [[nodiscard]] Route route_of(const Drive& drive);
 
 }  // namespace adit

@@ -25,9 +25,10 @@ World world_of(const std::string& preset, std::uint64_t seed) {
   return std::move(*world);
 }
 
-WorldPlan plan_of(const std::string& preset, std::uint64_t seed) {
+WorldPlan plan_of(const std::string& preset, std::uint64_t seed, const std::string& routes = "meeting") {
   WorldConfig config;
   config.seed = seed;
+  config.routes = routes;
   if (preset == "zab") return plan_zab(config);
   if (preset == "tiles") return plan_tiles(config);
   return preset == "mine" ? plan_mine(config) : plan_metro(config);
@@ -199,9 +200,22 @@ INSTANTIATE_TEST_SUITE_P(Presets, WorldOf,
                            return std::get<0>(suite.param) + std::to_string(std::get<1>(suite.param));
                          });
 
+TEST(World, EverySeedGivesDrivableRoutesApart) {
+  for (const std::string& preset : world_presets())
+    for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+      const WorldPlan plan = plan_of(preset, seed, "apart");
+      for (const Drive& drive : plan.drives)
+        for (const Vector3& waypoint : route_of(drive).waypoints) {
+          const Vector3 body(waypoint.x(), waypoint.y(), 1.2);
+          ASSERT_GE(depth_inside(plan.spaces, body), 1.0) << preset << seed << " " << waypoint.transpose();
+          ASSERT_GE(distance_to(plan.obstacles, body), 1.0) << preset << seed << " " << waypoint.transpose();
+        }
+    }
+}
+
 TEST(World, EverySeedGivesDrivableRoutes) {
   for (const std::string& preset : world_presets())
-    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
       const WorldPlan plan = plan_of(preset, seed);
       std::vector<Route> routes;
       for (const Drive& drive : plan.drives) routes.push_back(route_of(drive));
