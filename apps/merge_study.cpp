@@ -77,7 +77,7 @@ Result<> run_world(const ListedWorld& world, const std::vector<KeyframeSelection
   if (!truth) return fail(world.name, truth.error());
   for (const KeyframeSelection selection : selections) {
     if (interrupted()) return fail("interrupted");
-    Result<MergeRun> run = run_merges(*robots, *truth, selection, under(selection, config));
+    Result<MergeRun> run = run_merges(*robots, *truth, selection, config);
     if (!run) return fail(world.name, run.error());
     run->world = world.name;
     run->group = world.group;

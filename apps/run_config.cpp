@@ -10,17 +10,6 @@ RunConfig::RunConfig() {
   loops.registration.min_inliers = 30;
 }
 
-RunConfig under(KeyframeSelection selection, RunConfig config) {
-  if (selection != KeyframeSelection::adaptive) return config;
-  config.loops.adaptive = true;
-  config.loops.place.max_distance = 1.0;
-  config.loops.registration.refine = true;
-  config.loops.registration.min_inliers = 20;
-  config.loops.registration.min_overlap = 0.3;
-  config.back_end.checks_needed = true;
-  return config;
-}
-
 Fields fields_of(RunConfig& c) {
   Fields fields;
   append(fields, "simulation", fields_of(c.simulation));

@@ -4,8 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <iterator>
 #include <set>
 #include <tuple>
@@ -76,12 +74,7 @@ Fields fields_of(AgentConfig& c) {
   Fields fields = {{"max_candidates", &c.max_candidates, "", 0, 1e9,
                     "candidates that a robot registers with the peers it meets first"},
                    {"candidates_per_peer", &c.candidates_per_peer, "", 1, 1e6,
-                    "candidates that it registers with each further peer, the most similar ones"},
-                   {"adaptive", &c.adaptive, "", 0, 0,
-                    "choose the candidates that stand out from the robot's own map, and test merges"},
-                   {"adaptive_candidates", &c.adaptive_candidates, "", 1, 1e6,
-                    "candidates that an adaptive robot registers with each peer"}};
-  append(fields, "merge_check", fields_of(c.merge_check));
+                    "candidates that it registers with each further peer, the most similar ones"}};
   append(fields, "place", fields_of(c.place));
   append(fields, "registration", fields_of(c.registration));
   return fields;
@@ -142,9 +135,6 @@ Hello Agent::hello() const {
   for (const auto& [robot, peer] : peers_) known[robot].num_places = peer.num_places;
   for (const auto& [robot, loops] : registered_) {
     known[robot].num_loops = static_cast<std::uint32_t>(loops.size());
-  }
-  for (const auto& [robot, checks] : decided_) {
-    known[robot].num_checks = static_cast<std::uint32_t>(checks.size());
   }
   Hello hello;
   for (auto& [robot, entry] : known) {
@@ -222,21 +212,7 @@ Agent::Replies Agent::loop_news(RobotId peer, const Hello& theirs) const {
     const std::size_t has = known == theirs.known.end() ? 0 : known->num_loops;
     std::ranges::move(loops_from(peer, author, has), std::back_inserter(replies));
   }
-  for (const auto& [author, checks] : decided_) {
-    if (author == peer) continue;
-    const auto known = std::ranges::find(theirs.known, author, &Hello::Known::robot);
-    const std::size_t has = known == theirs.known.end() ? 0 : known->num_checks;
-    std::ranges::move(checks_from(peer, author, has), std::back_inserter(replies));
-  }
   return replies;
-}
-
-Agent::Replies Agent::checks_from(RobotId peer, RobotId author, std::size_t first) const {
-  const std::vector<MergeCheck>& all = decided_.at(author);
-  if (first >= all.size()) return {};
-  return {to(peer, MergeChecks{author,
-                               static_cast<std::uint32_t>(first),
-                               {all.begin() + static_cast<std::ptrdiff_t>(first), all.end()}})};
 }
 
 Agent::Replies Agent::loops_from(RobotId peer, RobotId author, std::size_t first) const {
@@ -324,7 +300,6 @@ std::size_t Agent::num_tried() const {
 
 void Agent::find_candidates(RobotId peer_id) {
   std::vector<LoopCandidate> found = best_candidates(peer_id);
-  if (config_.adaptive) found = distinctive(std::move(found));
   Peer& peer = peers_[peer_id];
   peer.places = {};
   const auto in_all = static_cast<std::size_t>(config_.max_candidates);
@@ -336,16 +311,12 @@ void Agent::find_candidates(RobotId peer_id) {
 
 Agent::Replies Agent::cloud_request(RobotId peer_id) const {
   const auto peer = peers_.find(peer_id);
-  if (peer == peers_.end() || (peer->second.waiting.empty() && peer->second.checks.empty())) return {};
+  if (peer == peers_.end() || peer->second.waiting.empty()) return {};
   CloudRequest request;
-  const auto ask = [&](const auto& awaited) {
-    for (const auto& [index, what] : awaited) {
-      if (request.indices.size() == kCloudsPerMessage) break;
-      request.indices.push_back(index);
-    }
-  };
-  ask(peer->second.waiting);
-  if (request.indices.empty()) ask(peer->second.checks);
+  for (const auto& [index, candidates] : peer->second.waiting) {
+    if (request.indices.size() == kCloudsPerMessage) break;
+    request.indices.push_back(index);
+  }
   return {to(peer_id, std::move(request))};
 }
 
@@ -379,27 +350,6 @@ LoopClosure Agent::verify(const LoopCandidate& candidate, const Features& match)
 
 Agent::Replies Agent::on(RobotId from, const Clouds& clouds) {
   Peer& peer = peers_[from];
-  const auto awaited = [&](const Clouds::Cloud& cloud) {
-    return peer.waiting.contains(cloud.index) || peer.checks.contains(cloud.index);
-  };
-  // Nothing of use: nor is more asked for.
-  if (std::ranges::none_of(clouds.clouds, awaited)) return {};
-  const std::size_t before = registered_[map_->id].size();
-  if (peer.waiting.empty()) {
-    check_clouds_of(from, clouds);
-  } else {
-    register_clouds_of(from, clouds);
-    if (config_.adaptive && peer.waiting.empty()) plan_merge_check(from);
-  }
-  Replies replies = loops_from(from, map_->id, before);
-  if (config_.adaptive && peer.waiting.empty() && peer.checks.empty())
-    std::ranges::move(conclude_merge_check(from), std::back_inserter(replies));
-  std::ranges::move(cloud_request(from), std::back_inserter(replies));
-  return replies;
-}
-
-void Agent::register_clouds_of(RobotId from, const Clouds& clouds) {
-  Peer& peer = peers_[from];
   std::vector<std::pair<LoopCandidate, std::size_t>> jobs;  // candidate, place in clouds
   std::vector<std::uint32_t> own;
   for (std::size_t c = 0; c < clouds.clouds.size(); ++c) {
@@ -410,135 +360,26 @@ void Agent::register_clouds_of(RobotId from, const Clouds& clouds) {
       own.push_back(candidate.query.index);
     }
   }
+  if (jobs.empty()) return {};  // nor is more asked for: this peer has sent nothing of use
   features_->prepare(own);
-  const std::vector<Features> theirs = features_of(clouds);
+  std::vector<Features> theirs(clouds.clouds.size());
+  parallel_for_each(theirs.size(), [&](std::size_t c) {
+    PointCloud cloud;
+    cloud.points = clouds.clouds[c].points;
+    theirs[c] = compute_features(cloud, config_.registration);
+  });
   std::vector<LoopClosure> found(jobs.size());
   parallel_for_each(jobs.size(),
                     [&](std::size_t i) { found[i] = verify(jobs[i].first, theirs[jobs[i].second]); });
   std::vector<Ends>& registered = registered_[map_->id];
+  const std::size_t before = registered.size();
   for (LoopClosure& loop : found) {
     const Ends ends{loop.from, loop.to};
     if (known_.loops.try_emplace(ends, std::move(loop)).second) registered.push_back(ends);
   }
-}
-
-void Agent::check_clouds_of(RobotId from, const Clouds& clouds) {
-  Peer& peer = peers_[from];
-  std::vector<std::pair<PlannedCheck, std::size_t>> jobs;  // check, place in clouds
-  std::vector<std::uint32_t> own;
-  for (std::size_t c = 0; c < clouds.clouds.size(); ++c) {
-    const auto planned = peer.checks.extract(clouds.clouds[c].index);
-    if (planned.empty()) continue;
-    jobs.emplace_back(planned.mapped(), c);
-    own.push_back(planned.mapped().own);
-  }
-  features_->prepare(own);
-  const std::vector<Features> theirs = features_of(clouds);
-  std::vector<double> confirmed(jobs.size());
-  parallel_for_each(jobs.size(), [&](std::size_t i) {
-    const auto& [check, c] = jobs[i];
-    confirmed[i] =
-        agreement_near(features_->at(check.own), theirs[c], check.T_own_theirs, config_.registration)
-            .confirmed;
-  });
-  for (std::size_t i = 0; i < jobs.size(); ++i)
-    peer.checked.push_back({jobs[i].first.T_own_theirs.translation().norm(), confirmed[i]});
-}
-
-std::vector<Features> Agent::features_of(const Clouds& clouds) const {
-  std::vector<Features> features(clouds.clouds.size());
-  parallel_for_each(features.size(), [&](std::size_t c) {
-    PointCloud cloud;
-    cloud.points = clouds.clouds[c].points;
-    features[c] = compute_features(cloud, config_.registration);
-  });
-  return features;
-}
-
-void Agent::plan_merge_check(RobotId peer_id) {
-  Peer& peer = peers_[peer_id];
-  if (!discernment_)
-    discernment_ = discernment(*map_, *features_, config_.place, config_.registration, config_.merge_check);
-  const auto graph = known_.robots.find(peer_id);
-  if (graph == known_.robots.end()) return;
-  const std::size_t num_theirs = graph->second.nodes.size();
-  std::vector<PcmLoop> loops;
-  for (const auto& [ends, loop] : known_.loops) {
-    if (ends.first.robot != map_->id || ends.second.robot != peer_id || ends.second.index >= num_theirs ||
-        loop.verdict != LoopVerdict::accepted)
-      continue;
-    loops.push_back({ends.first.index, ends.second.index, loop.T_from_to, loop_information({})});
-  }
-  if (loops.empty()) return;
-  const OdometryChain own = chain_of(known_.robots.at(map_->id));
-  const OdometryChain theirs = chain_of(graph->second);
-  std::vector<PcmLoop> agreeing;
-  for (const std::size_t l : pcm(own, theirs, loops).largest) agreeing.push_back(loops[l]);
-  peer.num_rivals = loops.size() - agreeing.size();
-  peer.checked.clear();
-  for (const PlannedCheck& check : plan_checks(own, theirs, agreeing, config_.merge_check))
-    peer.checks.emplace(check.theirs, check);
-}
-
-Agent::Replies Agent::conclude_merge_check(RobotId peer_id) {
-  const Peer& peer = peers_.at(peer_id);
-  std::vector<MergeCheck>& decided = decided_[map_->id];
-  decided.push_back(
-      judge_merge(map_->id, peer_id, *discernment_, peer.num_rivals, peer.checked, config_.merge_check));
-  known_.checks[{map_->id, peer_id}] = decided.back();
-  if (std::getenv("ADIT_TRACE")) {
-    const MergeCheck& m = decided.back();
-    std::fprintf(stderr, "TRACE %d-%d rivals %zu", int(map_->id.value), int(peer_id.value), peer.num_rivals);
-    for (const auto& r : discernment_->ranges)
-      std::fprintf(stderr, " (%.3f %d/%d)", r.threshold, r.num_passed, r.num_checked);
-    std::fprintf(stderr, " checks %u passed %u evidence %.2f |", m.num_checked, m.num_passed, m.evidence);
-    for (const auto& r : discernment_->ranges) {
-      int n = 0, passed = 0;
-      for (const auto& c : peer.checked)
-        if (&discernment_->at(c.distance_m) == &r) {
-          ++n;
-          passed += c.confirmed >= r.threshold ? 1 : 0;
-        }
-      std::fprintf(stderr, " %d/%d", passed, n);
-    }
-    std::fprintf(stderr, "\n");
-  }
-  return checks_from(peer_id, map_->id, decided.size() - 1);
-}
-
-std::vector<LoopCandidate> Agent::distinctive(std::vector<LoopCandidate> found) {
-  if (own_likeness_.empty()) own_likeness_ = likeness_of_other_places(*map_, config_.place);
-  const auto ratio = [&](const LoopCandidate& c) {
-    return c.distance / std::max(own_likeness_[c.query.index], 1e-6);
-  };
-  std::ranges::sort(found, {},
-                    [&](const LoopCandidate& c) { return std::tuple(ratio(c), c.query, c.match); });
-  constexpr std::uint32_t kNear = 6;  // keyframes
-  constexpr std::ptrdiff_t kOfAPlace = 3;
-  std::vector<LoopCandidate> chosen;
-  for (const LoopCandidate& candidate : found) {
-    if (chosen.size() == static_cast<std::size_t>(config_.adaptive_candidates)) break;
-    const auto near = std::ranges::count_if(chosen, [&](const LoopCandidate& c) {
-      const std::uint32_t i = c.query.index, k = candidate.query.index;
-      return (i < k ? k - i : i - k) < kNear;
-    });
-    if (near < kOfAPlace) chosen.push_back(candidate);
-  }
-  return chosen;
-}
-
-Agent::Replies Agent::on(RobotId /*from*/, const MergeChecks& part) {
-  const auto is_authors = [&](const MergeCheck& check) {
-    return check.a == part.author && check.a < check.b;
-  };
-  if (part.author == map_->id || !std::ranges::all_of(part.checks, is_authors)) return {};
-  std::vector<MergeCheck>& known = decided_[part.author];
-  if (part.first > known.size()) return {};  // a part before it was lost; the next Hello asks for it
-  for (std::size_t c = known.size() - part.first; c < part.checks.size(); ++c) {
-    known.push_back(part.checks[c]);
-    known_.checks[{part.checks[c].a, part.checks[c].b}] = part.checks[c];
-  }
-  return {};
+  Replies replies = loops_from(from, map_->id, before);
+  std::ranges::move(cloud_request(from), std::back_inserter(replies));
+  return replies;
 }
 
 Agent::Replies Agent::on(RobotId /*from*/, const Loops& part) {

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "adit/fleet/fleet_graph.hpp"
-#include "adit/fleet/merge_check.hpp"
 #include "adit/fleet/protocol.hpp"
 #include "adit/place/place_index.hpp"
 #include "adit/registration/registration.hpp"
@@ -20,9 +19,6 @@ struct AgentConfig {
   RegistrationConfig registration;
   int max_candidates = 6000;
   int candidates_per_peer = 8;
-  bool adaptive = false;
-  int adaptive_candidates = 64;
-  MergeCheckConfig merge_check;
 };
 Fields fields_of(AgentConfig& config);
 
@@ -96,10 +92,7 @@ class Agent {
     std::uint32_t num_places = 0;       ///< Received so far.
     std::vector<Places::Place> places;  ///< Those of them that have not been searched.
     std::map<std::uint32_t, std::vector<LoopCandidate>>
-        waiting;                                   ///< By the peer's keyframe whose cloud is awaited.
-    std::map<std::uint32_t, PlannedCheck> checks;  ///< Likewise, when all loops have been tried.
-    std::size_t num_rivals = 0;         ///< Accepted loops that do not agree with the others.
-    std::vector<CheckedPlace> checked;  ///< What came of the checks so far.
+        waiting;  ///< By the peer's keyframe whose cloud is awaited.
   };
 
   [[nodiscard]] Hello hello() const;
@@ -111,7 +104,6 @@ class Agent {
   Replies on(RobotId from, const CloudRequest& request) const;
   Replies on(RobotId from, const Clouds& clouds);
   Replies on(RobotId from, const Loops& loops);
-  Replies on(RobotId from, const MergeChecks& checks);
 
   [[nodiscard]] Replies graph_news(RobotId peer, const Hello& theirs) const;
   [[nodiscard]] Replies place_news(RobotId peer, const Hello& theirs) const;
@@ -119,14 +111,6 @@ class Agent {
   /// What `author` registered, from number `first` on.
   [[nodiscard]] Replies loops_from(RobotId peer, RobotId author, std::size_t first) const;
   [[nodiscard]] std::vector<LoopCandidate> best_candidates(RobotId peer_id) const;
-  /// Those that stand out most from what the robot's own map has that looks like them; spread over its way.
-  [[nodiscard]] std::vector<LoopCandidate> distinctive(std::vector<LoopCandidate> found);
-  void register_clouds_of(RobotId from, const Clouds& clouds);
-  void check_clouds_of(RobotId from, const Clouds& clouds);
-  [[nodiscard]] std::vector<Features> features_of(const Clouds& clouds) const;
-  void plan_merge_check(RobotId peer_id);
-  Replies conclude_merge_check(RobotId peer_id);
-  [[nodiscard]] Replies checks_from(RobotId peer, RobotId author, std::size_t first) const;
   void find_candidates(RobotId peer_id);
   [[nodiscard]] std::size_t num_tried() const;
   [[nodiscard]] Replies cloud_request(RobotId peer_id) const;
@@ -137,11 +121,8 @@ class Agent {
   std::shared_ptr<FeatureStore> features_;
   AgentConfig config_;
   FleetGraph known_;
-  std::map<RobotId, std::vector<Ends>> registered_;     ///< By author, in the order of registration.
-  std::map<RobotId, std::vector<MergeCheck>> decided_;  ///< By author, in order.
+  std::map<RobotId, std::vector<Ends>> registered_;  ///< By author, in the order of registration.
   std::map<RobotId, Peer> peers_;
-  std::optional<Discernment> discernment_;  ///< Measured when it is first needed, as is
-  std::vector<double> own_likeness_;  ///< the distance of each keyframe to the most similar other place.
 };
 
 }  // namespace adit

@@ -14,7 +14,7 @@
 
 namespace adit {
 
-inline constexpr std::uint8_t kProtocolVersion = 3;
+inline constexpr std::uint8_t kProtocolVersion = 2;
 inline constexpr std::size_t kPlacesPerMessage = 64;
 inline constexpr std::size_t kCloudsPerMessage = 16;
 inline constexpr std::size_t kNodesPerMessage = 512;
@@ -34,8 +34,7 @@ struct Hello {
     RobotId robot;
     std::uint32_t num_nodes = 0;
     std::uint32_t num_places = 0;
-    std::uint32_t num_loops = 0;   ///< Of those that this robot registered.
-    std::uint32_t num_checks = 0;  ///< Of those that this robot decided.
+    std::uint32_t num_loops = 0;  ///< Of those that this robot registered.
   };
   std::vector<Known> known;
   bool answer = false;  ///< This is the reply to a Hello.
@@ -81,29 +80,10 @@ struct Loops {
   std::vector<LoopClosure> loops;
 };
 
-/// Whether the loops of two robots may join their maps, decided by the one that searched, `a`. A later one
-/// replaces those before it.
-struct MergeCheck {
-  RobotId a, b;
-  double evidence = 0.0;  ///< Logarithm of the likelihood ratio of "same stretch" to "looks alike",
-  double needed = 0.0;    ///< and how much of it joins maps.
-  std::uint32_t num_checked = 0;
-  std::uint32_t num_passed = 0;
-  bool accepted = false;
-  std::string reason;  ///< One sentence.
-};
-
-/// Number first, first + 1, ... of those that `author`, who need not be the sender, decided.
-struct MergeChecks {
-  RobotId author;
-  std::uint32_t first = 0;
-  std::vector<MergeCheck> checks;
-};
-
 struct Message {
   RobotId from;
   RobotId to;
-  std::variant<Hello, GraphPart, Places, CloudRequest, Clouds, Loops, MergeChecks> body;
+  std::variant<Hello, GraphPart, Places, CloudRequest, Clouds, Loops> body;
 };
 
 }  // namespace adit

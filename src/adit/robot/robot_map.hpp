@@ -49,7 +49,6 @@ struct RobotMap {
 enum class KeyframeSelection {
   all,                 ///< Every keyframe in the graph and in the loop search.
   tunnel_filter,       ///< Tunnel-like keyframes leave graph and search, as in the paper.
-  adaptive,            ///< All in the graph; candidates and merges by evidence (AgentConfig::adaptive).
   tunnel_filter_keep,  ///< Tunnel-like keyframes stay in the graph and are barred from the search only.
 };
 [[nodiscard]] std::string_view to_string(KeyframeSelection selection);

@@ -149,14 +149,12 @@ void put(Writer& out, const Hello::Known& known) {
   out.scalar(known.num_nodes);
   out.scalar(known.num_places);
   out.scalar(known.num_loops);
-  out.scalar(known.num_checks);
 }
 void get(Reader& in, Hello::Known& known) {
   known.robot.value = in.scalar<std::uint8_t>();
   known.num_nodes = in.scalar<std::uint32_t>();
   known.num_places = in.scalar<std::uint32_t>();
   known.num_loops = in.scalar<std::uint32_t>();
-  known.num_checks = in.scalar<std::uint32_t>();
 }
 
 void put(Writer& out, const GraphNode& node) {
@@ -265,38 +263,6 @@ void get(Reader& in, Loops& loops) {
   loops.author.value = in.scalar<std::uint8_t>();
   loops.first = in.scalar<std::uint32_t>();
   in.vector(loops.loops);
-}
-
-void put(Writer& out, const MergeCheck& check) {
-  out.scalar(check.a.value);
-  out.scalar(check.b.value);
-  out.scalar(check.evidence);
-  out.scalar(check.needed);
-  out.scalar(check.num_checked);
-  out.scalar(check.num_passed);
-  out.scalar(static_cast<std::uint8_t>(check.accepted ? 1 : 0));
-  put(out, check.reason);
-}
-void get(Reader& in, MergeCheck& check) {
-  check.a.value = in.scalar<std::uint8_t>();
-  check.b.value = in.scalar<std::uint8_t>();
-  check.evidence = in.scalar<double>();
-  check.needed = in.scalar<double>();
-  check.num_checked = in.scalar<std::uint32_t>();
-  check.num_passed = in.scalar<std::uint32_t>();
-  check.accepted = in.scalar<std::uint8_t>() != 0;
-  get(in, check.reason);
-}
-
-void put(Writer& out, const MergeChecks& checks) {
-  out.scalar(checks.author.value);
-  out.scalar(checks.first);
-  out.vector(checks.checks);
-}
-void get(Reader& in, MergeChecks& checks) {
-  checks.author.value = in.scalar<std::uint8_t>();
-  checks.first = in.scalar<std::uint32_t>();
-  in.vector(checks.checks);
 }
 
 using Body = decltype(Message::body);
