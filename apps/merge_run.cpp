@@ -20,6 +20,7 @@ FleetGraph between(const FleetGraph& all, RobotId a, RobotId b) {
   for (const RobotId robot : {a, b}) pair.robots[robot] = all.robots.at(robot);
   for (const auto& [ends, loop] : all.loops)
     if (ends.first.robot == a && ends.second.robot == b) pair.loops.emplace(ends, loop);
+  if (const auto check = all.checks.find({a, b}); check != all.checks.end()) pair.checks.insert(*check);
   return pair;
 }
 

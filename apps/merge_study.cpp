@@ -23,7 +23,7 @@ struct Options {
   std::string out;
   std::string page;
   std::string lidar = "os2-32";
-  std::vector<std::string> keyframes = {"all", "tunnel_filter"};
+  std::vector<std::string> keyframes = {"all", "tunnel_filter", "adaptive"};
   std::vector<std::string> groups = {"tuning", "check"};
   std::vector<std::string> only;
   std::string variant;
@@ -77,7 +77,7 @@ Result<> run_world(const ListedWorld& world, const std::vector<KeyframeSelection
   if (!truth) return fail(world.name, truth.error());
   for (const KeyframeSelection selection : selections) {
     if (interrupted()) return fail("interrupted");
-    Result<MergeRun> run = run_merges(*robots, *truth, selection, config);
+    Result<MergeRun> run = run_merges(*robots, *truth, selection, under(selection, config));
     if (!run) return fail(world.name, run.error());
     run->world = world.name;
     run->group = world.group;

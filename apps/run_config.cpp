@@ -10,6 +10,14 @@ RunConfig::RunConfig() {
   loops.registration.min_inliers = 30;
 }
 
+RunConfig under(KeyframeSelection selection, RunConfig config) {
+  if (selection != KeyframeSelection::adaptive) return config;
+  config.loops.adaptive.on = true;
+  config.loops.adaptive.context = config.robot.scan_context;
+  config.back_end.checks_needed = true;
+  return config;
+}
+
 Fields fields_of(RunConfig& c) {
   Fields fields;
   append(fields, "simulation", fields_of(c.simulation));

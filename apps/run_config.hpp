@@ -23,6 +23,9 @@ struct RunConfig {
 };
 Fields fields_of(RunConfig& config);
 
+/// The configuration under a keyframe policy: `adaptive` chooses candidates and tests merges by evidence.
+[[nodiscard]] RunConfig under(KeyframeSelection selection, RunConfig config);
+
 /// That pipeline with the thresholds of the studies. The paper's are unstated and, as it says, tuned to the
 /// site; these are tuned to zab.
 [[nodiscard]] RunConfig study_config();

@@ -20,7 +20,7 @@ struct Options {
   std::vector<std::string> inputs;
   std::string out;
   std::string lidar = "os2-128";
-  std::string keyframes = "all";
+  std::string keyframes = "adaptive";
 };
 
 Result<std::vector<std::shared_ptr<const RobotMap>>> map_robots(const std::vector<Recording>& recordings,
@@ -92,6 +92,7 @@ Result<> slam(const Options& options, const Common& common) {
   const Result<KeyframeSelection> selection = keyframe_selection(options.keyframes);
   if (!selection) usage_error(selection.error().message);
   if (const Result<> configured = configure(fields_of(config), common); !configured) return configured;
+  config = under(*selection, config);
   const Result<std::vector<Recording>> recordings = open_inputs(options.inputs, config.simulation);
   if (!recordings) return tl::unexpected(recordings.error());
   Result<OutputDir> out = OutputDir::create(options.out, "session");
@@ -128,7 +129,7 @@ void add_slam(Program& program) {
       ->required();
   command->add_option("--out", options->out, "Session directory to write")->required();
   command->add_option("--lidar", options->lidar, "Simulated LiDAR (routes.yaml only)")->capture_default_str();
-  command->add_option("--keyframes", options->keyframes, "all, tunnel_filter or tunnel_filter_keep")
+  command->add_option("--keyframes", options->keyframes, "adaptive, all, tunnel_filter or tunnel_filter_keep")
       ->capture_default_str();
 }
 

@@ -33,7 +33,7 @@ struct Options {
   std::string routes;
   std::string out;
   std::string lidar = "os2-128";
-  std::vector<std::string> keyframes = {"all", "tunnel_filter", "tunnel_filter_keep"};
+  std::vector<std::string> keyframes = {"all", "tunnel_filter", "tunnel_filter_keep", "adaptive"};
 };
 
 double peak_rss_mb() {
@@ -50,7 +50,8 @@ Result<World> world_of(const Options& options, const WorldConfig& built_in) {
 
 /// The two solutions of a pair under one policy, without and with PCM, and the folder of the latter.
 Result<> study_pair(const std::vector<const RobotRun*>& runs, KeyframeSelection selection,
-                    const RunConfig& config, const std::filesystem::path& dir, StudyResult& study) {
+                    const RunConfig& given, const std::filesystem::path& dir, StudyResult& study) {
+  const RunConfig config = under(selection, given);
   const Result<Meeting> meeting = hold_meeting(selected_maps(runs, selection), config);
   if (!meeting) return tl::unexpected(meeting.error());
   for (const bool pcm_on : {false, true}) {
@@ -79,7 +80,8 @@ Result<> study_pair(const std::vector<const RobotRun*>& runs, KeyframeSelection 
 }
 
 Result<> study_joint(const std::vector<const RobotRun*>& runs, KeyframeSelection selection,
-                     const RunConfig& config, const std::filesystem::path& dir, StudyResult& study) {
+                     const RunConfig& given, const std::filesystem::path& dir, StudyResult& study) {
+  const RunConfig config = under(selection, given);
   const Result<Meeting> meeting = hold_meeting(selected_maps(runs, selection), config);
   if (!meeting) return tl::unexpected(meeting.error());
   const Result<JudgedSolution> judged = judge(runs, *meeting, meeting->agents.front().solve(config.back_end));

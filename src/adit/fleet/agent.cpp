@@ -42,12 +42,6 @@ bool is_usable(const GraphPart& part) {
   return true;
 }
 
-std::size_t bytes_of(const Features& features) {
-  return features.points.capacity() * sizeof(Eigen::Vector3f) +
-         features.normals.capacity() * sizeof(Eigen::Vector3f) +
-         features.descriptors.capacity() * sizeof(Descriptor);
-}
-
 bool same_grid(const ScanContext& a, const ScanContext& b) {
   return a.num_rings == b.num_rings && a.num_sectors == b.num_sectors;
 }
@@ -68,7 +62,27 @@ std::vector<std::uint32_t> thinned(const std::vector<std::uint32_t>& indices) {
   return out;
 }
 
+std::vector<Message> with(std::vector<Message> replies, std::vector<Message> more) {
+  std::ranges::move(more, std::back_inserter(replies));
+  return replies;
+}
+
 }  // namespace
+
+Fields fields_of(AdaptiveConfig& c) {
+  Fields fields = {{"on", &c.on, "", 0, 0,
+                    "choose the candidates that stand out from the robot's own map, and test merges"},
+                   {"candidates", &c.candidates, "", 1, 1e6, "candidates that are registered with each peer"},
+                   {"stand_out", &c.stand_out, "", 0, 0,
+                    "rank candidates by their distance over that to the most similar other place of one's "
+                    "own; otherwise by their distance"},
+                   {"lane_m", &c.lane_m, "m", 0.0, 100.0,
+                    "between the lanes from which a keyframe is described for the search"},
+                   {"lanes", &c.lanes, "", 0, 100, "such lanes on each side of the one that was driven"}};
+  append(fields, "registration", fields_of(c.registration));
+  append(fields, "merge_check", fields_of(c.merge_check));
+  return fields;
+}
 
 Fields fields_of(AgentConfig& c) {
   Fields fields = {{"max_candidates", &c.max_candidates, "", 0, 1e9,
@@ -77,44 +91,8 @@ Fields fields_of(AgentConfig& c) {
                     "candidates that it registers with each further peer, the most similar ones"}};
   append(fields, "place", fields_of(c.place));
   append(fields, "registration", fields_of(c.registration));
+  append(fields, "adaptive", fields_of(c.adaptive));
   return fields;
-}
-
-FeatureStore::FeatureStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
-                           std::size_t max_bytes)
-    : map_(std::move(map)), config_(config), max_bytes_(max_bytes), entries_(map_->keyframes.size()) {}
-
-void FeatureStore::prepare(const std::vector<std::uint32_t>& indices) {
-  ++now_;
-  std::vector<std::uint32_t> missing;
-  for (const std::uint32_t i : indices) {
-    Entry& entry = entries_.at(i);
-    if (!entry.features && entry.last_used != now_) missing.push_back(i);
-    entry.last_used = now_;
-  }
-  parallel_for_each(missing.size(), [&](std::size_t i) {
-    entries_[missing[i]].features = compute_features(*map_->keyframes[missing[i]].cloud, config_);
-  });
-  for (const std::uint32_t i : missing) num_bytes_ += bytes_of(*entries_[i].features);
-  forget_oldest();
-}
-
-void FeatureStore::forget_oldest() {
-  std::vector<std::uint32_t> unused;
-  for (std::uint32_t i = 0; i < entries_.size(); ++i) {
-    if (entries_[i].features && entries_[i].last_used < now_) unused.push_back(i);
-  }
-  std::ranges::sort(unused, {}, [&](std::uint32_t i) { return std::pair(entries_[i].last_used, i); });
-  for (const std::uint32_t i : unused) {
-    if (num_bytes_ <= max_bytes_) return;
-    num_bytes_ -= bytes_of(*entries_[i].features);
-    entries_[i].features.reset();
-  }
-}
-
-const Features& FeatureStore::at(std::uint32_t index) const {
-  ADIT_CHECK(entries_.at(index).features.has_value(), "features are prepared before they are asked for");
-  return *entries_[index].features;
 }
 
 Agent::Agent(std::shared_ptr<const RobotMap> map, std::shared_ptr<FeatureStore> features,
@@ -135,6 +113,9 @@ Hello Agent::hello() const {
   for (const auto& [robot, peer] : peers_) known[robot].num_places = peer.num_places;
   for (const auto& [robot, loops] : registered_) {
     known[robot].num_loops = static_cast<std::uint32_t>(loops.size());
+  }
+  for (const auto& [robot, checks] : decided_) {
+    known[robot].num_checks = static_cast<std::uint32_t>(checks.size());
   }
   Hello hello;
   for (auto& [robot, entry] : known) {
@@ -212,7 +193,21 @@ Agent::Replies Agent::loop_news(RobotId peer, const Hello& theirs) const {
     const std::size_t has = known == theirs.known.end() ? 0 : known->num_loops;
     std::ranges::move(loops_from(peer, author, has), std::back_inserter(replies));
   }
+  for (const auto& [author, checks] : decided_) {
+    if (author == peer) continue;
+    const auto known = std::ranges::find(theirs.known, author, &Hello::Known::robot);
+    const std::size_t has = known == theirs.known.end() ? 0 : known->num_checks;
+    std::ranges::move(checks_from(peer, author, has), std::back_inserter(replies));
+  }
   return replies;
+}
+
+Agent::Replies Agent::checks_from(RobotId peer, RobotId author, std::size_t first) const {
+  const std::vector<MergeCheck>& all = decided_.at(author);
+  if (first >= all.size()) return {};
+  return {to(peer, MergeChecks{author,
+                               static_cast<std::uint32_t>(first),
+                               {all.begin() + static_cast<std::ptrdiff_t>(first), all.end()}})};
 }
 
 Agent::Replies Agent::loops_from(RobotId peer, RobotId author, std::size_t first) const {
@@ -265,7 +260,9 @@ Agent::Replies Agent::on(RobotId from, const Places& part) {
 }
 
 std::vector<LoopCandidate> Agent::best_candidates(RobotId peer_id) const {
-  PlaceIndex index(config_.place);
+  PlaceIndexConfig search = config_.place;
+  if (config_.adaptive.on) search.max_distance = 1.0;  // ranked, not cut off
+  PlaceIndex index(search);
   std::set<std::uint32_t> added;  // a confused peer may name a keyframe twice
   for (const Places::Place& place : peers_.at(peer_id).places) {
     if (added.insert(place.index).second) index.add({peer_id, place.index}, place.context);
@@ -276,7 +273,13 @@ std::vector<LoopCandidate> Agent::best_candidates(RobotId peer_id) const {
   parallel_for_each(
       queries.size(),
       [&](std::size_t i) {
-        best[i] = index.best_match({map_->id, queries[i]}, map_->places[queries[i]], peer_id);
+        const KeyframeId query{map_->id, queries[i]};
+        best[i] = index.best_match(query, map_->places[query.index], peer_id);
+        if (!config_.adaptive.on) return;
+        for (const ScanContext& context : from_other_lanes(query.index)) {
+          const auto match = index.best_match(query, context, peer_id);
+          if (match && (!best[i] || match->distance < best[i]->distance)) best[i] = match;
+        }
       },
       16);
   std::vector<LoopCandidate> found;
@@ -287,6 +290,19 @@ std::vector<LoopCandidate> Agent::best_candidates(RobotId peer_id) const {
   std::ranges::sort(found, {},
                     [](const LoopCandidate& c) { return std::tuple(c.distance, c.query, c.match); });
   return found;
+}
+
+std::vector<ScanContext> Agent::from_other_lanes(std::uint32_t k) const {
+  std::vector<ScanContext> contexts;
+  PointCloud cloud = *map_->keyframes[k].cloud;
+  for (int lane = -config_.adaptive.lanes; lane <= config_.adaptive.lanes; ++lane) {
+    if (lane == 0) continue;
+    const auto aside = static_cast<float>(lane * config_.adaptive.lane_m);
+    for (std::size_t i = 0; i < cloud.points.size(); ++i)
+      cloud.points[i].y() = map_->keyframes[k].cloud->points[i].y() - aside;
+    contexts.push_back(describe(cloud, config_.adaptive.context));
+  }
+  return contexts;
 }
 
 std::size_t Agent::num_tried() const {
@@ -300,6 +316,7 @@ std::size_t Agent::num_tried() const {
 
 void Agent::find_candidates(RobotId peer_id) {
   std::vector<LoopCandidate> found = best_candidates(peer_id);
+  if (config_.adaptive.on) found = distinctive(std::move(found));
   Peer& peer = peers_[peer_id];
   peer.places = {};
   const auto in_all = static_cast<std::size_t>(config_.max_candidates);
@@ -311,12 +328,16 @@ void Agent::find_candidates(RobotId peer_id) {
 
 Agent::Replies Agent::cloud_request(RobotId peer_id) const {
   const auto peer = peers_.find(peer_id);
-  if (peer == peers_.end() || peer->second.waiting.empty()) return {};
+  if (peer == peers_.end()) return {};
   CloudRequest request;
   for (const auto& [index, candidates] : peer->second.waiting) {
     if (request.indices.size() == kCloudsPerMessage) break;
     request.indices.push_back(index);
   }
+  if (request.indices.empty() && peer->second.test)
+    for (const PlannedCheck& check : peer->second.test->next(kCloudsPerMessage))
+      request.indices.push_back(check.theirs);
+  if (request.indices.empty()) return {};
   return {to(peer_id, std::move(request))};
 }
 
@@ -326,14 +347,15 @@ Agent::Replies Agent::on(RobotId from, const CloudRequest& request) const {
     if (index >= map_->keyframes.size()) continue;  // a confused peer gets less, and stops nobody
     // The receiver's features thin the cloud to the same voxels; sending more points would change nothing.
     clouds.clouds.push_back(
-        {index, voxel_centroids(*map_->keyframes[index].cloud, config_.registration.voxel_size).points});
+        {index, map_->viewpoint.cast<float>(),
+         voxel_centroids(*map_->keyframes[index].cloud, config_.registration_in_use().voxel_size).points});
   }
   return {to(from, std::move(clouds))};
 }
 
 LoopClosure Agent::verify(const LoopCandidate& candidate, const Features& match) const {
   const Registration registration =
-      register_features(features_->at(candidate.query.index), match, config_.registration);
+      register_features(features_->at(candidate.query.index), match, config_.registration_in_use());
   LoopClosure loop;
   loop.from = candidate.query;
   loop.to = candidate.match;
@@ -350,6 +372,28 @@ LoopClosure Agent::verify(const LoopCandidate& candidate, const Features& match)
 
 Agent::Replies Agent::on(RobotId from, const Clouds& clouds) {
   Peer& peer = peers_[from];
+  const std::size_t before = registered_[map_->id].size();
+  Replies replies;
+  if (!peer.waiting.empty()) {
+    // Nothing of use: nor is more asked for.
+    if (std::ranges::none_of(clouds.clouds,
+                             [&](const auto& cloud) { return peer.waiting.contains(cloud.index); }))
+      return {};
+    register_clouds_of(from, clouds);
+    replies = loops_from(from, map_->id, before);
+    if (!config_.adaptive.on || !peer.waiting.empty()) return with(std::move(replies), cloud_request(from));
+    begin_test(from);
+  } else if (peer.test && !peer.test->next(kCloudsPerMessage).empty()) {
+    if (!compare_clouds_of(from, clouds)) return {};
+  } else {
+    return {};
+  }
+  if (peer.test->next(kCloudsPerMessage).empty()) return with(std::move(replies), conclude_test(from));
+  return with(std::move(replies), cloud_request(from));
+}
+
+void Agent::register_clouds_of(RobotId from, const Clouds& clouds) {
+  Peer& peer = peers_[from];
   std::vector<std::pair<LoopCandidate, std::size_t>> jobs;  // candidate, place in clouds
   std::vector<std::uint32_t> own;
   for (std::size_t c = 0; c < clouds.clouds.size(); ++c) {
@@ -360,26 +404,119 @@ Agent::Replies Agent::on(RobotId from, const Clouds& clouds) {
       own.push_back(candidate.query.index);
     }
   }
-  if (jobs.empty()) return {};  // nor is more asked for: this peer has sent nothing of use
   features_->prepare(own);
   std::vector<Features> theirs(clouds.clouds.size());
   parallel_for_each(theirs.size(), [&](std::size_t c) {
     PointCloud cloud;
     cloud.points = clouds.clouds[c].points;
-    theirs[c] = compute_features(cloud, config_.registration);
+    theirs[c] = compute_features(cloud, config_.registration_in_use());
   });
   std::vector<LoopClosure> found(jobs.size());
   parallel_for_each(jobs.size(),
                     [&](std::size_t i) { found[i] = verify(jobs[i].first, theirs[jobs[i].second]); });
   std::vector<Ends>& registered = registered_[map_->id];
-  const std::size_t before = registered.size();
   for (LoopClosure& loop : found) {
     const Ends ends{loop.from, loop.to};
     if (known_.loops.try_emplace(ends, std::move(loop)).second) registered.push_back(ends);
   }
-  Replies replies = loops_from(from, map_->id, before);
-  std::ranges::move(cloud_request(from), std::back_inserter(replies));
-  return replies;
+}
+
+const OtherPlaces& Agent::other_places() {
+  if (!other_places_)
+    other_places_ = std::make_unique<OtherPlaces>(map_, chain_of(known_.robots.at(map_->id)), config_.place);
+  return *other_places_;
+}
+
+void Agent::begin_test(RobotId peer_id) {
+  const OdometryChain own = chain_of(known_.robots.at(map_->id));
+  if (!discernment_)
+    discernment_ =
+        std::make_unique<Discernment>(map_, own, other_places(), *features_, config_.registration_in_use(),
+                                      config_.adaptive.merge_check.discernment);
+  const auto graph = known_.robots.find(peer_id);
+  const std::size_t num_theirs = graph == known_.robots.end() ? 0 : graph->second.nodes.size();
+  std::vector<PcmLoop> loops;
+  for (const auto& [ends, loop] : known_.loops) {
+    if (ends.first.robot != map_->id || ends.second.robot != peer_id || ends.second.index >= num_theirs ||
+        loop.verdict != LoopVerdict::accepted)
+      continue;
+    loops.push_back({ends.first.index, ends.second.index, loop.T_from_to, loop_information({})});
+  }
+  peers_[peer_id].test.emplace(own, num_theirs == 0 ? OdometryChain({}, {}) : chain_of(graph->second), loops,
+                               discernment_->chance_to_go_on(), config_.adaptive.merge_check);
+}
+
+bool Agent::compare_clouds_of(RobotId from, const Clouds& clouds) {
+  MergeTest& test = *peers_[from].test;
+  const std::vector<PlannedCheck> asked = test.next(kCloudsPerMessage);
+  std::map<std::uint32_t, const Clouds::Cloud*> came;
+  for (const Clouds::Cloud& cloud : clouds.clouds) came[cloud.index] = &cloud;
+  // The test wants all of them, in its order; a part, or something else, is no use.
+  if (!std::ranges::all_of(asked, [&](const PlannedCheck& check) { return came.contains(check.theirs); }))
+    return false;
+  std::vector<std::uint32_t> own;
+  for (const PlannedCheck& check : asked) own.push_back(check.own);
+  const std::vector<bool> distinctive = discernment_->distinctive(own);
+  SurfaceStore& surfaces = discernment_->surfaces();
+  surfaces.prepare(own);
+  std::vector<CheckedPlace> places(asked.size());
+  std::vector<std::uint8_t> differs(asked.size());
+  parallel_for_each(asked.size(), [&](std::size_t i) {
+    const PlannedCheck& check = asked[i];
+    PointCloud cloud;
+    cloud.points = came.at(check.theirs)->points;
+    const SeenSurface theirs(compute_surface(cloud, config_.registration_in_use()),
+                             came.at(check.theirs)->viewpoint.cast<double>());
+    const LocalFit fit = fit_near(surfaces.at(check.own), theirs, check.T_own_theirs, discernment_->limit(),
+                                  config_.registration_in_use());
+    differs[i] = discernment_->differ(fit.agreement) ? 1 : 0;
+  });
+  for (std::size_t i = 0; i < asked.size(); ++i) places[i] = {differs[i] != 0, distinctive[i]};
+  test.add(places);
+  return true;
+}
+
+Agent::Replies Agent::conclude_test(RobotId peer_id) {
+  std::vector<MergeCheck>& decided = decided_[map_->id];
+  decided.push_back(peers_.at(peer_id).test->verdict(map_->id, peer_id));
+  known_.checks[{map_->id, peer_id}] = decided.back();
+  return checks_from(peer_id, map_->id, decided.size() - 1);
+}
+
+std::vector<LoopCandidate> Agent::distinctive(std::vector<LoopCandidate> found) {
+  if (own_likeness_.empty()) own_likeness_ = other_places().likeness();
+  const auto ratio = [&](const LoopCandidate& c) {
+    return config_.adaptive.stand_out ? c.distance / std::max(own_likeness_[c.query.index], 1e-6)
+                                      : c.distance;
+  };
+  std::ranges::sort(found, {},
+                    [&](const LoopCandidate& c) { return std::tuple(ratio(c), c.query, c.match); });
+  constexpr std::uint32_t kNear = 6;  // keyframes
+  constexpr std::ptrdiff_t kOfAPlace = 3;
+  std::vector<LoopCandidate> chosen;
+  for (const LoopCandidate& candidate : found) {
+    if (chosen.size() == static_cast<std::size_t>(config_.adaptive.candidates)) break;
+    const auto near = std::ranges::count_if(chosen, [&](const LoopCandidate& c) {
+      const std::uint32_t i = c.query.index, k = candidate.query.index;
+      return (i < k ? k - i : i - k) < kNear;
+    });
+    if (near < kOfAPlace) chosen.push_back(candidate);
+  }
+  return chosen;
+}
+
+Agent::Replies Agent::on(RobotId /*from*/, const MergeChecks& part) {
+  const auto is_authors = [&](const MergeCheck& check) {
+    return check.a == part.author && check.a < check.b;
+  };
+  if (part.author == map_->id || !std::ranges::all_of(part.checks, is_authors)) return {};
+  std::vector<MergeCheck>& known = decided_[part.author];
+  if (part.first > known.size()) return {};  // a part before it was lost; the next Hello asks for it
+  for (std::size_t c = known.size() - part.first; c < part.checks.size(); ++c) {
+    known.push_back(part.checks[c]);
+    known_.checks[{part.checks[c].a, part.checks[c].b}] = part.checks[c];
+  }
+  return {};
 }
 
 Agent::Replies Agent::on(RobotId /*from*/, const Loops& part) {

@@ -7,6 +7,8 @@
 #include <set>
 
 #include "adit/fleet/fleet_graph.hpp"
+#include "adit/fleet/keyframe_store.hpp"
+#include "adit/fleet/merge_check.hpp"
 #include "adit/fleet/protocol.hpp"
 #include "adit/place/place_index.hpp"
 #include "adit/registration/registration.hpp"
@@ -14,42 +16,31 @@
 
 namespace adit {
 
+/// Of an agent that chooses candidates by how much they stand out and tests merges by evidence: in place of
+/// the thresholds of the paper's pipeline.
+struct AdaptiveConfig {
+  bool on = false;
+  int candidates = 64;
+  bool stand_out = true;
+  double lane_m = 1.0;
+  int lanes = 2;
+  RegistrationConfig registration;
+  MergeCheckConfig merge_check;
+  ScanContextConfig context;  ///< With which the keyframes were described; no setting of its own.
+};
+
 struct AgentConfig {
   PlaceIndexConfig place;
   RegistrationConfig registration;
   int max_candidates = 6000;
   int candidates_per_peer = 8;
+  AdaptiveConfig adaptive;
+
+  [[nodiscard]] const RegistrationConfig& registration_in_use() const {
+    return adaptive.on ? adaptive.registration : registration;
+  }
 };
 Fields fields_of(AgentConfig& config);
-
-/// A robot's own keyframes made ready for registration, each when it is needed. It keeps those used last, as
-/// many as fit `kMaxBytes`.
-class FeatureStore {
- public:
-  static constexpr std::size_t kMaxBytes = 256'000'000;
-
-  FeatureStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
-               std::size_t max_bytes = kMaxBytes);
-  /// Computes what is missing of `indices`, in parallel; forgets what was used longest ago and is not among
-  /// them. Call it before `at`.
-  void prepare(const std::vector<std::uint32_t>& indices);
-  [[nodiscard]] const Features& at(std::uint32_t index) const;
-  [[nodiscard]] std::size_t num_bytes() const { return num_bytes_; }
-
- private:
-  struct Entry {
-    std::optional<Features> features;
-    std::uint64_t last_used = 0;
-  };
-  void forget_oldest();
-
-  std::shared_ptr<const RobotMap> map_;
-  RegistrationConfig config_;
-  std::size_t max_bytes_;
-  std::vector<Entry> entries_;
-  std::uint64_t now_ = 0;  ///< Counts calls of `prepare`.
-  std::size_t num_bytes_ = 0;
-};
 
 /// One robot of the fleet: messages in, messages out; no thread, socket or clock. It knows what its own robot
 /// measured and what messages brought, nothing else.
@@ -92,7 +83,8 @@ class Agent {
     std::uint32_t num_places = 0;       ///< Received so far.
     std::vector<Places::Place> places;  ///< Those of them that have not been searched.
     std::map<std::uint32_t, std::vector<LoopCandidate>>
-        waiting;  ///< By the peer's keyframe whose cloud is awaited.
+        waiting;                    ///< By the peer's keyframe whose cloud is awaited.
+    std::optional<MergeTest> test;  ///< When all loops have been tried; it asks for clouds itself.
   };
 
   [[nodiscard]] Hello hello() const;
@@ -104,6 +96,7 @@ class Agent {
   Replies on(RobotId from, const CloudRequest& request) const;
   Replies on(RobotId from, const Clouds& clouds);
   Replies on(RobotId from, const Loops& loops);
+  Replies on(RobotId from, const MergeChecks& checks);
 
   [[nodiscard]] Replies graph_news(RobotId peer, const Hello& theirs) const;
   [[nodiscard]] Replies place_news(RobotId peer, const Hello& theirs) const;
@@ -111,7 +104,19 @@ class Agent {
   /// What `author` registered, from number `first` on.
   [[nodiscard]] Replies loops_from(RobotId peer, RobotId author, std::size_t first) const;
   [[nodiscard]] std::vector<LoopCandidate> best_candidates(RobotId peer_id) const;
+  /// Those that stand out most from what the robot's own map has that looks like them; spread over its way.
+  [[nodiscard]] std::vector<LoopCandidate> distinctive(std::vector<LoopCandidate> found);
+  void register_clouds_of(RobotId from, const Clouds& clouds);
+  /// The first test of the maps, when all loops with the peer have been tried.
+  void begin_test(RobotId peer_id);
+  /// Whether they were what the test had asked for.
+  bool compare_clouds_of(RobotId from, const Clouds& clouds);
+  Replies conclude_test(RobotId peer_id);
+  [[nodiscard]] const OtherPlaces& other_places();
+  [[nodiscard]] Replies checks_from(RobotId peer, RobotId author, std::size_t first) const;
   void find_candidates(RobotId peer_id);
+  /// What keyframe k would have looked like to a robot that drove beside this one.
+  [[nodiscard]] std::vector<ScanContext> from_other_lanes(std::uint32_t k) const;
   [[nodiscard]] std::size_t num_tried() const;
   [[nodiscard]] Replies cloud_request(RobotId peer_id) const;
   [[nodiscard]] LoopClosure verify(const LoopCandidate& candidate, const Features& match) const;
@@ -121,8 +126,13 @@ class Agent {
   std::shared_ptr<FeatureStore> features_;
   AgentConfig config_;
   FleetGraph known_;
-  std::map<RobotId, std::vector<Ends>> registered_;  ///< By author, in the order of registration.
+  std::map<RobotId, std::vector<Ends>> registered_;     ///< By author, in the order of registration.
+  std::map<RobotId, std::vector<MergeCheck>> decided_;  ///< By author, in order.
   std::map<RobotId, Peer> peers_;
+  // Of an adaptive agent, each made when it is first needed.
+  std::unique_ptr<OtherPlaces> other_places_;
+  std::vector<double> own_likeness_;  ///< Distance of each keyframe to the most similar other place.
+  std::unique_ptr<Discernment> discernment_;
 };
 
 }  // namespace adit

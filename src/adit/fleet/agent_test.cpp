@@ -41,7 +41,7 @@ struct TwoRobots {
     for (const auto& [id, truth] : {std::pair{0, &truth_0}, std::pair{1, &truth_1}}) {
       const auto map = std::make_shared<const RobotMap>(
           test::drive(world, {static_cast<std::uint8_t>(id)}, *truth, id == 0 ? 0.002 : -0.002));
-      agents.emplace_back(map, std::make_shared<FeatureStore>(map, config.registration), config);
+      agents.emplace_back(map, std::make_shared<FeatureStore>(map, config.registration_in_use()), config);
     }
   }
 
@@ -186,7 +186,7 @@ TEST(Agent, PlacesAndCloudsOfKeyframesThatDoNotExistAreHarmless) {
   TwoRobots fleet;
   const Places invented{0, {{4'000'000'000U, test_place(fleet)}}, true};
   EXPECT_NO_THROW((void)fleet.agents[0].on(Message{{1}, {0}, invented}));
-  EXPECT_TRUE(fleet.agents[0].on(Message{{1}, {0}, Clouds{{{123456, {}}}}}).empty());
+  EXPECT_TRUE(fleet.agents[0].on(Message{{1}, {0}, Clouds{{{123456, Eigen::Vector3f::Zero(), {}}}}}).empty());
   EXPECT_TRUE(fleet.agents[1].on(Message{{0}, {1}, invented}).empty());  // robot 1 does not search robot 0
   fleet.meet();
   EXPECT_TRUE(fleet.agents[1].solve({}).pairs.at(0).merged);
@@ -262,6 +262,88 @@ TEST(Agent, RegistersTheMostSimilarCandidatesWhereItMayNotRegisterAll) {
     best_of_few = std::min(best_of_few, loop.place_distance);
   }
   EXPECT_EQ(best_of_few, best);
+}
+
+AgentConfig adaptive() {
+  AgentConfig config;
+  config.adaptive.on = true;
+  config.adaptive.registration.voxel_size = 0.6;
+  config.adaptive.merge_check.error_rate = 0.3;  // a street of 25 m is short
+  config.adaptive.merge_check.spacing_m = 2.0;
+  config.adaptive.merge_check.discernment.samples = 8;
+  config.adaptive.context = {.max_radius_m = 25.0};
+  return config;
+}
+
+BackEndConfig with_checks() {
+  BackEndConfig config;
+  config.checks_needed = true;
+  return config;
+}
+
+TEST(AdaptiveAgent, MergesRobotsThatShareAStreetAndBothKnowWhy) {
+  TwoRobots fleet(3, adaptive());
+  fleet.meet();
+  const FleetSolution first = fleet.agents[0].solve(with_checks());
+  const FleetSolution second = fleet.agents[1].solve(with_checks());
+  ASSERT_TRUE(first.pairs[0].merged) << first.pairs[0].refused_reason;
+  const MergeCheck& check = fleet.agents[1].known().checks.at({{0}, {1}});
+  EXPECT_TRUE(check.accepted);
+  EXPECT_GE(check.evidence, check.needed);
+  EXPECT_EQ(check.loops.size(), first.pairs[0].clique);
+  const Pose T_true = fleet.truth_0.front().inverse();
+  for (std::size_t k = 0; k < fleet.truth_1.size(); ++k) {
+    EXPECT_LT(
+        ((T_true * fleet.truth_1[k]).translation() - first.T_world_keyframe.at({1})[k].translation()).norm(),
+        1.5);  // as above; the loops that one hypothesis explains are fewer
+    EXPECT_EQ(first.T_world_keyframe.at({1})[k].matrix(), second.T_world_keyframe.at({1})[k].matrix());
+  }
+}
+
+TEST(AdaptiveAgent, KeepsRobotsOfTwoStreetsApartWithAReason) {
+  TwoRobots fleet(3, adaptive());
+  const test::BoxWorld elsewhere(77);
+  const auto map = std::make_shared<const RobotMap>(test::drive(elsewhere, {1}, fleet.truth_1, -0.002));
+  fleet.agents[1] =
+      Agent(map, std::make_shared<FeatureStore>(map, adaptive().registration_in_use()), adaptive());
+  fleet.meet();
+  const FleetSolution solution = fleet.agents[0].solve(with_checks());
+  EXPECT_FALSE(solution.pairs[0].merged);
+  EXPECT_FALSE(solution.pairs[0].refused_reason.empty());
+  EXPECT_EQ(solution.components.size(), 2U);
+}
+
+TEST(AdaptiveAgent, RepeatedMessagesAndThreadsChangeNothing) {
+  set_num_threads(1);
+  TwoRobots once(3, adaptive());
+  once.meet();
+  set_num_threads(2);
+  TwoRobots twice(3, adaptive());
+  twice.meet(2);
+  twice.meet();
+  const auto& a = once.agents[1].known();
+  const auto& b = twice.agents[1].known();
+  EXPECT_EQ(a.loops.size(), b.loops.size());
+  ASSERT_EQ(a.checks.size(), 1U);
+  ASSERT_EQ(b.checks.size(), 1U);
+  EXPECT_EQ(a.checks.begin()->second.evidence, b.checks.begin()->second.evidence);
+  EXPECT_EQ(a.checks.begin()->second.reason, b.checks.begin()->second.reason);
+}
+
+TEST(AdaptiveAgent, DecisionsOfOthersThatMakeNoSenseAreLeftOut) {
+  TwoRobots fleet(3, adaptive());
+  fleet.meet();
+  const auto before = fleet.agents[0].known().checks;
+  MergeCheck forged = before.begin()->second;
+  forged.accepted = false;
+  // Of the receiver's own decisions; by an author who is not of the pair; after a gap.
+  EXPECT_TRUE(fleet.agents[0].on({{1}, {0}, MergeChecks{{0}, 0, {forged}}}).empty());
+  EXPECT_TRUE(fleet.agents[0].on({{1}, {0}, MergeChecks{{2}, 0, {forged}}}).empty());
+  forged.a = {2};
+  forged.b = {3};
+  EXPECT_TRUE(fleet.agents[0].on({{1}, {0}, MergeChecks{{2}, 5, {forged}}}).empty());
+  EXPECT_EQ(fleet.agents[0].known().checks.size(), before.size());
+  EXPECT_TRUE(fleet.agents[0].known().checks.begin()->second.accepted);
 }
 
 TEST(FeatureStore, ForgetsWhatWasUsedLongestAgoAndKeepsItsBound) {

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "adit/core/format.hpp"
 #include "adit/fleet/condensed_graph.hpp"
@@ -17,24 +18,6 @@ namespace {
 
 using RobotPair = std::pair<RobotId, RobotId>;
 using Frames = std::map<RobotId, Pose>;  // T_anchor_odom of each robot
-
-Matrix6 loop_information(const BackEndConfig& config) {
-  const double rotation = config.loop_rotation_deg * std::numbers::pi / 180.0;
-  Vector6 information;
-  information << Vector3::Constant(1.0 / (config.loop_translation * config.loop_translation)),
-      Vector3::Constant(1.0 / (rotation * rotation));
-  return information.asDiagonal();
-}
-
-OdometryChain chain_of(const RobotGraph& graph) {
-  std::vector<Pose> poses;
-  std::vector<Matrix6> steps;
-  for (std::size_t k = 0; k < graph.nodes.size(); ++k) {
-    poses.push_back(graph.nodes[k].T_odom_base);
-    if (k > 0) steps.push_back(graph.nodes[k].step_covariance);
-  }
-  return {std::move(poses), steps};
-}
 
 /// The chains of those robots that have loops, each made once.
 class Chains {
@@ -224,6 +207,9 @@ std::string refusal(const FleetGraph& fleet, const PairOutcome& pair, const Trie
         std::ranges::max_element(tried.reasons, {}, &decltype(tried.reasons)::value_type::second);
     return format("none of {} candidates could be registered, mostly because: {}", tried.num, most->first);
   }
+  if (const auto check = fleet.checks.find({pair.a, pair.b});
+      check != fleet.checks.end() && !check->second.accepted)
+    return check->second.reason;
   return format("only {} of {} loops agree with the odometries of both robots", num_used, pair.num_loops);
 }
 
@@ -244,13 +230,29 @@ std::vector<PairOutcome> all_pairs(const FleetGraph& fleet) {
   return pairs;
 }
 
+/// The loops that an accepted check speaks of.
+void keep_checked(const FleetGraph& fleet, const std::vector<std::size_t>& of_pair,
+                  std::vector<LoopOutcome>& loops, PairOutcome& pair) {
+  const auto check = fleet.checks.find({pair.a, pair.b});
+  if (check == fleet.checks.end() || !check->second.accepted) return;
+  const std::set<std::pair<std::uint32_t, std::uint32_t>> checked(check->second.loops.begin(),
+                                                                  check->second.loops.end());
+  for (const std::size_t l : of_pair) {
+    const LoopClosure& loop = loops[l].loop;
+    loops[l].in_clique = checked.contains({loop.from.index, loop.to.index});
+    pair.clique += loops[l].in_clique ? 1 : 0;
+  }
+}
+
 void run_pcm(const FleetGraph& fleet, const BackEndConfig& config, FleetSolution& solution) {
   const LoopsOfPairs of_pairs = loops_of_pairs(solution);
   Chains chains(fleet);
   for (PairOutcome& pair : solution.pairs) {
     const std::vector<std::size_t>& of_pair = of_pairs.at({pair.a, pair.b});
     pair.num_loops = of_pair.size();
-    if (!config.pcm_on || of_pair.empty()) {
+    if (config.checks_needed) {
+      keep_checked(fleet, of_pair, solution.loops, pair);
+    } else if (!config.pcm_on || of_pair.empty()) {
       for (const std::size_t l : of_pair) solution.loops[l].in_clique = true;
     } else {
       keep_consistent(chains, config, of_pair, solution.loops, pair);
@@ -329,10 +331,29 @@ PoseGraph optimized_graph(const FleetGraph& fleet, const FleetSolution& solution
 
 }  // namespace
 
+Matrix6 loop_information(const BackEndConfig& config) {
+  const double rotation = config.loop_rotation_deg * std::numbers::pi / 180.0;
+  Vector6 information;
+  information << Vector3::Constant(1.0 / (config.loop_translation * config.loop_translation)),
+      Vector3::Constant(1.0 / (rotation * rotation));
+  return information.asDiagonal();
+}
+
+OdometryChain chain_of(const RobotGraph& graph) {
+  std::vector<Pose> poses;
+  std::vector<Matrix6> steps;
+  for (std::size_t k = 0; k < graph.nodes.size(); ++k) {
+    poses.push_back(graph.nodes[k].T_odom_base);
+    if (k > 0) steps.push_back(graph.nodes[k].step_covariance);
+  }
+  return {std::move(poses), steps};
+}
+
 Fields fields_of(BackEndConfig& c) {
   Fields fields = {
       {"pcm_on", &c.pcm_on, "", 0, 0, "drop loops that disagree pairwise before the graph is solved"},
       {"gnc_on", &c.gnc_on, "", 0, 0, "let graduated non-convexity reject loops while the graph is solved"},
+      {"checks_needed", &c.checks_needed, "", 0, 0, "let only pairs share a map that passed the merge check"},
       {"min_loops", &c.min_loops, "", 1, 10000, "loops in use that two robots need to share a map"},
       {"loop_translation", &c.loop_translation, "m", 1e-4, 10.0, "sigma of a loop's translation"},
       {"loop_rotation_deg", &c.loop_rotation_deg, "deg", 1e-3, 90.0, "sigma of a loop's rotation"}};

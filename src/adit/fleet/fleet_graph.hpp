@@ -27,11 +27,13 @@ struct RobotGraph {
 struct FleetGraph {
   std::map<RobotId, RobotGraph> robots;
   std::map<std::pair<KeyframeId, KeyframeId>, LoopClosure> loops;
+  std::map<std::pair<RobotId, RobotId>, MergeCheck> checks;
 };
 
 struct BackEndConfig {
   bool pcm_on = true;
   bool gnc_on = true;
+  bool checks_needed = false;     ///< Only pairs with an accepted MergeCheck may share a map.
   int min_loops = 1;              ///< Loops in use between two robots before they count as merged.
   double loop_translation = 0.1;  ///< Fixed sigmas of a loop, as in Swarm-SLAM's back-end.
   double loop_rotation_deg = 0.6;
@@ -78,6 +80,10 @@ struct FleetSolution {
   PoseGraph after_pcm;  ///< The same with only the loops that PCM kept.
   PoseGraph optimized;
 };
+
+[[nodiscard]] OdometryChain chain_of(const RobotGraph& graph);
+/// The fixed information of a loop, from those sigmas.
+[[nodiscard]] Matrix6 loop_information(const BackEndConfig& config);
 
 /// PCM per pair of robots, then GNC per connected component with odometry as known inliers.
 /// A robot without loops is a component of its own, at its odometry. Loops whose keyframes are not (yet)

@@ -14,7 +14,7 @@
 
 namespace adit {
 
-inline constexpr std::uint8_t kProtocolVersion = 2;
+inline constexpr std::uint8_t kProtocolVersion = 3;
 inline constexpr std::size_t kPlacesPerMessage = 64;
 inline constexpr std::size_t kCloudsPerMessage = 16;
 inline constexpr std::size_t kNodesPerMessage = 512;
@@ -34,7 +34,8 @@ struct Hello {
     RobotId robot;
     std::uint32_t num_nodes = 0;
     std::uint32_t num_places = 0;
-    std::uint32_t num_loops = 0;  ///< Of those that this robot registered.
+    std::uint32_t num_loops = 0;   ///< Of those that this robot registered.
+    std::uint32_t num_checks = 0;  ///< Of those that this robot decided.
   };
   std::vector<Known> known;
   bool answer = false;  ///< This is the reply to a Hello.
@@ -67,6 +68,8 @@ struct CloudRequest {
 struct Clouds {
   struct Cloud {
     std::uint32_t index = 0;
+    Eigen::Vector3f viewpoint =
+        Eigen::Vector3f::Zero();  ///< Where the LiDAR stood, in the frame of the points.
     std::vector<Eigen::Vector3f> points;
   };
   std::vector<Cloud> clouds;
@@ -80,10 +83,30 @@ struct Loops {
   std::vector<LoopClosure> loops;
 };
 
+/// Whether the loops of two robots may join their maps, decided by the one that searched, `a`. A later one
+/// replaces those before it.
+struct MergeCheck {
+  RobotId a, b;
+  double evidence = 0.0;  ///< Logarithm of the likelihood ratio of "same stretch" to "looks alike",
+  double needed = 0.0;    ///< and how much of it joins maps.
+  std::uint32_t num_checked = 0;
+  std::uint32_t num_passed = 0;
+  bool accepted = false;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> loops;  ///< Keyframes of a and b: those it speaks of.
+  std::string reason;                                          ///< One sentence.
+};
+
+/// Number first, first + 1, ... of those that `author`, who need not be the sender, decided.
+struct MergeChecks {
+  RobotId author;
+  std::uint32_t first = 0;
+  std::vector<MergeCheck> checks;
+};
+
 struct Message {
   RobotId from;
   RobotId to;
-  std::variant<Hello, GraphPart, Places, CloudRequest, Clouds, Loops> body;
+  std::variant<Hello, GraphPart, Places, CloudRequest, Clouds, Loops, MergeChecks> body;
 };
 
 }  // namespace adit

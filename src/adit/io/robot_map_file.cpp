@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers stand in the file as they do in memory");
 
 /// Its last digit counts the layouts that there have been.
-constexpr std::string_view kMagic = "adit map 1\n";
+constexpr std::string_view kMagic = "adit map 2\n";
 
 /// Appends what `transfer` names.
 class Writer {
@@ -166,6 +166,7 @@ void transfer(Archive& archive, Map& map) {
       archive.number(verdict.tunnel_like);
     }
   bits(archive, map.searchable);
+  archive.raw(map.viewpoint.data(), 3 * sizeof(double));
 }
 
 bool is_consistent(const RobotMap& map) {

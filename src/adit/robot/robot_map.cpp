@@ -12,8 +12,9 @@
 namespace adit {
 namespace {
 
-constexpr std::array<std::pair<KeyframeSelection, std::string_view>, 3> kSelections = {
+constexpr std::array<std::pair<KeyframeSelection, std::string_view>, 4> kSelections = {
     {{KeyframeSelection::all, "all"},
+     {KeyframeSelection::adaptive, "adaptive"},
      {KeyframeSelection::tunnel_filter, "tunnel_filter"},
      {KeyframeSelection::tunnel_filter_keep, "tunnel_filter_keep"}}};
 
@@ -67,14 +68,16 @@ Result<KeyframeSelection> keyframe_selection(std::string_view name) {
   for (const auto& [selection, text] : kSelections) {
     if (text == name) return selection;
   }
-  return fail(format("unknown keyframe policy '{}'; known are all, tunnel_filter, tunnel_filter_keep", name));
+  return fail(format(
+      "unknown keyframe policy '{}'; known are adaptive, all, tunnel_filter, tunnel_filter_keep", name));
 }
 
 RobotMap select_keyframes(const RobotMap& map, KeyframeSelection selection) {
   if (selection == KeyframeSelection::tunnel_filter) return without_tunnel_keyframes(map);
   RobotMap selected = map;
   for (std::size_t k = 0; k < selected.keyframes.size(); ++k) {
-    selected.searchable[k] = selection == KeyframeSelection::all || !selected.tunnel[k].tunnel_like;
+    selected.searchable[k] =
+        selection != KeyframeSelection::tunnel_filter_keep || !selected.tunnel[k].tunnel_like;
   }
   return selected;
 }

@@ -34,6 +34,7 @@ inline Fields fields_of(OdometryNoise& c) {
 struct RobotMap {
   RobotId id;
   std::string name;
+  Vector3 viewpoint = Vector3::Zero();  ///< Where the LiDAR stands, in the frame of the robot's body.
   std::vector<Keyframe> keyframes;
   std::vector<Matrix6> step_covariances;  ///< Of T_{k-1}_{k}; entry 0 is zero.
   std::vector<ScanContext> places;
@@ -49,6 +50,7 @@ struct RobotMap {
 enum class KeyframeSelection {
   all,                 ///< Every keyframe in the graph and in the loop search.
   tunnel_filter,       ///< Tunnel-like keyframes leave graph and search, as in the paper.
+  adaptive,            ///< All in the graph; candidates and merges by evidence (AgentConfig::adaptive).
   tunnel_filter_keep,  ///< Tunnel-like keyframes stay in the graph and are barred from the search only.
 };
 [[nodiscard]] std::string_view to_string(KeyframeSelection selection);

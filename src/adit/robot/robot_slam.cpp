@@ -33,6 +33,7 @@ RobotSlam::RobotSlam(RobotId id, const std::string& name, const RobotSlamConfig&
     : config_(checked(config)), odometry_(config.odometry, T_base_lidar), keyframe_policy_(config.keyframes) {
   map_.id = id;
   map_.name = name;
+  map_.viewpoint = T_base_lidar.translation();
 }
 
 RobotStep RobotSlam::process(const Scan& scan, const std::optional<WheelDelta>& wheel) {

@@ -149,12 +149,14 @@ void put(Writer& out, const Hello::Known& known) {
   out.scalar(known.num_nodes);
   out.scalar(known.num_places);
   out.scalar(known.num_loops);
+  out.scalar(known.num_checks);
 }
 void get(Reader& in, Hello::Known& known) {
   known.robot.value = in.scalar<std::uint8_t>();
   known.num_nodes = in.scalar<std::uint32_t>();
   known.num_places = in.scalar<std::uint32_t>();
   known.num_loops = in.scalar<std::uint32_t>();
+  known.num_checks = in.scalar<std::uint32_t>();
 }
 
 void put(Writer& out, const GraphNode& node) {
@@ -179,6 +181,7 @@ void get(Reader& in, Places::Place& place) {
 
 void put(Writer& out, const Clouds::Cloud& cloud) {
   out.scalar(cloud.index);
+  put(out, cloud.viewpoint);
   std::vector<Eigen::Vector3f> near;
   for (const Eigen::Vector3f& point : cloud.points) {
     if (point.cwiseAbs().maxCoeff() <= kPointReach) near.push_back(point);
@@ -187,6 +190,7 @@ void put(Writer& out, const Clouds::Cloud& cloud) {
 }
 void get(Reader& in, Clouds::Cloud& cloud) {
   cloud.index = in.scalar<std::uint32_t>();
+  get(in, cloud.viewpoint);
   in.vector(cloud.points);
 }
 
@@ -263,6 +267,49 @@ void get(Reader& in, Loops& loops) {
   loops.author.value = in.scalar<std::uint8_t>();
   loops.first = in.scalar<std::uint32_t>();
   in.vector(loops.loops);
+}
+
+void put(Writer& out, const std::pair<std::uint32_t, std::uint32_t>& ends) {
+  out.scalar(ends.first);
+  out.scalar(ends.second);
+}
+void get(Reader& in, std::pair<std::uint32_t, std::uint32_t>& ends) {
+  ends.first = in.scalar<std::uint32_t>();
+  ends.second = in.scalar<std::uint32_t>();
+}
+
+void put(Writer& out, const MergeCheck& check) {
+  out.scalar(check.a.value);
+  out.scalar(check.b.value);
+  out.scalar(check.evidence);
+  out.scalar(check.needed);
+  out.scalar(check.num_checked);
+  out.scalar(check.num_passed);
+  out.scalar(static_cast<std::uint8_t>(check.accepted ? 1 : 0));
+  out.vector(check.loops);
+  put(out, check.reason);
+}
+void get(Reader& in, MergeCheck& check) {
+  check.a.value = in.scalar<std::uint8_t>();
+  check.b.value = in.scalar<std::uint8_t>();
+  check.evidence = in.scalar<double>();
+  check.needed = in.scalar<double>();
+  check.num_checked = in.scalar<std::uint32_t>();
+  check.num_passed = in.scalar<std::uint32_t>();
+  check.accepted = in.scalar<std::uint8_t>() != 0;
+  in.vector(check.loops);
+  get(in, check.reason);
+}
+
+void put(Writer& out, const MergeChecks& checks) {
+  out.scalar(checks.author.value);
+  out.scalar(checks.first);
+  out.vector(checks.checks);
+}
+void get(Reader& in, MergeChecks& checks) {
+  checks.author.value = in.scalar<std::uint8_t>();
+  checks.first = in.scalar<std::uint32_t>();
+  in.vector(checks.checks);
 }
 
 using Body = decltype(Message::body);

@@ -28,18 +28,25 @@ LoopClosure a_loop() {
   return loop;
 }
 
+MergeCheck a_check() {
+  return {{1}, {3}, 12.75, 9.25, 40, 39, true, {{5, 70000}, {6, 8}}, "39 of 40 places agree"};
+}
+
 std::vector<Message> one_of_each() {
   const std::vector<float> heights(20 * 60, 1.5F);
   const ScanContext context = from_heights(20, 60, heights);
   GraphNode node{{1234567890123456789}, a_loop().T_from_to, Matrix6::Identity() * 0.5};
-  return {{{0}, {1}, Hello{{{{0}, 5, 6, 3}, {{1}, 7, 8, 0}}, true}},
+  return {{{0}, {1}, Hello{{{{0}, 5, 6, 3, 2}, {{1}, 7, 8, 0, 1}}, true}},
           {{1}, {0}, GraphPart{{2}, "robot_2", 4, {node, node}}},
           {{1}, {0}, Places{9, {{11, context}}, true}},
           {{0}, {1}, CloudRequest{{1, 2, 3}}},
           {{1},
            {0},
-           Clouds{{{5, {Eigen::Vector3f(1.0F, -2.0F, 3.0F), Eigen::Vector3f(0.0025F, 160.0F, -160.0F)}}}}},
-          {{0}, {1}, Loops{{0}, 3, {a_loop()}}}};
+           Clouds{{{5,
+                    {0.5F, 0.0F, 0.9F},
+                    {Eigen::Vector3f(1.0F, -2.0F, 3.0F), Eigen::Vector3f(0.0025F, 160.0F, -160.0F)}}}}},
+          {{0}, {1}, Loops{{0}, 3, {a_loop()}}},
+          {{0}, {2}, MergeChecks{{1}, 4, {a_check()}}}};
 }
 
 TEST(Wire, EveryKindOfMessageComesBack) {
@@ -65,13 +72,33 @@ TEST(Wire, NumbersOfGraphAndLoopsTravelExactly) {
   EXPECT_EQ(loop.verdict, LoopVerdict::accepted);
 }
 
+TEST(Wire, DecisionsTravelExactly) {
+  const Result<Message> back = decode(encode({{0}, {2}, MergeChecks{{1}, 4, {a_check()}}}));
+  ASSERT_TRUE(back.has_value());
+  const auto& part = std::get<MergeChecks>(back->body);
+  EXPECT_EQ(part.author, RobotId{1});
+  EXPECT_EQ(part.first, 4U);
+  const MergeCheck& check = part.checks.at(0);
+  EXPECT_EQ(check.a, RobotId{1});
+  EXPECT_EQ(check.b, RobotId{3});
+  EXPECT_EQ(check.evidence, 12.75);
+  EXPECT_EQ(check.needed, 9.25);
+  EXPECT_EQ(check.num_checked, 40U);
+  EXPECT_EQ(check.num_passed, 39U);
+  EXPECT_TRUE(check.accepted);
+  EXPECT_EQ(check.loops, a_check().loops);
+  EXPECT_EQ(check.reason, a_check().reason);
+}
+
 TEST(Wire, PointsKeepFiveMillimetresAndFarOnesStayBehind) {
   Clouds clouds;
-  clouds.clouds.push_back(
-      {1, {Eigen::Vector3f(12.3456F, -7.7777F, 0.1F), Eigen::Vector3f(170.0F, 0.0F, 0.0F)}});
+  clouds.clouds.push_back({1,
+                           {0.25F, -0.125F, 0.875F},
+                           {Eigen::Vector3f(12.3456F, -7.7777F, 0.1F), Eigen::Vector3f(170.0F, 0.0F, 0.0F)}});
   const Result<Message> back = decode(encode({{0}, {1}, clouds}));
   ASSERT_TRUE(back.has_value());
   const auto& points = std::get<Clouds>(back->body).clouds.at(0).points;
+  EXPECT_EQ(std::get<Clouds>(back->body).clouds.at(0).viewpoint, Eigen::Vector3f(0.25F, -0.125F, 0.875F));
   ASSERT_EQ(points.size(), 1U);
   EXPECT_LT((points[0] - Eigen::Vector3f(12.3456F, -7.7777F, 0.1F)).cwiseAbs().maxCoeff(), 0.0026F);
 }

@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/discernment.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "adit/registration/registration.hpp"
+
+namespace adit {
+namespace {
+
+constexpr double kOtherPlace = 15.0;  // metres between two places of one map that share little
+constexpr std::size_t kMatches = 32;  // among which the nearest other place is looked for
+constexpr double kUsual = 0.9;        // share of the pairs of one place whose difference is usual
+constexpr double kFollowed = 30.0;    // metres, each way, along a look-alike
+// What is believed before anything is measured, worth as many steps: look-alikes go on half the time.
+constexpr double kPriorSteps = 32.0;
+
+std::vector<std::uint32_t> evenly(std::size_t n, std::size_t samples) {
+  std::vector<std::uint32_t> out;
+  const std::size_t num = std::min(n, samples);
+  for (std::size_t i = 0; i < num; ++i)
+    out.push_back(static_cast<std::uint32_t>((2 * i + 1) * n / (2 * num)));
+  return out;
+}
+
+PlaceIndexConfig for_other_places(PlaceIndexConfig config) {
+  config.max_distance = 1.0;
+  config.exclude_recent = 0;
+  config.num_candidates = std::max(config.num_candidates, static_cast<int>(4 * kMatches));
+  return config;
+}
+
+}  // namespace
+
+std::vector<double> way_along(const OdometryChain& chain) {
+  std::vector<double> way(chain.size(), 0.0);
+  for (std::size_t k = 1; k < way.size(); ++k)
+    way[k] = way[k - 1] + chain.between(k - 1, k).translation().norm();
+  return way;
+}
+
+std::optional<std::uint32_t> keyframe_at(const std::vector<double>& way, double metres) {
+  if (way.empty() || metres < 0.0 || metres > way.back()) return {};
+  return static_cast<std::uint32_t>(std::ranges::lower_bound(way, metres) - way.begin());
+}
+
+OtherPlaces::OtherPlaces(std::shared_ptr<const RobotMap> map, const OdometryChain& chain,
+                         PlaceIndexConfig config)
+    : map_(std::move(map)), chain_(chain), way_(way_along(chain_)), index_(for_other_places(config)) {
+  for (std::uint32_t k = 0; k < map_->places.size(); ++k) index_.add({map_->id, k}, map_->places[k]);
+}
+
+std::optional<LoopCandidate> OtherPlaces::most_similar(std::uint32_t k) const {
+  for (const LoopCandidate& match : index_.best_matches({map_->id, k}, map_->places[k], map_->id, kMatches))
+    if (is_elsewhere(k, match.match.index)) return match;
+  return {};
+}
+
+std::vector<double> OtherPlaces::likeness() const {
+  std::vector<double> likeness(map_->keyframes.size(), 1.0);
+  parallel_for_each(
+      likeness.size(),
+      [&](std::size_t k) {
+        if (const auto match = most_similar(static_cast<std::uint32_t>(k))) likeness[k] = match->distance;
+      },
+      16);
+  return likeness;
+}
+
+bool OtherPlaces::is_elsewhere(std::uint32_t k, std::uint32_t other) const {
+  if (std::abs(way_[k] - way_[other]) < kOtherPlace) return false;
+  const double drift = std::sqrt(chain_.covariance(k, other).topLeftCorner<3, 3>().trace());
+  return chain_.between(k, other).translation().norm() > kOtherPlace + 3.0 * drift;
+}
+
+// Two places that look alike, followed one way.
+struct Discernment::Walk {
+  std::uint32_t a;
+  std::uint32_t b;
+  Pose T_a_b;
+  double way = 0.0;  // the next step, metres from a, negative against the drive
+  double direction;  // 1 or -1
+  bool is_over = false;
+};
+
+Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryChain chain,
+                         const OtherPlaces& others, FeatureStore& features,
+                         const RegistrationConfig& registration, const DiscernmentConfig& config)
+    : registration_(registration),
+      config_(config),
+      chain_(std::move(chain)),
+      way_(way_along(chain_)),
+      surfaces_(map, registration) {
+  limit_ = config_.allowance * usual_difference();
+  follow(look_alikes(others, features));
+}
+
+double Discernment::chance_to_go_on() const {
+  return (static_cast<double>(num_went_on_) + 0.5 * kPriorSteps) /
+         (static_cast<double>(num_steps_) + kPriorSteps);
+}
+
+std::vector<Agreement> Discernment::fits(const std::vector<Fit>& asked, bool from_elsewhere_too) {
+  std::vector<std::uint32_t> used;
+  for (const Fit& fit : asked) used.insert(used.end(), {fit.a, fit.b});
+  surfaces_.prepare(used);
+  std::vector<Agreement> out(asked.size());
+  parallel_for_each(asked.size(), [&](std::size_t i) {
+    const auto& [a, b, T_a_b] = asked[i];
+    const double enough = from_elsewhere_too ? limit_ : std::numeric_limits<double>::infinity();
+    out[i] = fit_near(surfaces_.at(a), surfaces_.at(b), T_a_b, enough, registration_).agreement;
+  });
+  return out;
+}
+
+double Discernment::usual_difference() {
+  std::vector<Fit> pairs;
+  for (const std::uint32_t k : evenly(way_.size(), static_cast<std::size_t>(config_.samples)))
+    for (const double distance : kDistances)
+      if (const auto next = keyframe_at(way_, way_[k] + distance))
+        pairs.push_back({k, *next, chain_.between(k, *next)});
+  std::vector<double> differences;
+  for (const Agreement& one : fits(pairs, false))
+    if (one.is_comparable()) differences.push_back(one.largest_difference);
+  // A map that is too short to measure on allows nothing.
+  if (differences.empty()) return 0.0;
+  const auto usual = static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(differences.size() - 1) + 0.5);
+  std::ranges::nth_element(differences, differences.begin() + usual);
+  return differences[static_cast<std::size_t>(usual)];
+}
+
+std::vector<Discernment::Walk> Discernment::look_alikes(const OtherPlaces& others, FeatureStore& features) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+  std::vector<std::uint32_t> used;
+  for (const std::uint32_t k : evenly(way_.size(), static_cast<std::size_t>(config_.samples))) {
+    const auto match = others.most_similar(k);
+    if (!match) continue;
+    pairs.emplace_back(k, match->match.index);
+    used.insert(used.end(), {k, match->match.index});
+  }
+  features.prepare(used);
+  std::vector<Registration> found(pairs.size());
+  parallel_for_each(pairs.size(), [&](std::size_t i) {
+    found[i] = register_features(features.at(pairs[i].first), features.at(pairs[i].second), registration_);
+  });
+  std::vector<Walk> walks;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (found[i].verdict != LoopVerdict::accepted) continue;
+    for (const double direction : {1.0, -1.0})
+      walks.push_back({pairs[i].first, pairs[i].second, *found[i].T_a_b, 0.0, direction});
+  }
+  return walks;
+}
+
+void Discernment::follow(std::vector<Walk> walks) {
+  while (!walks.empty()) {
+    std::vector<Fit> next;
+    std::vector<std::uint32_t> places;
+    for (Walk& walk : walks) {
+      walk.way += walk.direction * config_.spacing_m;
+      // The two drives run the same way along the look-alike, or one against the other; keyframe b stands
+      // T_a_b.x ahead of a already, and the two that are compared stand at one of the distances in turn.
+      const double sense = (walk.T_a_b.rotation_matrix() * Vector3::UnitX()).x() > 0.0 ? 1.0 : -1.0;
+      const double apart = kDistances[next.size() % kDistances.size()];
+      const auto a = keyframe_at(way_, way_[walk.a] + walk.way);
+      const auto b =
+          keyframe_at(way_, way_[walk.b] + sense * (walk.way + apart - walk.T_a_b.translation().x()));
+      walk.is_over = std::abs(walk.way) > kFollowed || !a || !b;
+      if (walk.is_over) continue;
+      next.push_back({*a, *b, chain_.between(*a, walk.a) * walk.T_a_b * chain_.between(walk.b, *b)});
+      places.push_back(*a);
+    }
+    std::erase_if(walks, [](const Walk& walk) { return walk.is_over; });
+    const std::vector<bool> tells = distinctive(places);
+    const std::vector<Agreement> found = fits(next, true);
+    for (std::size_t w = 0; w < walks.size(); ++w) {
+      walks[w].is_over = differ(found[w]);
+      if (walks[w].is_over || tells[w]) ++num_steps_;
+      if (!walks[w].is_over && tells[w]) ++num_went_on_;
+    }
+    std::erase_if(walks, [](const Walk& walk) { return walk.is_over; });
+  }
+}
+
+std::vector<bool> Discernment::distinctive(const std::vector<std::uint32_t>& indices) {
+  std::vector<Fit> displaced;
+  for (const std::uint32_t k : indices) {
+    if (!distinctive_.emplace(k, false).second) continue;
+    for (const double by : {-config_.displacement_m, config_.displacement_m})
+      if (const auto other = keyframe_at(way_, way_[k] + by)) displaced.push_back({k, *other, Pose()});
+  }
+  const std::vector<Agreement> found = fits(displaced, false);
+  // Both ways: an end of a niche may show one way and not the other.
+  for (const Fit& fit : displaced) distinctive_[fit.a] = true;
+  for (std::size_t i = 0; i < displaced.size(); ++i)
+    if (!differ(found[i])) distinctive_[displaced[i].a] = false;
+  std::vector<bool> out;
+  for (const std::uint32_t k : indices) out.push_back(distinctive_.at(k));
+  return out;
+}
+
+}  // namespace adit

@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "adit/core/check.hpp"
+#include "adit/core/parallel.hpp"
+#include "adit/registration/agreement.hpp"
+#include "adit/registration/features.hpp"
+#include "adit/robot/robot_map.hpp"
+
+namespace adit {
+
+/// Something that is computed of a robot's own keyframes, of each when it is needed: it keeps those used
+/// last, as many as fit `max_bytes`.
+template <class T>
+class KeyframeStore {
+ public:
+  using Compute = std::function<T(const RobotMap&, std::uint32_t index)>;
+  using BytesOf = std::function<std::size_t(const T&)>;
+
+  KeyframeStore(std::shared_ptr<const RobotMap> map, Compute compute, BytesOf bytes_of, std::size_t max_bytes)
+      : map_(std::move(map)),
+        compute_(std::move(compute)),
+        bytes_of_(std::move(bytes_of)),
+        max_bytes_(max_bytes),
+        entries_(map_->keyframes.size()) {}
+
+  /// Computes what is missing of `indices`, in parallel; forgets what was used longest ago and is not among
+  /// them. Call it before `at`.
+  void prepare(const std::vector<std::uint32_t>& indices) {
+    ++now_;
+    std::vector<std::uint32_t> missing;
+    for (const std::uint32_t i : indices) {
+      Entry& entry = entries_.at(i);
+      if (!entry.value && entry.last_used != now_) missing.push_back(i);
+      entry.last_used = now_;
+    }
+    parallel_for_each(missing.size(),
+                      [&](std::size_t i) { entries_[missing[i]].value = compute_(*map_, missing[i]); });
+    for (const std::uint32_t i : missing) num_bytes_ += bytes_of_(*entries_[i].value);
+    forget_oldest();
+  }
+  [[nodiscard]] const T& at(std::uint32_t index) const {
+    ADIT_CHECK(entries_.at(index).value.has_value(), "keyframes are prepared before they are asked for");
+    return *entries_[index].value;
+  }
+  [[nodiscard]] std::size_t num_bytes() const { return num_bytes_; }
+
+ private:
+  struct Entry {
+    std::optional<T> value;
+    std::uint64_t last_used = 0;
+  };
+  void forget_oldest() {
+    std::vector<std::uint32_t> unused;
+    for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+      if (entries_[i].value && entries_[i].last_used < now_) unused.push_back(i);
+    }
+    std::ranges::sort(unused, {}, [&](std::uint32_t i) { return std::pair(entries_[i].last_used, i); });
+    for (const std::uint32_t i : unused) {
+      if (num_bytes_ <= max_bytes_) return;
+      num_bytes_ -= bytes_of_(*entries_[i].value);
+      entries_[i].value.reset();
+    }
+  }
+
+  std::shared_ptr<const RobotMap> map_;
+  Compute compute_;
+  BytesOf bytes_of_;
+  std::size_t max_bytes_;
+  std::vector<Entry> entries_;
+  std::uint64_t now_ = 0;  ///< Counts calls of `prepare`.
+  std::size_t num_bytes_ = 0;
+};
+
+/// Keyframes made ready for registration.
+class FeatureStore : public KeyframeStore<Features> {
+ public:
+  static constexpr std::size_t kMaxBytes = 256'000'000;
+  FeatureStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
+               std::size_t max_bytes = kMaxBytes);
+};
+
+/// Keyframes made ready for comparing them.
+class SurfaceStore : public KeyframeStore<SeenSurface> {
+ public:
+  static constexpr std::size_t kMaxBytes = 128'000'000;
+  SurfaceStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
+               std::size_t max_bytes = kMaxBytes);
+};
+
+}  // namespace adit

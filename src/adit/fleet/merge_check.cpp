@@ -1,0 +1,272 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/merge_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "adit/core/format.hpp"
+
+namespace adit {
+namespace {
+
+constexpr double kTrueCheck = 0.97;      // chance that scans do not differ where the alignment is true
+constexpr double kSide = 3.0;            // metres between two keyframes that are compared
+constexpr double kReach = 50.0;          // metres along odometry, from the nearest loop
+constexpr double kSameAlignment = 3.0;   // metres between two hypotheses that say the same
+constexpr std::size_t kFirstChecks = 8;  // of each hypothesis, before the best ones get more
+
+// Places far apart first: the middle, the quarters, and so on.
+std::vector<PlannedCheck> coarse_to_fine(const std::vector<PlannedCheck>& plan) {
+  std::vector<PlannedCheck> out;
+  std::vector<bool> taken(plan.size(), false);
+  for (std::size_t parts = 2; out.size() < plan.size(); parts *= 2) {
+    for (std::size_t part = 1; part < 2 * parts; part += 2) {
+      const std::size_t i = part * plan.size() / (2 * parts);
+      if (!taken[i]) out.push_back(plan[i]);
+      taken[i] = true;
+    }
+    if (parts <= 2 * plan.size()) continue;
+    for (std::size_t i = 0; i < plan.size(); ++i)
+      if (!taken[i]) out.push_back(plan[i]);
+  }
+  return out;
+}
+
+// The chance of `k` or more out of `n` where each comes with chance `p`.
+double at_least(std::size_t k, std::size_t n, double p) {
+  double chance = 0.0;
+  for (std::size_t i = k; i <= n; ++i) {
+    const auto x = static_cast<double>(i);
+    const auto all = static_cast<double>(n);
+    chance += std::exp(std::lgamma(all + 1.0) - std::lgamma(x + 1.0) - std::lgamma(all - x + 1.0) +
+                       x * std::log(p) + (all - x) * std::log1p(-p));
+  }
+  return chance;
+}
+
+// Where their keyframe stands in the own odometry's frame, by the loop that is nearest along their way.
+Vector3 position_of(std::uint32_t theirs, const OdometryChain& own_chain, const OdometryChain& their_chain,
+                    const std::vector<PcmLoop>& loops) {
+  const auto& loop = *std::ranges::min_element(
+      loops, {}, [&](const PcmLoop& l) { return l.b > theirs ? l.b - theirs : theirs - l.b; });
+  return own_chain.pose(loop.a) * (loop.T_a_b * their_chain.between(loop.b, theirs)).translation();
+}
+
+std::vector<PcmLoop> picked(const std::vector<PcmLoop>& loops, const std::vector<std::size_t>& indices) {
+  std::vector<PcmLoop> out;
+  for (const std::size_t i : indices) out.push_back(loops[i]);
+  return out;
+}
+
+// How far two sets of loops put the other robot from one another, at the loops of the second.
+double apart(const std::vector<PcmLoop>& first, const std::vector<PcmLoop>& second, const OdometryChain& own,
+             const OdometryChain& theirs) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const PcmLoop& loop : second) {
+    const auto j = static_cast<std::uint32_t>(loop.b);
+    const Vector3 there = own.pose(loop.a) * loop.T_a_b.translation();
+    nearest = std::min(nearest, (position_of(j, own, theirs, first) - there).norm());
+  }
+  return nearest;
+}
+
+std::size_t num_differing(const std::vector<CheckedPlace>& places) {
+  return static_cast<std::size_t>(std::ranges::count(places, true, &CheckedPlace::differs));
+}
+
+}  // namespace
+
+Fields fields_of(MergeCheckConfig& c) {
+  Fields fields = {
+      {"error_rate", &c.error_rate, "", 1e-12, 0.5, "chance that a wrong merge passes"},
+      {"spacing_m", &c.spacing_m, "m", 0.1, 1000.0, "way between two places where maps are compared"},
+      {"max_checks", &c.max_checks, "", 1, 10000, "places that are compared at most, of one hypothesis"},
+      {"max_hypotheses", &c.max_hypotheses, "", 1, 1000,
+       "sets of consistent loops that are tested, the largest ones"},
+      {"distinctive_only", &c.distinctive_only, "", 0, 0,
+       "agreement counts only where a displacement along the way would show"}};
+  append(fields, "discernment", fields_of(c.discernment));
+  return fields;
+}
+
+std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryChain& theirs,
+                                      const std::vector<PcmLoop>& loops, const MergeCheckConfig& config) {
+  const std::vector<double> own_way = way_along(own);
+  const std::vector<double> their_way = way_along(theirs);
+  std::vector<PlannedCheck> plan;
+  double last = -config.spacing_m;
+  for (std::uint32_t j = 0; j < theirs.size() && !loops.empty(); ++j) {
+    if (their_way[j] - last < config.spacing_m) continue;
+    const auto& loop = *std::ranges::min_element(
+        loops, {}, [&](const PcmLoop& l) { return std::abs(their_way[l.b] - their_way[j]); });
+    const double from_loop = std::abs(their_way[loop.b] - their_way[j]);
+    if (from_loop > kReach) continue;
+    const Pose T_loop_theirs = loop.T_a_b * theirs.between(loop.b, j);
+    const Vector3 at = own.pose(loop.a) * T_loop_theirs.translation();
+    std::optional<std::uint32_t> nearest;
+    double best = kSide;
+    for (std::uint32_t i = 0; i < own.size(); ++i) {
+      if (std::abs(own_way[i] - own_way[loop.a]) > from_loop + 2.0 * kSide) continue;
+      const double distance = (own.pose(i).translation() - at).norm();
+      if (distance < best) {
+        best = distance;
+        nearest = i;
+      }
+    }
+    if (!nearest) continue;
+    plan.push_back({*nearest, j, own.between(*nearest, loop.a) * T_loop_theirs});
+    last = their_way[j];
+  }
+  plan = coarse_to_fine(plan);
+  plan.resize(std::min(plan.size(), static_cast<std::size_t>(config.max_checks)));
+  return plan;
+}
+
+MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
+                     double chance_to_go_on, const MergeCheckConfig& config)
+    : loops_(loops), chance_to_go_on_(chance_to_go_on), config_(config) {
+  std::vector<std::size_t> rest(loops.size());
+  for (std::size_t l = 0; l < rest.size(); ++l) rest[l] = l;
+  while (!rest.empty() && hypotheses_.size() < static_cast<std::size_t>(config.max_hypotheses)) {
+    Hypothesis hypothesis;
+    for (const std::size_t l : pcm(own, theirs, picked(loops, rest)).largest)
+      hypothesis.loops.push_back(rest[l]);
+    std::erase_if(rest, [&](std::size_t l) { return std::ranges::binary_search(hypothesis.loops, l); });
+    const std::vector<PcmLoop> agreeing = picked(loops, hypothesis.loops);
+    const bool is_new = std::ranges::all_of(hypotheses_, [&](const Hypothesis& other) {
+      return apart(picked(loops, other.loops), agreeing, own, theirs) > kSameAlignment;
+    });
+    if (!is_new) continue;
+    if (!hypotheses_.empty())
+      hypothesis.offset_m = apart(picked(loops, hypotheses_.front().loops), agreeing, own, theirs);
+    hypothesis.plan = plan_checks(own, theirs, agreeing, config);
+    hypotheses_.push_back(std::move(hypothesis));
+  }
+}
+
+double MergeTest::needed() const { return std::log(1.0 / config_.error_rate); }
+
+double MergeTest::evidence_of_agreement() const {
+  return std::log(kTrueCheck / std::min(chance_to_go_on_, kTrueCheck));
+}
+
+double MergeTest::evidence(const Hypothesis& hypothesis) const {
+  double sum = -std::log(static_cast<double>(loops_.size() - hypothesis.loops.size() + 1));
+  for (const CheckedPlace& place : hypothesis.checked) {
+    if (place.differs)
+      sum += std::log((1.0 - kTrueCheck) / (1.0 - std::min(chance_to_go_on_, kTrueCheck)));
+    else if (place.is_distinctive || !config_.distinctive_only)
+      sum += evidence_of_agreement();
+  }
+  return sum;
+}
+
+bool MergeTest::is_refuted(const Hypothesis& h) const {
+  return at_least(num_differing(h.checked), h.checked.size(), 1.0 - kTrueCheck) < config_.error_rate;
+}
+
+bool MergeTest::is_finished(const Hypothesis& h) const { return h.checked.size() == h.plan.size(); }
+
+std::optional<std::size_t> MergeTest::best(std::optional<std::size_t> but) const {
+  std::optional<std::size_t> found;
+  for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
+    if (h == but || is_refuted(hypotheses_[h])) continue;
+    if (!found || evidence(hypotheses_[h]) > evidence(hypotheses_[*found])) found = h;
+  }
+  return found;
+}
+
+std::optional<std::size_t> MergeTest::to_go_on_with() const {
+  double best_finished = -std::numeric_limits<double>::infinity();
+  for (const Hypothesis& h : hypotheses_)
+    if (is_finished(h) && !is_refuted(h)) best_finished = std::max(best_finished, evidence(h));
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
+    const Hypothesis& h = hypotheses_[i];
+    if (is_finished(h) || is_refuted(h)) continue;
+    if (h.checked.empty()) return i;
+    const double at_most =
+        evidence(h) + static_cast<double>(h.plan.size() - h.checked.size()) * evidence_of_agreement();
+    if (at_most < best_finished - needed()) continue;  // it cannot become a rival any more
+    if (!found || evidence(h) > evidence(hypotheses_[*found])) found = i;
+  }
+  return found;
+}
+
+std::vector<PlannedCheck> MergeTest::next(std::size_t num) const {
+  const auto which = to_go_on_with();
+  if (!which) return {};
+  const Hypothesis& h = hypotheses_[*which];
+  const std::size_t from = h.checked.size();
+  const std::size_t to = std::min(h.plan.size(), from + (from == 0 ? std::min(num, kFirstChecks) : num));
+  return {h.plan.begin() + static_cast<std::ptrdiff_t>(from),
+          h.plan.begin() + static_cast<std::ptrdiff_t>(to)};
+}
+
+void MergeTest::add(const std::vector<CheckedPlace>& places) {
+  const auto which = to_go_on_with();
+  ADIT_CHECK(which && hypotheses_[*which].checked.size() + places.size() <= hypotheses_[*which].plan.size(),
+             "only what was asked for is added");
+  std::ranges::copy(places, std::back_inserter(hypotheses_[*which].checked));
+}
+
+std::string MergeTest::reason(const Hypothesis& h, const Hypothesis* rival) const {
+  const std::size_t differing = num_differing(h.checked);
+  const auto distinctive = std::ranges::count_if(
+      h.checked, [](const CheckedPlace& place) { return place.is_distinctive && !place.differs; });
+  if (is_refuted(h))
+    return format(
+        "scans differ at {} of {} places along the stretch that {} loops lay over one another: "
+        "tunnels that only look alike",
+        differing, h.checked.size(), h.loops.size());
+  if (evidence(h) < needed() && distinctive == 0)
+    return format(
+        "shared stretch has no along-axis constraint: {} places agree, none of which would show a "
+        "displacement; a junction or a niche that both robots see would decide",
+        h.checked.size() - differing);
+  if (evidence(h) < needed())
+    return format(
+        "evidence {:.1f} of {:.1f}: {} of {} places agree, {} of them distinctive, and where "
+        "tunnels only look alike here each further one would with chance {:.2f}; a longer shared "
+        "stretch would decide",
+        evidence(h), needed(), h.checked.size() - differing, h.checked.size(), distinctive, chance_to_go_on_);
+  if (rival != nullptr)
+    return format(
+        "two hypotheses {:.0f} m apart along the tunnel have similar support, evidence {:.1f} and "
+        "{:.1f}; a stretch that only one of them explains would decide",
+        std::abs(h.offset_m - rival->offset_m), evidence(h), evidence(*rival));
+  return format(
+      "{} of {} places along the shared stretch agree, {} of them distinctive: evidence {:.1f}, "
+      "needed {:.1f}",
+      h.checked.size() - differing, h.checked.size(), distinctive, evidence(h), needed());
+}
+
+MergeCheck MergeTest::verdict(RobotId a, RobotId b) const {
+  MergeCheck out;
+  out.a = a;
+  out.b = b;
+  out.needed = needed();
+  std::optional<std::size_t> which = best();
+  const bool all_refuted = !which;
+  if (all_refuted && !hypotheses_.empty()) which = 0;
+  if (!which) {
+    out.reason = "no loop was accepted";
+    return out;
+  }
+  const Hypothesis& h = hypotheses_[*which];
+  const auto second = best(which);
+  const Hypothesis* rival =
+      second && evidence(h) - evidence(hypotheses_[*second]) < needed() ? &hypotheses_[*second] : nullptr;
+  out.evidence = evidence(h);
+  out.num_checked = static_cast<std::uint32_t>(h.checked.size());
+  out.num_passed = static_cast<std::uint32_t>(h.checked.size() - num_differing(h.checked));
+  out.accepted = !all_refuted && rival == nullptr && is_finished(h) && out.evidence >= out.needed;
+  for (const std::size_t l : h.loops)
+    out.loops.emplace_back(static_cast<std::uint32_t>(loops_[l].a), static_cast<std::uint32_t>(loops_[l].b));
+  out.reason = reason(h, rival);
+  return out;
+}
+
+}  // namespace adit

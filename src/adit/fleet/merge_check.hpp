@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Whether the loops between two robots may join their maps: a test with a stated error rate, measured
+/// against what the robot has seen itself, so that nothing is tuned to a site.
+///
+/// Loops that agree with one another lay one map over the other: a hypothesis. Where it is true, the scans of
+/// both agree all along the stretch that both drove; where one tube only looks like another, they agree for a
+/// while and then one has a niche, a bend or a side passage that the other has not. How long they agree by
+/// chance differs from site to site, and each robot can measure it (Discernment).
+///
+/// The decision is Wald's sequential probability ratio test ("Sequential tests of statistical hypotheses",
+/// 1945) in two directions. Against chance: the logarithms of likelihood ratios add up over the places that
+/// are distinctive, less that of the number of loops that say something else, and have to reach
+/// log(1 / error_rate). Against copies: scans that differ may not be more than true places would leave. And
+/// against every other hypothesis: it must stay behind by as much.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adit/core/config.hpp"
+#include "adit/fleet/discernment.hpp"
+#include "adit/fleet/protocol.hpp"
+#include "adit/posegraph/pcm.hpp"
+
+namespace adit {
+
+struct MergeCheckConfig {
+  double error_rate = 1e-4;
+  double spacing_m = 3.0;
+  int max_checks = 200;
+  int max_hypotheses = 6;
+  bool distinctive_only = true;
+  DiscernmentConfig discernment;
+};
+Fields fields_of(MergeCheckConfig& config);
+
+/// Two keyframes that stand next to one another if the loops are true.
+struct PlannedCheck {
+  std::uint32_t own = 0;
+  std::uint32_t theirs = 0;
+  Pose T_own_theirs;
+};
+/// Along the whole stretch that both drove, as far as `loops` (which agree with one another) say; places
+/// far apart first, those between them later.
+[[nodiscard]] std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryChain& theirs,
+                                                    const std::vector<PcmLoop>& loops,
+                                                    const MergeCheckConfig& config);
+
+/// One place where two maps were compared.
+struct CheckedPlace {
+  bool differs = false;         ///< The scans cannot be of one place.
+  bool is_distinctive = false;  ///< A displacement along the way would have shown.
+};
+
+/// The test of two robots' loops: asks for comparisons until it knows.
+class MergeTest {
+ public:
+  /// `loops`: all that registration accepted, with those that say something else.
+  MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
+            double chance_to_go_on, const MergeCheckConfig& config);
+
+  /// The next comparisons, at most `num`, each with another keyframe of theirs; none when the test is over.
+  /// Asked again without `add` in between it answers the same.
+  [[nodiscard]] std::vector<PlannedCheck> next(std::size_t num) const;
+  /// What came of the comparisons that `next` asked for, in that order.
+  void add(const std::vector<CheckedPlace>& places);
+  [[nodiscard]] MergeCheck verdict(RobotId a, RobotId b) const;
+
+ private:
+  struct Hypothesis {
+    std::vector<std::size_t> loops;
+    std::vector<PlannedCheck> plan;
+    std::vector<CheckedPlace> checked;
+    double offset_m = 0.0;  ///< From the first hypothesis, where theirs would stand.
+  };
+  [[nodiscard]] double evidence(const Hypothesis& hypothesis) const;
+  [[nodiscard]] bool is_refuted(const Hypothesis& hypothesis) const;
+  [[nodiscard]] bool is_finished(const Hypothesis& hypothesis) const;
+  [[nodiscard]] std::optional<std::size_t> to_go_on_with() const;
+  [[nodiscard]] std::optional<std::size_t> best(std::optional<std::size_t> but = {}) const;
+  [[nodiscard]] std::string reason(const Hypothesis& hypothesis, const Hypothesis* rival) const;
+  [[nodiscard]] double needed() const;
+  [[nodiscard]] double evidence_of_agreement() const;
+
+  std::vector<PcmLoop> loops_;
+  std::vector<Hypothesis> hypotheses_;
+  double chance_to_go_on_;
+  MergeCheckConfig config_;
+};
+
+}  // namespace adit

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/merge_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "adit/core/check.hpp"
+#include "adit/core/rng.hpp"
+#include "adit/fleet/fleet_graph.hpp"
+
+namespace adit {
+namespace {
+
+// Half a metre between keyframes.
+OdometryChain along_x(std::size_t num) {
+  std::vector<Pose> poses;
+  for (std::size_t k = 0; k < num; ++k)
+    poses.push_back(Pose::translation_of(0.5 * static_cast<double>(k), 0, 0));
+  return {poses, std::vector<Matrix6>(num - 1, Matrix6::Identity() * 1e-4)};
+}
+
+constexpr std::size_t kNum = 200;  // keyframes: 100 m
+
+// Robot b came towards a: it stands at 100 m - x of a, on a lane 1 m beside.
+Pose T_a_b_true(std::size_t a, std::size_t b, double off_m = 0.0) {
+  const double x_a = 0.5 * static_cast<double>(a);
+  const double x_b = 99.5 - 0.5 * static_cast<double>(b) + off_m;
+  return Pose::planar(x_b - x_a, 1.0, std::numbers::pi);
+}
+// Keyframes that stand side by side, if b is `off_m` farther on than it truly is.
+PcmLoop loop_at(std::size_t a, double off_m = 0.0) {
+  const std::size_t b = kNum - 1 - a + static_cast<std::size_t>(2.0 * off_m);
+  return {a, b, T_a_b_true(a, b, off_m), loop_information({})};
+}
+
+const std::vector<PcmLoop> kTrueLoops = {loop_at(80), loop_at(90), loop_at(100)};
+
+MergeTest a_test(const std::vector<PcmLoop>& loops, double chance_to_go_on = 0.5,
+                 const MergeCheckConfig& config = {}) {
+  return {along_x(kNum), along_x(kNum), loops, chance_to_go_on, config};
+}
+
+// Answers all that the test asks for.
+template <class Answer>
+MergeCheck run(MergeTest& test, const Answer& answer) {
+  for (std::vector<PlannedCheck> asked = test.next(16); !asked.empty(); asked = test.next(16)) {
+    EXPECT_LE(asked.size(), 16U);
+    std::vector<CheckedPlace> places;
+    for (const PlannedCheck& check : asked) places.push_back(answer(check));
+    test.add(places);
+  }
+  return test.verdict({0}, {1});
+}
+
+constexpr CheckedPlace kAgrees{false, true};
+constexpr CheckedPlace kDiffers{true, true};
+constexpr CheckedPlace kSilent{false, false};
+
+TEST(PlanChecks, PutsNeighboursTogetherAllAlongTheStretch) {
+  const std::vector<PlannedCheck> plan = plan_checks(along_x(kNum), along_x(kNum), kTrueLoops, {});
+  // 50 m to each side of the loops and the 10 m between them, every 3 m; both drives end sooner.
+  ASSERT_GE(plan.size(), 30U);
+  std::set<std::uint32_t> theirs;
+  for (const PlannedCheck& check : plan) {
+    EXPECT_TRUE(theirs.insert(check.theirs).second) << "twice: " << check.theirs;
+    const Pose T_true = T_a_b_true(check.own, check.theirs);
+    EXPECT_LT((check.T_own_theirs.inverse() * T_true).log().norm(), 1e-9);
+    EXPECT_LT(T_true.translation().norm(), 1.1);  // the lane, and a quarter of a metre along it
+  }
+}
+
+TEST(PlanChecks, LooksFarApartFirst) {
+  const std::vector<PlannedCheck> plan = plan_checks(along_x(kNum), along_x(kNum), kTrueLoops, {});
+  std::vector<std::uint32_t> first;
+  for (std::size_t i = 0; i < 4; ++i) first.push_back(plan[i].theirs);
+  std::ranges::sort(first);
+  for (std::size_t i = 1; i < first.size(); ++i) EXPECT_GT(first[i] - first[i - 1], 20U);
+}
+
+TEST(PlanChecks, WithoutLoopsThereIsNothingToCheck) {
+  EXPECT_TRUE(plan_checks(along_x(kNum), along_x(kNum), {}, {}).empty());
+}
+
+TEST(MergeTest, PlacesThatAgreeJoinTheMaps) {
+  MergeTest test = a_test(kTrueLoops);
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+  EXPECT_TRUE(check.accepted) << check.reason;
+  EXPECT_EQ(check.num_passed, check.num_checked);
+  EXPECT_NEAR(check.evidence, check.num_checked * std::log(0.97 / 0.5), 1e-9);
+  EXPECT_NEAR(check.needed, std::log(1e4), 1e-9);
+  const std::vector<std::pair<std::uint32_t, std::uint32_t>> loops = {{80, 119}, {90, 109}, {100, 99}};
+  EXPECT_EQ(check.loops, loops);
+}
+
+TEST(MergeTest, AStretchThatDiffersHereAndThereIsACopy) {
+  MergeTest test = a_test(kTrueLoops);
+  int n = 0;
+  const MergeCheck check = run(test, [&](const PlannedCheck&) { return ++n % 4 == 0 ? kDiffers : kAgrees; });
+  EXPECT_FALSE(check.accepted);
+  EXPECT_NE(check.reason.find("scans differ at"), std::string::npos) << check.reason;
+}
+
+TEST(MergeTest, ARefutedHypothesisIsNotTestedToTheEnd) {
+  MergeTest test = a_test(kTrueLoops);
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kDiffers; });
+  EXPECT_FALSE(check.accepted);
+  EXPECT_EQ(check.num_checked, 8U);
+}
+
+TEST(MergeTest, PlacesWithoutAnAlongAxisConstraintSayNothing) {
+  MergeTest test = a_test(kTrueLoops);
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kSilent; });
+  EXPECT_FALSE(check.accepted);
+  EXPECT_NE(check.reason.find("no along-axis constraint"), std::string::npos) << check.reason;
+  MergeCheckConfig all_count;
+  all_count.distinctive_only = false;
+  MergeTest other = a_test(kTrueLoops, 0.5, all_count);
+  EXPECT_TRUE(run(other, [](const PlannedCheck&) { return kSilent; }).accepted);
+}
+
+TEST(MergeTest, WhereLookAlikesGoOnForLongALongerStretchIsNeeded) {
+  MergeTest test = a_test(kTrueLoops, 0.9);
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+  EXPECT_FALSE(check.accepted);
+  EXPECT_NE(check.reason.find("a longer shared stretch would decide"), std::string::npos) << check.reason;
+}
+
+TEST(MergeTest, ASmallerSetOfLoopsWinsWhereTheLargestIsRefuted) {
+  std::vector<PcmLoop> loops = kTrueLoops;
+  for (const std::size_t a : {60U, 70U, 110U, 120U}) loops.push_back(loop_at(a, 30.0));
+  MergeTest test = a_test(loops);
+  const MergeCheck check = run(test, [](const PlannedCheck& asked) {
+    const double off =
+        (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
+    return off > 5.0 ? kDiffers : kAgrees;
+  });
+  EXPECT_TRUE(check.accepted) << check.reason;
+  EXPECT_EQ(check.loops.size(), 3U);
+  EXPECT_EQ(check.loops.front().first, 80U);
+}
+
+TEST(MergeTest, TwoHypothesesWithTheSameSupportDecideNothing) {
+  std::vector<PcmLoop> loops = kTrueLoops;
+  for (const std::size_t a : {70U, 120U, 130U}) loops.push_back(loop_at(a, 20.0));
+  MergeTest test = a_test(loops);
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+  EXPECT_FALSE(check.accepted);
+  EXPECT_NE(check.reason.find("two hypotheses 20 m apart along the tunnel have similar support"),
+            std::string::npos)
+      << check.reason;
+}
+
+TEST(MergeTest, WithoutLoopsItIsOverAtOnce) {
+  MergeTest test = a_test({});
+  EXPECT_TRUE(test.next(16).empty());
+  EXPECT_FALSE(test.verdict({0}, {1}).accepted);
+}
+
+TEST(MergeTest, TakesOnlyWhatItAskedFor) {
+  MergeTest test = a_test({});
+  EXPECT_THROW(test.add({kAgrees}), ContractViolation);
+}
+
+TEST(MergeTest, ChanceJoinsMapsNoMoreOftenThanTheErrorRateSays) {
+  // Tunnels that look alike go on agreeing half the time; with an error rate that can be counted.
+  MergeCheckConfig config;
+  config.error_rate = 0.02;
+  Rng rng(5);
+  int num_wrong = 0;
+  constexpr int kTrials = 2000;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    MergeTest test = a_test(kTrueLoops, 0.5, config);
+    num_wrong +=
+        run(test, [&](const PlannedCheck&) { return rng.uniform() < 0.5 ? kAgrees : kDiffers; }).accepted;
+  }
+  EXPECT_LE(num_wrong, static_cast<int>(0.02 * kTrials));
+  // And true alignments pass: one check in fifty differs.
+  int num_right = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    MergeTest test = a_test(kTrueLoops);
+    num_right +=
+        run(test, [&](const PlannedCheck&) { return rng.uniform() < 0.98 ? kAgrees : kDiffers; }).accepted;
+  }
+  EXPECT_GE(num_right, 195);
+}
+
+}  // namespace
+}  // namespace adit

@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/registration/agreement.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "adit/registration/icp_refine.hpp"
+
+namespace adit {
+namespace {
+
+// A view in directions of three degrees: some points of a thinned cloud fall into each that sees a surface.
+constexpr int kColumns = 120;
+constexpr int kRows = 60;
+// A point is before or behind a surface when it is by more than this many voxels and this share of the range.
+constexpr float kMarginVoxels = 1.0F;
+constexpr float kMarginShare = 0.01F;
+constexpr std::size_t kEnoughToAlign = 1500;  // points, or up to twice as many
+constexpr double kWideVoxels = 5.0;           // between points that belong together, in the first of two fits
+constexpr double kMaxCorrection = 2.5;        // metres
+constexpr std::array kOtherStarts = {-1.5, 1.5, -0.75, 0.75};  // metres along the way
+constexpr double kHopeless = 10.0;  // times what is enough: no small displacement mends that
+constexpr int kMaxIterations = 10;  // of each fit
+
+std::size_t cell_of(const Eigen::Vector3f& direction) {
+  const float elevation =
+      std::atan2(direction.z(), direction.head<2>().norm()) / std::numbers::pi_v<float> + 0.5F;
+  const float azimuth = std::atan2(direction.y(), direction.x()) / (2.0F * std::numbers::pi_v<float>)+0.5F;
+  const int row = std::clamp(static_cast<int>(elevation * kRows), 0, kRows - 1);
+  const int column = std::clamp(static_cast<int>(azimuth * kColumns), 0, kColumns - 1);
+  return static_cast<std::size_t>(row * kColumns + column);
+}
+
+// How many of the points belong to the largest set that is connected over neighbouring cells of a grid.
+std::size_t largest_patch(const std::vector<Eigen::Vector3f>& points, float cell_size) {
+  using Cell = std::array<int, 3>;
+  std::map<Cell, std::size_t> cells;
+  for (const Eigen::Vector3f& p : points) {
+    const Eigen::Vector3f scaled = p / cell_size;
+    ++cells[{static_cast<int>(std::floor(scaled.x())), static_cast<int>(std::floor(scaled.y())),
+             static_cast<int>(std::floor(scaled.z()))}];
+  }
+  std::size_t largest = 0;
+  std::vector<Cell> reached;
+  while (!cells.empty()) {
+    std::size_t size = 0;
+    const auto take = [&](std::map<Cell, std::size_t>::iterator cell) {
+      size += cell->second;
+      reached.push_back(cell->first);
+      cells.erase(cell);
+    };
+    take(cells.begin());
+    while (!reached.empty()) {
+      const Cell at = reached.back();
+      reached.pop_back();
+      for (int neighbour = 0; neighbour < 27; ++neighbour) {
+        const Cell next = {at[0] + neighbour % 3 - 1, at[1] + neighbour / 3 % 3 - 1,
+                           at[2] + neighbour / 9 - 1};
+        if (const auto cell = cells.find(next); cell != cells.end()) take(cell);
+      }
+    }
+    largest = std::max(largest, size);
+  }
+  return largest;
+}
+
+OrientedPoints thinned(const OrientedPoints& all) {
+  const std::size_t step = std::max<std::size_t>(all.size() / kEnoughToAlign, 1);
+  OrientedPoints some;
+  for (std::size_t i = 0; i < all.size(); i += step) {
+    some.points.push_back(all.points[i]);
+    some.normals.push_back(all.normals[i]);
+  }
+  return some;
+}
+
+struct Counts {
+  std::size_t confirmed = 0;
+  std::size_t differing = 0;
+  std::size_t largest_difference = 0;
+};
+
+// The points of b as a saw the same space.
+Counts seen_by(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
+               const RegistrationConfig& config) {
+  const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
+  const Eigen::Vector3f t = T_a_b.translation().cast<float>();
+  const auto voxel = static_cast<float>(config.voxel_size);
+  const auto reach = static_cast<float>(config.overlap_distance_voxels) * voxel;
+  const auto thickness = static_cast<float>(config.refine_kernel_voxels) * voxel;
+  Counts counts;
+  std::vector<Eigen::Vector3f> differing;
+  for (const Eigen::Vector3f& point : b.points().points) {
+    const Eigen::Vector3f p = R * point + t;
+    const Eigen::Vector3f ray = p - a.viewpoint();
+    const SeenSurface::Ranges& seen = a.towards(ray);
+    if (seen.empty()) continue;
+    const float range = ray.norm();
+    const float margin = kMarginVoxels * voxel + kMarginShare * range;
+    if (range > seen.farthest + margin) continue;  // hidden
+    bool is_confirmed = false;
+    if (range >= seen.nearest - margin) {
+      const auto near = a.tree().nearest(p, reach);
+      if (!near) continue;  // between the beams
+      const float off = a.points().normals[near->index].dot(p - a.points().points[near->index]);
+      is_confirmed = std::abs(off) < thickness;
+    }
+    if (is_confirmed)
+      ++counts.confirmed;
+    else
+      differing.push_back(p);
+  }
+  counts.differing = differing.size();
+  counts.largest_difference = largest_patch(differing, voxel);
+  return counts;
+}
+
+}  // namespace
+
+void SeenSurface::Ranges::add(const Ranges& other) {
+  nearest = std::min(nearest, other.nearest);
+  farthest = std::max(farthest, other.farthest);
+}
+
+SeenSurface::SeenSurface(OrientedPoints points, const Vector3& viewpoint)
+    : points_(std::move(points)),
+      some_(thinned(points_)),
+      tree_(points_.points),
+      viewpoint_(viewpoint.cast<float>()),
+      ranges_(std::size_t{kRows} * kColumns) {
+  std::vector<Ranges> own(ranges_.size());
+  for (const Eigen::Vector3f& p : points_.points) {
+    const Eigen::Vector3f ray = p - viewpoint_;
+    own[cell_of(ray)].add({ray.norm(), ray.norm()});
+  }
+  for (int row = 0; row < kRows; ++row) {
+    for (int column = 0; column < kColumns; ++column) {
+      const auto cell = static_cast<std::size_t>(row * kColumns + column);
+      if (own[cell].empty()) continue;
+      for (int i = std::max(row - 1, 0); i <= std::min(row + 1, kRows - 1); ++i)
+        for (int j = -1; j <= 1; ++j)
+          ranges_[cell].add(own[static_cast<std::size_t>(i * kColumns + (column + j + kColumns) % kColumns)]);
+    }
+  }
+}
+
+const SeenSurface::Ranges& SeenSurface::towards(const Eigen::Vector3f& direction) const {
+  return ranges_[cell_of(direction)];
+}
+
+std::size_t SeenSurface::num_bytes() const {
+  // The tree takes 20 bytes a point.
+  return (points_.size() + some_.size()) * 2 * sizeof(Eigen::Vector3f) + 20 * points_.size() +
+         ranges_.size() * sizeof(Ranges);
+}
+
+Agreement agreement(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
+                    const RegistrationConfig& config) {
+  const std::array<Counts, 2> both = {seen_by(a, b, T_a_b, config), seen_by(b, a, T_a_b.inverse(), config)};
+  Agreement out{1.0, 0.0};
+  for (const Counts& counts : both) {
+    if (counts.confirmed == 0) return {};
+    out.confirmed = std::min(out.confirmed, static_cast<double>(counts.confirmed) /
+                                                static_cast<double>(counts.confirmed + counts.differing));
+    out.largest_difference = std::max(out.largest_difference, static_cast<double>(counts.largest_difference));
+  }
+  return out;
+}
+
+LocalFit fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b, double enough,
+                  const RegistrationConfig& config) {
+  LocalFit best{T_a_b, {}};
+  if (a.points().empty() || b.points().empty()) return best;
+  RegistrationConfig narrow = config;
+  narrow.refine_max_iterations = std::min(config.refine_max_iterations, kMaxIterations);
+  RegistrationConfig wide = narrow;
+  wide.refine_distance_voxels = kWideVoxels;
+  const auto fit_from = [&](const Pose& start) {
+    Pose T = align_to_planes(a.points(), a.tree(), b.some(), start, wide);
+    T = align_to_planes(a.points(), a.tree(), b.some(), T, narrow);
+    if (!((T.translation() - T_a_b.translation()).norm() < kMaxCorrection)) return;
+    const Agreement found = agreement(a, b, T, config);
+    if (found.largest_difference < best.agreement.largest_difference) best = {T, found};
+  };
+  fit_from(T_a_b);
+  for (const double ahead : kOtherStarts) {
+    if (best.agreement.largest_difference <= enough || best.agreement.largest_difference > kHopeless * enough)
+      break;
+    fit_from(T_a_b * Pose::translation_of(ahead, 0.0, 0.0));
+  }
+  return best;
+}
+
+}  // namespace adit

@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/registration/agreement.hpp"
+
+#include <gtest/gtest.h>
+
+#include "adit/registration/features.hpp"
+#include "support/synthetic_scan.hpp"
+
+namespace adit {
+namespace {
+
+// The robot standing still at x; its frame is that of the sensor.
+SeenSurface seen_at(const test::Scene& scene, double x, std::uint64_t seed) {
+  test::Lidar lidar{64, 512, 0.6, 60.0, 0.01};
+  lidar.jitter = 0.5;
+  lidar.seed = seed;
+  const test::Drive still{Pose::planar(x, 0.0, 0.0), Vector6::Zero()};
+  return {compute_surface(test::scan_of(scene, lidar, Pose(), still, 0).cloud, {}), Vector3::Zero()};
+}
+
+test::Scene with_block(double x = 5.0) {
+  test::Scene scene = test::smooth_tube();
+  scene.boxes.push_back({{x, 1.0, -2.0}, {x + 3.0, 4.0, 1.5}});
+  return scene;
+}
+
+Agreement between(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b) {
+  return agreement(a, b, T_a_b, {});
+}
+
+constexpr double kNoise = 12.0;  // points of a patch that noise and beams leave
+
+TEST(Agreement, OneSceneSeenFromTwoPlacesIsConfirmed) {
+  const Agreement found =
+      between(seen_at(with_block(), 0.0, 1), seen_at(with_block(), 2.0, 2), Pose::planar(2.0, 0.0, 0.0));
+  EXPECT_TRUE(found.is_comparable());
+  EXPECT_GT(found.confirmed, 0.95);
+  EXPECT_LT(found.largest_difference, kNoise);
+}
+
+TEST(Agreement, ABlockThatOnlyOneOfThemHasIsADifference) {
+  const SeenSurface empty = seen_at(test::smooth_tube(), 0.0, 1);
+  const Pose T_a_b = Pose::planar(2.0, 0.0, 0.0);
+  const Agreement there = between(empty, seen_at(with_block(), 2.0, 2), T_a_b);
+  const Agreement same = between(empty, seen_at(test::smooth_tube(), 2.0, 3), T_a_b);
+  EXPECT_GT(there.largest_difference, 5.0 * kNoise);
+  EXPECT_LT(same.largest_difference, kNoise);
+  EXPECT_LT(there.confirmed, same.confirmed);
+}
+
+TEST(Agreement, DoesNotDependOnWhichScanIsFirst) {
+  const SeenSurface a = seen_at(test::smooth_tube(), 0.0, 1);
+  const SeenSurface b = seen_at(with_block(), 2.0, 2);
+  const Pose T_a_b = Pose::planar(2.1, 0.1, 0.02);
+  const Agreement forth = between(a, b, T_a_b);
+  const Agreement back = between(b, a, T_a_b.inverse());
+  EXPECT_NEAR(forth.confirmed, back.confirmed, 1e-3);
+  EXPECT_GT(back.largest_difference, 5.0 * kNoise);
+  EXPECT_GT(forth.largest_difference, 5.0 * kNoise);
+}
+
+TEST(Agreement, WhatHidesBehindASurfaceSaysNothing) {
+  // Seen from behind the block, the tube on its other side is hidden; nothing of it counts against the pose.
+  const Agreement found =
+      between(seen_at(with_block(), 0.0, 1), seen_at(with_block(), 12.0, 2), Pose::planar(12.0, 0.0, 0.0));
+  EXPECT_LT(found.largest_difference, kNoise);
+}
+
+TEST(Agreement, FreeSpaceBeginsAtTheSensor) {
+  // The same surfaces, said to have been seen from two metres beside where they were: what stands free for
+  // one sensor is then hidden from the other, and the floor before it is taken for a wall that was passed.
+  const SeenSurface a = seen_at(with_block(), 0.0, 1);
+  const SeenSurface b = seen_at(with_block(), 2.0, 2);
+  const Vector3 wrong(0.0, 0.0, -1.9);
+  const Agreement right = between(a, b, Pose::planar(2.0, 0.0, 0.0));
+  const Agreement from_the_floor =
+      between({a.points(), wrong}, {b.points(), wrong}, Pose::planar(2.0, 0.0, 0.0));
+  EXPECT_GT(from_the_floor.largest_difference, right.largest_difference);
+}
+
+TEST(Agreement, OfNothingIsNotComparable) {
+  const SeenSurface a = seen_at(with_block(), 0.0, 1);
+  const SeenSurface nothing({}, Vector3::Zero());
+  EXPECT_FALSE(between(a, nothing, Pose()).is_comparable());
+  EXPECT_FALSE(between(nothing, a, Pose()).is_comparable());
+  EXPECT_FALSE(fit_near(a, nothing, Pose(), kNoise, {}).agreement.is_comparable());
+}
+
+TEST(FitNear, PutsAGuessRight) {
+  const SeenSurface a = seen_at(with_block(), 0.0, 1);
+  const SeenSurface b = seen_at(with_block(), 2.0, 2);
+  const LocalFit fit = fit_near(a, b, Pose::planar(2.4, 0.2, 0.02), kNoise, {});
+  EXPECT_LT((fit.T_a_b.translation() - Vector3(2.0, 0.0, 0.0)).norm(), 0.05);
+  EXPECT_LT(fit.agreement.largest_difference, kNoise);
+}
+
+TEST(FitNear, LooksFartherAlongTheWayWhereTheGuessDoesNotFit) {
+  // The ends of the block are 1.8 m off, more than points are matched over.
+  const SeenSurface a = seen_at(with_block(), 0.0, 1);
+  const SeenSurface b = seen_at(with_block(), 2.0, 2);
+  const Pose guess = Pose::planar(3.8, 0.0, 0.0);
+  const LocalFit once = fit_near(a, b, guess, std::numeric_limits<double>::infinity(), {});
+  const LocalFit anew = fit_near(a, b, guess, kNoise, {});
+  EXPECT_GT(once.agreement.largest_difference, kNoise);
+  EXPECT_LT(anew.agreement.largest_difference, kNoise);
+  EXPECT_NEAR(anew.T_a_b.translation().x(), 2.0, 0.1);
+}
+
+TEST(FitNear, DoesNotMakeTwoBlocksOneThatAreFarApart) {
+  const SeenSurface a = seen_at(with_block(5.0), 0.0, 1);
+  const SeenSurface b = seen_at(with_block(10.0), 0.0, 2);
+  EXPECT_GT(fit_near(a, b, Pose(), kNoise, {}).agreement.largest_difference, 2.0 * kNoise);
+}
+
+}  // namespace
+}  // namespace adit
