@@ -428,7 +428,8 @@ const OtherPlaces& Agent::other_places() {
 }
 
 void Agent::begin_test(RobotId peer_id) {
-  const OdometryChain own = chain_of(known_.robots.at(map_->id));
+  const double slack = config_.adaptive.merge_check.odometry_slack;
+  const OdometryChain own = chain_of(known_.robots.at(map_->id), slack);
   if (!discernment_)
     discernment_ =
         std::make_unique<Discernment>(map_, own, other_places(), *features_, config_.registration_in_use(),
@@ -442,8 +443,8 @@ void Agent::begin_test(RobotId peer_id) {
       continue;
     loops.push_back({ends.first.index, ends.second.index, loop.T_from_to, loop_information({})});
   }
-  peers_[peer_id].test.emplace(own, num_theirs == 0 ? OdometryChain({}, {}) : chain_of(graph->second), loops,
-                               discernment_->chance_to_go_on(), config_.adaptive.merge_check);
+  peers_[peer_id].test.emplace(own, num_theirs == 0 ? OdometryChain({}, {}) : chain_of(graph->second, slack),
+                               loops, discernment_->chance_to_go_on(), config_.adaptive.merge_check);
 }
 
 bool Agent::compare_clouds_of(RobotId from, const Clouds& clouds) {

@@ -339,12 +339,12 @@ Matrix6 loop_information(const BackEndConfig& config) {
   return information.asDiagonal();
 }
 
-OdometryChain chain_of(const RobotGraph& graph) {
+OdometryChain chain_of(const RobotGraph& graph, double slack) {
   std::vector<Pose> poses;
   std::vector<Matrix6> steps;
   for (std::size_t k = 0; k < graph.nodes.size(); ++k) {
     poses.push_back(graph.nodes[k].T_odom_base);
-    if (k > 0) steps.push_back(graph.nodes[k].step_covariance);
+    if (k > 0) steps.push_back(slack * slack * graph.nodes[k].step_covariance);
   }
   return {std::move(poses), steps};
 }

@@ -81,7 +81,8 @@ struct FleetSolution {
   PoseGraph optimized;
 };
 
-[[nodiscard]] OdometryChain chain_of(const RobotGraph& graph);
+/// With sigmas of `slack` times those of its steps.
+[[nodiscard]] OdometryChain chain_of(const RobotGraph& graph, double slack = 1.0);
 /// The fixed information of a loop, from those sigmas.
 [[nodiscard]] Matrix6 loop_information(const BackEndConfig& config);
 

@@ -85,6 +85,8 @@ Fields fields_of(MergeCheckConfig& c) {
       {"max_checks", &c.max_checks, "", 1, 10000, "places that are compared at most, of one hypothesis"},
       {"max_hypotheses", &c.max_hypotheses, "", 1, 1000,
        "sets of consistent loops that are tested, the largest ones"},
+      {"odometry_slack", &c.odometry_slack, "", 1.0, 100.0,
+       "loops make one hypothesis if they agree within this many times the noise of odometry"},
       {"distinctive_only", &c.distinctive_only, "", 0, 0,
        "agreement counts only where a displacement along the way would show"}};
   append(fields, "discernment", fields_of(c.discernment));

@@ -32,6 +32,7 @@ struct MergeCheckConfig {
   double spacing_m = 3.0;
   int max_checks = 200;
   int max_hypotheses = 6;
+  double odometry_slack = 5.0;
   bool distinctive_only = true;
   DiscernmentConfig discernment;
 };
