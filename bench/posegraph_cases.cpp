@@ -8,6 +8,7 @@
 
 #include "adit/core/format.hpp"
 #include "adit/io/g2o.hpp"
+#include "adit/posegraph/false_loops.hpp"
 #include "adit/posegraph/gnc.hpp"
 #include "adit/posegraph/incremental.hpp"
 #include "adit/posegraph/optimizer.hpp"
@@ -76,17 +77,14 @@ std::vector<GncCase> gnc_case_list() {
 
 PoseGraph clean(const GncCase& c) {
   PoseGraph graph = std::get<PoseGraph>(shared_graph(c.graph));
-  return c.thin ? thinned(graph) : graph;
+  return c.thin ? thinned(graph, 10) : graph;
 }
-PoseGraph spoiled(const GncCase& c, std::size_t& num_true) {
-  return with_false_loops(clean(c), c.share, c.kind, num_true);
-}
+LabelledGraph<Pose> spoiled(const GncCase& c) { return with_false_loops(clean(c), c.share, c.kind, 1); }
 
 Work rejecting(const GncCase& c) {
   const std::vector<Pose> optimum = optimize(clean(c)).poses;
-  std::size_t num_true = 0;
-  PoseGraph graph = spoiled(c, num_true);
-  return [=, graph = std::move(graph)] {
+  return [optimum, labelled = spoiled(c)] {
+    const auto& [graph, num_true] = labelled;
     const Solution<Pose> solution = optimize_gnc(graph);
     Figures figures{{"false", static_cast<double>(graph.edges.size() - num_true)},
                     {"false_kept", 0.0},
@@ -182,10 +180,10 @@ void export_graphs(const std::filesystem::path& folder) {
     std::visit([&](const auto& graph) { write(name, graph); }, shared_graph(name));
   write("incremental_10k", wandering_graph(11'500));
   for (const GncCase& c : gnc_case_list()) {
-    std::size_t num_true = 0;
-    write(c.title, spoiled(c, num_true));
+    const LabelledGraph<Pose> labelled = spoiled(c);
+    write(c.title, labelled.graph);
     write(c.title + "_clean", clean(c));
-    std::ofstream(folder / (c.title + ".txt")) << num_true << "\n";
+    std::ofstream(folder / (c.title + ".txt")) << labelled.num_true << "\n";
   }
 }
 const Export exported("posegraph", export_graphs);

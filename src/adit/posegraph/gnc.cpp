@@ -105,8 +105,7 @@ class Search {
   // Graduated non-convexity from the poses of `s`, from the convex surrogate on or from `mu` if that is
   // larger.
   [[nodiscard]] Solution<P> graduate(Solution<P> s, double mu = 0.0) const {
-    OptimizerConfig inner = config_.optimizer;
-    inner.initialization = "none";
+    OptimizerConfig inner = warm();
     inner.relative_tolerance = std::max(inner.relative_tolerance, 1e-3);
     inner.max_iterations = std::min(inner.max_iterations, 5);
     std::vector<double> costs = edge_costs(graph_, s.poses);
@@ -122,6 +121,14 @@ class Search {
   }
 
   [[nodiscard]] Solution<P> run(Solution<P> start) const { return settle(graduate(std::move(start)), true); }
+
+  // The paper's search and nothing else.
+  [[nodiscard]] Solution<P> run_plain(Solution<P> start) const {
+    if (!start.ok()) return start;
+    const Solution<P> s = graduate(std::move(start));
+    if (!s.ok()) return s;
+    return continued(s, s.poses, warm(), loops_within_bound(s.poses));
+  }
 
   // From the loops that confirm one another: least squares over the largest clusters, then all loops that
   // this explains. It never meets most false loops, which is also what keeps the matrix sparse.
@@ -189,12 +196,10 @@ class Search {
   // false. With a whole group back in use the stretch straightens, if the group is true; the objective
   // decides.
   [[nodiscard]] Solution<P> reconsider(Solution<P> s, const LoopClusters& clusters) const {
-    OptimizerConfig warm = config_.optimizer;
-    warm.initialization = "none";
     for (const std::vector<std::size_t>& group : rejected_groups(s, clusters)) {
       std::vector<double> weights = s.edge_weights;
       for (const std::size_t e : group) weights[e] = 1.0;
-      Solution<P> other = continued(s, s.poses, warm, weights);
+      Solution<P> other = continued(s, s.poses, warm(), weights);
       if (other.ok()) other = settle(graduate(std::move(other), kFirstMu), false);
       const int iterations = other.iterations;
       if (other.ok() && objective(other) < objective(s)) s = std::move(other);
@@ -207,13 +212,10 @@ class Search {
   // that it ends. True loops that were lost on the way come back.
   // With `unbend`, a chain that false loops have bent beyond what the solver straightens is found anew.
   [[nodiscard]] Solution<P> settle(Solution<P> s, bool unbend) const {
-    OptimizerConfig warm = config_.optimizer;
-    warm.initialization = "none";
     for (int round = 0; s.ok() && round < kMaxRounds; ++round) {
-      const auto weights = weights_of(graph_, edge_costs(graph_, s.poses),
-                                      [&](double chi2) { return chi2 <= bound_ ? 1.0 : 0.0; });
+      const auto weights = loops_within_bound(s.poses);
       if (round > 0 && weights == s.edge_weights) break;
-      Solution<P> next = continued(s, s.poses, warm, weights);
+      Solution<P> next = continued(s, s.poses, warm(), weights);
       if (round == 0 && unbend) {
         Solution<P> anew = continued(next, poses_of(graph_), config_.optimizer, weights);
         next.iterations = anew.iterations;
@@ -253,6 +255,18 @@ class Search {
   }
 
  private:
+  // Settings of a solve that starts from poses already found.
+  [[nodiscard]] OptimizerConfig warm() const {
+    OptimizerConfig config = config_.optimizer;
+    config.initialization = "none";
+    return config;
+  }
+
+  [[nodiscard]] std::vector<double> loops_within_bound(const std::vector<P>& poses) const {
+    return weights_of(graph_, edge_costs(graph_, poses),
+                      [&](double chi2) { return chi2 <= bound_ ? 1.0 : 0.0; });
+  }
+
   [[nodiscard]] static std::size_t largest_of(const LoopClusters& clusters) {
     return clusters.sizes.empty() ? 0 : *std::ranges::max_element(clusters.sizes);
   }
@@ -308,6 +322,34 @@ class Search {
   double bound_;
 };
 
+// From the clusters, and from other poses as long as the answer is not clearly fine; `given`: the graph's
+// own.
+template <class P>
+Solution<P> best_of_all(const BasicPoseGraph<P>& graph, const GncConfig& config, const Solution<P>& given,
+                        Search<P>& search) {
+  const LoopClusters clusters = loop_clusters(graph);
+  Solution<P> best = search.grow(search.from(clusters));
+  const auto improve_from = [&](Solution<P> start) {
+    Solution<P> other = start.ok() ? search.run(std::move(start)) : std::move(start);
+    other.iterations += best.iterations;
+    const bool better = other.ok() && (!best.ok() || search.objective(other) < search.objective(best));
+    best.iterations = other.iterations;
+    if (better) best = std::move(other);
+    return better;
+  };
+  const auto is_fine = [&] { return search.is_clearly_fine(best, clusters); };
+  if (!is_fine()) improve_from(given);
+  if (!is_fine()) improve_from(optimize(graph, config.optimizer));
+  // Loops that hold only together are found from where the others have brought the poses.
+  for (int i = 0; i < kMaxRestarts && best.ok() && !is_fine(); ++i) {
+    Solution<P> again = best;
+    again.iterations = 0;
+    if (!improve_from(std::move(again))) break;
+  }
+  if (best.ok()) best = search.reconsider(std::move(best), clusters);
+  return best;
+}
+
 }  // namespace
 
 double chi2_quantile(double probability, int dof) {
@@ -329,28 +371,10 @@ Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config
   OptimizerConfig none = config.optimizer;
   none.initialization = "none";
   none.max_iterations = 0;
-  Solution<P> given = optimize(graph, none);
+  const Solution<P> given = optimize(graph, none);
   if (!given.ok()) return given;
-  const LoopClusters clusters = loop_clusters(graph);
-  Solution<P> best = search.grow(search.from(clusters));
-  const auto improve_from = [&](Solution<P> start) {
-    Solution<P> other = start.ok() ? search.run(std::move(start)) : std::move(start);
-    other.iterations += best.iterations;
-    const bool better = other.ok() && (!best.ok() || search.objective(other) < search.objective(best));
-    best.iterations = other.iterations;
-    if (better) best = std::move(other);
-    return better;
-  };
-  const auto is_fine = [&] { return search.is_clearly_fine(best, clusters); };
-  if (!is_fine()) improve_from(given);
-  if (!is_fine()) improve_from(optimize(graph, config.optimizer));
-  // Loops that hold only together are found from where the others have brought the poses.
-  for (int i = 0; i < kMaxRestarts && best.ok() && !is_fine(); ++i) {
-    Solution<P> again = best;
-    again.iterations = 0;
-    if (!improve_from(std::move(again))) break;
-  }
-  if (best.ok()) best = search.reconsider(std::move(best), clusters);
+  Solution<P> best = config.plain ? search.run_plain(optimize(graph, config.optimizer))
+                                  : best_of_all(graph, config, given, search);
   best.cost_initial = given.cost_initial;
   if (const std::size_t rejected = num_rejected(best); rejected > 0)
     best.notes.push_back(format("{} loops rejected", rejected));

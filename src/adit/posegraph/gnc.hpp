@@ -13,6 +13,8 @@ struct GncConfig {
       0.999;             ///< A true loop's chi2 (unhalved) is below chi2inv(this, dof) that often.
   double mu_step = 1.4;  ///< Factor on the control parameter from one outer iteration to the next.
   int max_outer_iterations = 100;
+  bool plain =
+      false;  ///< One graduated search from least squares with all loops, as in the paper: to compare.
   OptimizerConfig optimizer;
 };
 inline Fields fields_of(GncConfig& c) {
@@ -20,7 +22,9 @@ inline Fields fields_of(GncConfig& c) {
       {"inlier_probability", &c.inlier_probability, "", 0.5, 0.999999,
        "share of true loops that the bound keeps"},
       {"mu_step", &c.mu_step, "", 1.01, 10.0, "growth of the control parameter an outer iteration"},
-      {"max_outer_iterations", &c.max_outer_iterations, "", 1, 10000, "weight updates, at most"}};
+      {"max_outer_iterations", &c.max_outer_iterations, "", 1, 10000, "weight updates, at most"},
+      {"plain", &c.plain, "", 0, 0,
+       "the paper's search alone: no clusters, no fitted bound, no second hearing; to compare"}};
   append(fields, "optimizer", fields_of(c.optimizer));
   return fields;
 }
@@ -37,7 +41,9 @@ inline Fields fields_of(GncConfig& c) {
 /// loops make. Unless it ends clearly well (odometry unbent; few loops rejected, or only small clusters;
 /// nothing come loose), graduated searches from the graph's own poses and from the least-squares solution
 /// with all loops follow, and the lowest truncated cost, the sum over odometry of chi2 plus the sum over
-/// loops of min(chi2, c^2), wins. Source: Yang, Antonante, Tzoumas, Carlone, "Graduated Non-Convexity for
+/// loops of min(chi2, c^2), wins. With `plain` nothing of this paragraph is done, but one graduated search
+/// from the least-squares solution with all loops, and a last solve with those whose chi2 it brings below the
+/// bound. Source: Yang, Antonante, Tzoumas, Carlone, "Graduated Non-Convexity for
 /// Robust Spatial Perception" (RA-L 2020), Proposition 4 (weights), Remark 5 (mu).
 template <class P>
 [[nodiscard]] Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config = {});

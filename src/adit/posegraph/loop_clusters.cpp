@@ -54,33 +54,19 @@ struct Chains {
 
   explicit Chains(const BasicPoseGraph<P>& graph) {
     const std::size_t n = graph.nodes.size();
-    std::vector<std::size_t> next(n, kNone);  // edge to the following node
-    std::vector<bool> has_previous(n, false);
-    for (std::size_t e = 0; e < graph.edges.size(); ++e) {
-      const auto& edge = graph.edges[e];
-      if (edge.kind != EdgeKind::odometry || next[edge.from] != kNone || has_previous[edge.to]) continue;
-      next[edge.from] = e;
-      has_previous[edge.to] = true;
-    }
     chain.assign(n, kNone);
     position.assign(n, 0);
     T_start_node.resize(n);
     prefix.assign(n, Matrix::Zero());
-    // Chains begin where nothing comes before; what then is left are rings, begun anywhere.
-    for (const bool rings : {false, true}) {
-      for (std::size_t start = 0; start < n; ++start) {
-        if (chain[start] != kNone || (has_previous[start] && !rings)) continue;
-        chain[start] = start;
-        for (std::size_t i = start; next[i] != kNone;) {
-          const auto& edge = graph.edges[next[i]];
-          if (chain[edge.to] != kNone) break;
-          chain[edge.to] = start;
-          position[edge.to] = position[i] + 1;
-          T_start_node[edge.to] = T_start_node[i] * edge.T_from_to;
-          prefix[edge.to] = prefix[i] + carried<Matrix>(adjoint_of(T_start_node[edge.to]),
-                                                        covariance_of<Matrix>(edge.information));
-          i = edge.to;
-        }
+    for (const OdometryPath& path : odometry_paths(graph)) {
+      chain[path.nodes.front()] = path.nodes.front();
+      for (std::size_t k = 0; k < path.steps.size(); ++k) {
+        const auto& edge = graph.edges[path.steps[k]];
+        chain[edge.to] = path.nodes.front();
+        position[edge.to] = k + 1;
+        T_start_node[edge.to] = T_start_node[edge.from] * edge.T_from_to;
+        prefix[edge.to] = prefix[edge.from] + carried<Matrix>(adjoint_of(T_start_node[edge.to]),
+                                                              covariance_of<Matrix>(edge.information));
       }
     }
   }

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <queue>
 #include <tuple>
+#include <utility>
 
 #include "adit/core/check.hpp"
 
@@ -76,6 +77,38 @@ Components connected_components(const BasicPoseGraph<P>& graph, const std::vecto
 }
 
 template <class P>
+std::vector<OdometryPath> odometry_paths(const BasicPoseGraph<P>& graph) {
+  const std::size_t n = graph.nodes.size();
+  std::vector<std::size_t> next(n, kUnreached);  // edge to the following node
+  std::vector<bool> has_previous(n, false);
+  for (std::size_t e = 0; e < graph.edges.size(); ++e) {
+    const auto& edge = graph.edges[e];
+    if (edge.kind != EdgeKind::odometry || next[edge.from] != kUnreached || has_previous[edge.to]) continue;
+    next[edge.from] = e;
+    has_previous[edge.to] = true;
+  }
+  std::vector<OdometryPath> paths;
+  std::vector<bool> is_taken(n, false);
+  // Paths begin where nothing comes before; what then is left are rings, begun anywhere.
+  for (const bool rings : {false, true}) {
+    for (std::size_t start = 0; start < n; ++start) {
+      if (is_taken[start] || (has_previous[start] && !rings)) continue;
+      is_taken[start] = true;
+      OdometryPath path{{start}, {}};
+      for (std::size_t e = next[start]; e != kUnreached && !is_taken[graph.edges[e].to];) {
+        const std::size_t node = graph.edges[e].to;
+        is_taken[node] = true;
+        path.nodes.push_back(node);
+        path.steps.push_back(e);
+        e = next[node];
+      }
+      paths.push_back(std::move(path));
+    }
+  }
+  return paths;
+}
+
+template <class P>
 std::vector<P> spanning_tree_poses(const BasicPoseGraph<P>& graph, const std::vector<bool>& is_known) {
   const std::size_t n = graph.nodes.size();
   ADIT_CHECK(is_known.size() == n, "one flag a node");
@@ -126,6 +159,8 @@ template struct BasicPoseGraph<Pose>;
 template struct BasicPoseGraph<Pose2>;
 template Components connected_components(const PoseGraph&, const std::vector<double>&);
 template Components connected_components(const PoseGraph2&, const std::vector<double>&);
+template std::vector<OdometryPath> odometry_paths(const PoseGraph&);
+template std::vector<OdometryPath> odometry_paths(const PoseGraph2&);
 template std::vector<Pose> spanning_tree_poses(const PoseGraph&, const std::vector<bool>&);
 template std::vector<Pose2> spanning_tree_poses(const PoseGraph2&, const std::vector<bool>&);
 

@@ -57,6 +57,16 @@ template <class P>
 [[nodiscard]] Components connected_components(const BasicPoseGraph<P>& graph,
                                               const std::vector<double>& edge_weights = {});
 
+/// Nodes in the order in which one robot drove them.
+struct OdometryPath {
+  std::vector<std::size_t> nodes;  ///< Node indices; at least one.
+  std::vector<std::size_t> steps;  ///< Edge indices, one less: steps[k] leads from nodes[k] to nodes[k + 1].
+};
+/// The odometry edges as paths that hold every node once, a node without odometry by itself. Where several
+/// odometry edges leave or reach a node, the first one counts; a ring is cut open.
+template <class P>
+[[nodiscard]] std::vector<OdometryPath> odometry_paths(const BasicPoseGraph<P>& graph);
+
 /// Poses by composing edges outwards from the nodes whose pose is known, along as few loop edges as can be,
 /// then as few edges as can be. A component with no known pose starts with its anchor at the identity. Known
 /// poses come back unchanged. `is_known`: one a node.
