@@ -3,16 +3,13 @@
 #include "merge_run.hpp"
 
 #include <algorithm>
-#include <ctime>
 
 #include "adit/evaluation/ate.hpp"
 #include "adit/evaluation/shared_stretch.hpp"
+#include "processor_time.hpp"
 
 namespace adit::app {
 namespace {
-
-/// Processor time of all threads so far: what a decision costs, whatever else the machine does meanwhile.
-double processor_s() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// What two robots know of each other, as if there were no others.
 FleetGraph between(const FleetGraph& all, RobotId a, RobotId b) {

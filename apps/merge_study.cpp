@@ -6,11 +6,11 @@
 
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
-#include "adit/report/page_section.hpp"
 #include "adit/report/text_tables.hpp"
 #include "inputs.hpp"
 #include "merge_run.hpp"
 #include "merge_worlds.hpp"
+#include "page_tables.hpp"
 #include "progress.hpp"
 
 namespace adit::app {
@@ -88,16 +88,6 @@ Result<> run_world(const ListedWorld& world, const std::vector<KeyframeSelection
   return write_merge_runs(std::filesystem::path(options.out) / "results.json", runs);
 }
 
-Result<> write_page(const std::filesystem::path& page, const std::vector<Table>& tables) {
-  std::string markdown = "\n";
-  for (const Table& table : tables) markdown += markdown_of(table) + "\n";
-  const Result<std::string> old = read_bytes(page);
-  if (!old) return tl::unexpected(old.error());
-  const Result<std::string> text = with_section(*old, kSection, markdown);
-  if (!text) return fail(page.string(), text.error());
-  return write_bytes(page, *text);
-}
-
 /// In the order of the list, policies as they were given when the world was first run; worlds that the list
 /// no longer names are dropped.
 void sort_by_list(std::vector<MergeRun>& runs, const std::vector<ListedWorld>& list) {
@@ -133,7 +123,7 @@ Result<> merge_study(Options options, const Common& common) {
   const std::vector<Table> tables = merge_tables(*runs);
   Result<> done = write_merge_runs(out / "results.json", *runs);
   if (done) done = write_merge_csv(out / "results.csv", *runs);
-  if (done && !options.page.empty()) done = write_page(options.page, tables);
+  if (done && !options.page.empty()) done = write_tables(options.page, kSection, tables);
   if (done && common.json) {
     const Result<std::string> json = read_bytes(out / "results.json");
     if (!json) return tl::unexpected(json.error());
