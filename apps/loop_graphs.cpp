@@ -25,6 +25,8 @@ Fields fields_of(ListedGraph& c) {
            {"random", "clustered", "as found"}},
           {"seed", &c.seed, "", 0, 1e15, "of the injection"},
           {"keep_every", &c.keep_every, "", 1, 1e6, "of so many true loops one is kept"},
+          {"information_scale", &c.information_scale, "", 1e-9, 1e9, "on all information matrices"},
+          {"large", &c.large, "", 0, 0, "plain GNC and PCM would take too long, and are left out"},
           {"max_tilt_deg", &c.max_tilt_deg, "deg", 0.0, 90.0, "as found: loops that tilt by more are false"}};
 }
 
@@ -82,6 +84,11 @@ Result<G2oFile> read_listed(const ListedGraph& graph) {
   Result<G2oFile> file =
       std::filesystem::is_directory(graph.path) ? read_folder(graph.path) : read_g2o(graph.path);
   if (!file) return file;
+  std::visit(
+      [&](auto& g) {
+        for (auto& edge : g.edges) edge.information *= graph.information_scale;
+      },
+      file->graph);
   const std::size_t bad = std::visit([](const auto& g) { return indefinite_edges(g).size(); }, file->graph);
   if (bad > 0)
     return fail(

@@ -21,6 +21,8 @@ struct ListedGraph {
       "random";                  ///< "random", "clustered", or "as found": the file has its own false loops.
   std::uint64_t seed = 1;        ///< Of the injection.
   std::uint64_t keep_every = 1;  ///< Of n true loops one is kept.
+  double information_scale = 1.0;  ///< On all information matrices: below 1 where they overstate.
+  bool large = false;              ///< Plain GNC and PCM would take too long, and are left out.
   double max_tilt_deg =
       0.0;  ///< As found only: loops that tilt by more are false, as the robots drove on a floor.
 };
@@ -31,8 +33,9 @@ struct ListedGraph {
 Result<std::vector<ListedGraph>> read_graph_list(const std::filesystem::path& list,
                                                  const std::filesystem::path& data);
 
-/// The graph without thinning, of a folder that of all its files merged. Fails on what `read_g2o` and
-/// `merge_g2o` refuse, on a folder without g2o files, and on indefinite information matrices.
+/// The graph with its information scaled, but not thinned; of a folder that of all its files merged. Fails on
+/// what `read_g2o` and `merge_g2o` refuse, on a folder without g2o files, and on indefinite information
+/// matrices.
 Result<G2oFile> read_listed(const ListedGraph& graph);
 
 }  // namespace adit::app

@@ -25,8 +25,6 @@ namespace adit::app {
 namespace {
 
 constexpr const char* kSection = "false loops";
-/// PCM compares every two loops; beyond this many that takes minutes.
-constexpr std::size_t kMaxPcmLoops = 2000;
 
 struct Options {
   std::string graphs;
@@ -95,8 +93,6 @@ Attempt<Pose2> with_pcm(const PoseGraph2&, const StudyConfig&) {
 }
 
 Attempt<Pose> with_pcm(const PoseGraph& graph, const StudyConfig& config) {
-  if (const std::size_t n = num_loops(graph); n > kMaxPcmLoops)
-    return {{}, format("PCM compares every two loops, here more than {}", kMaxPcmLoops)};
   const bool all_definite = std::ranges::all_of(graph.edges, [](const PoseGraph::Edge& edge) {
     return edge.information.llt().info() == Eigen::Success;
   });
@@ -134,12 +130,18 @@ LoopDecision judged(const Attempt<P>& attempt, const LabelledGraph<P>& labelled,
 /// All methods on one labelled graph.
 template <class P>
 FalseLoopRun run_methods(const LabelledGraph<P>& labelled, const Reference<P>& reference,
-                         const StudyConfig& config) {
+                         const ListedGraph& listed, const StudyConfig& config) {
   FalseLoopRun run;
+  run.graph = listed.name;
+  run.injection = listed.injection;
   run.num_nodes = static_cast<int>(labelled.graph.nodes.size());
   run.num_false = static_cast<int>(labelled.graph.edges.size() - labelled.num_true);
   run.num_true = static_cast<int>(num_loops(labelled.graph)) - run.num_false;
   for (std::size_t m = 0; m < kLoopMethods.size(); ++m) {
+    if (listed.large && kLoopMethods[m] != LoopMethod::adit) {
+      run.reasons[m] = "left out, as it takes too long on a graph that is listed as large";
+      continue;
+    }
     const double start_s = processor_s();
     const Attempt<P> attempt = attempt_of(kLoopMethods[m], labelled.graph, config);
     const double time_s = processor_s() - start_s;
@@ -167,10 +169,7 @@ void print_line(const FalseLoopRun& run, std::FILE* to) {
   std::fflush(to);
 }
 
-void take(FalseLoopRun run, const ListedGraph& listed, int share_pct, const Options& options,
-          std::vector<FalseLoopRun>& runs) {
-  run.graph = listed.name;
-  run.injection = listed.injection;
+void take(FalseLoopRun run, int share_pct, const Options& options, std::vector<FalseLoopRun>& runs) {
   run.share_pct = share_pct;
   print_line(run, options.json ? stderr : stdout);
   runs.push_back(std::move(run));
@@ -189,7 +188,7 @@ Result<> run_injected(const ListedGraph& listed, const BasicPoseGraph<P>& graph,
     if (interrupted()) return fail("interrupted");
     LabelledGraph<P> labelled = with_false_loops(clean, 0.01 * share, kind, listed.seed);
     drop_true_by_chance(labelled, reference->poses, bound);
-    take(run_methods(labelled, *reference, config), listed, share, options, runs);
+    take(run_methods(labelled, *reference, listed, config), share, options, runs);
   }
   return {};
 }
@@ -212,7 +211,7 @@ Result<> run_as_found(const ListedGraph& listed, const PoseGraph& graph, const S
   if (!reference) return fail(listed.path, reference.error());
   const std::size_t loops = std::max<std::size_t>(1, num_loops(labelled.graph));
   const double share = static_cast<double>(first_false.size()) / static_cast<double>(loops);
-  take(run_methods(labelled, *reference, config), listed, static_cast<int>(std::lround(100.0 * share)),
+  take(run_methods(labelled, *reference, listed, config), static_cast<int>(std::lround(100.0 * share)),
        options, runs);
   return {};
 }

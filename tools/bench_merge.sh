@@ -2,18 +2,21 @@
 # SPDX-FileCopyrightText: 2026 The adit authors
 # SPDX-License-Identifier: MIT
 # Measures which robots' maps are merged, refused or merged wrongly over the worlds of bench/merge/worlds.toml, and writes
-# the section "Merging" of docs/results.md. Arguments go to `adit merge-study`, for example
+# the section "Merging" of docs/results.md; then how false loops are found in the pose graphs of bench/merge/graphs.toml, for
+# the section "False loops". Arguments go to `adit merge-study` alone, for example
 #   tools/bench_merge.sh --keyframes all,tunnel_filter --groups tuning
 #   tools/bench_merge.sh --only zab-1,tiles-1 --threads 1 --set back_end.min_loops=3
 # build/merge keeps the robots' maps, so that a second run starts behind the odometry, and the results of all runs: worlds
 # and policies that a run leaves out keep theirs.
 #   ADIT_MERGE_FRESH=1    drives all worlds anew: needed after a change of simulation, odometry, keyframes or descriptors
 #   ADIT_MERGE_PAGE=FILE  writes the tables into that page instead
+#   ADIT_MERGE_LOOPS=0    leaves the pose graphs out
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/setup.sh
 cmake --preset release >/dev/null
 cmake --build --preset release --target adit_program
 [ -z "${ADIT_MERGE_FRESH:-}" ] || rm -rf build/merge/maps
-build/release/adit merge-study --worlds bench/merge/worlds.toml --out build/merge \
-  --page "${ADIT_MERGE_PAGE:-docs/results.md}" "$@"
+page="${ADIT_MERGE_PAGE:-docs/results.md}"
+build/release/adit merge-study --worlds bench/merge/worlds.toml --out build/merge --page "$page" "$@"
+[ "${ADIT_MERGE_LOOPS:-1}" = 0 ] || build/release/adit loop-study --graphs bench/merge/graphs.toml --out build/merge --page "$page"

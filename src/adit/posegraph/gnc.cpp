@@ -103,11 +103,8 @@ class Search {
       : graph_(graph), config_(config), bound_(chi2_quantile(config.inlier_probability, P::kDof)) {}
 
   // Graduated non-convexity from the poses of `s`, from the convex surrogate on or from `mu` if that is
-  // larger.
-  [[nodiscard]] Solution<P> graduate(Solution<P> s, double mu = 0.0) const {
-    OptimizerConfig inner = warm();
-    inner.relative_tolerance = std::max(inner.relative_tolerance, 1e-3);
-    inner.max_iterations = std::min(inner.max_iterations, 5);
+  // larger; `inner` solves each surrogate.
+  [[nodiscard]] Solution<P> graduate(Solution<P> s, double mu, const OptimizerConfig& inner) const {
     std::vector<double> costs = edge_costs(graph_, s.poses);
     mu = std::max(mu, first_mu(largest_loop_cost(graph_, costs), bound_));
     for (int outer = 0; s.ok() && outer < config_.max_outer_iterations; ++outer, mu *= config_.mu_step) {
@@ -120,14 +117,21 @@ class Search {
     return s;
   }
 
+  // The same with surrogates solved roughly, as the next one moves their minimum anyhow.
+  [[nodiscard]] Solution<P> graduate(Solution<P> s, double mu = 0.0) const {
+    OptimizerConfig inner = warm();
+    inner.relative_tolerance = std::max(inner.relative_tolerance, 1e-3);
+    inner.max_iterations = std::min(inner.max_iterations, 5);
+    return graduate(std::move(s), mu, inner);
+  }
+
   [[nodiscard]] Solution<P> run(Solution<P> start) const { return settle(graduate(std::move(start)), true); }
 
-  // The paper's search and nothing else.
+  // The paper's search and nothing else: every surrogate is solved to convergence.
   [[nodiscard]] Solution<P> run_plain(Solution<P> start) const {
     if (!start.ok()) return start;
-    const Solution<P> s = graduate(std::move(start));
-    if (!s.ok()) return s;
-    return continued(s, s.poses, warm(), loops_within_bound(s.poses));
+    const Solution<P> s = graduate(std::move(start), 0.0, warm());
+    return s.ok() ? continued(s, s.poses, warm(), loops_within_bound(s.poses)) : s;
   }
 
   // From the loops that confirm one another: least squares over the largest clusters, then all loops that
@@ -350,6 +354,19 @@ Solution<P> best_of_all(const BasicPoseGraph<P>& graph, const GncConfig& config,
   return best;
 }
 
+// The paper's search from the graph's own poses and from least squares with all loops.
+template <class P>
+Solution<P> best_of_plain(const BasicPoseGraph<P>& graph, const GncConfig& config, const Solution<P>& given,
+                          const Search<P>& search) {
+  Solution<P> first = search.run_plain(given);
+  Solution<P> second = search.run_plain(optimize(graph, config.optimizer));
+  const int iterations = first.iterations + second.iterations;
+  const bool second_wins = second.ok() && (!first.ok() || search.objective(second) < search.objective(first));
+  Solution<P> best = second_wins ? std::move(second) : std::move(first);
+  best.iterations = iterations;
+  return best;
+}
+
 }  // namespace
 
 double chi2_quantile(double probability, int dof) {
@@ -373,8 +390,8 @@ Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config
   none.max_iterations = 0;
   const Solution<P> given = optimize(graph, none);
   if (!given.ok()) return given;
-  Solution<P> best = config.plain ? search.run_plain(optimize(graph, config.optimizer))
-                                  : best_of_all(graph, config, given, search);
+  Solution<P> best =
+      config.plain ? best_of_plain(graph, config, given, search) : best_of_all(graph, config, given, search);
   best.cost_initial = given.cost_initial;
   if (const std::size_t rejected = num_rejected(best); rejected > 0)
     best.notes.push_back(format("{} loops rejected", rejected));
