@@ -138,6 +138,32 @@ TEST(Gnc, RejectsRandomLoopsOfASphere) {
   }
 }
 
+TEST(Gnc, ThePlainSearchRejectsRandomLoopsToo) {
+  GncConfig config;
+  config.plain = true;
+  for (const double share : {0.1, 0.3}) {
+    Rng rng(22);
+    Spoiled<Pose> made = sphere(rng, 10);
+    add_random_false_loops(rng, share, made);
+    SCOPED_TRACE(share);
+    expect_recovered(made, 1, config);
+  }
+}
+
+TEST(Gnc, ThePlainSearchKeepsItsBound) {
+  // Information that understates: the whole search draws the bound in, the plain one keeps what passes it.
+  Rng rng(30);
+  Spoiled<Pose> made = sphere(rng, 8);
+  for (auto& edge : made.graph.edges) edge.information *= 1e-4;
+  auto off = made.graph.edges.back();
+  off.T_from_to = off.T_from_to * Pose::translation_of(40.0 * kSigma, 0.0, 0.0);
+  made.graph.edges.push_back(off);
+  GncConfig config;
+  EXPECT_EQ(optimize_gnc(made.graph, config).edge_weights.back(), 0.0);
+  config.plain = true;
+  EXPECT_EQ(optimize_gnc(made.graph, config).edge_weights.back(), 1.0);
+}
+
 TEST(Gnc, StandsFalseLoopsThatAgreeWithEachOther) {
   // Two galleries that look alike: ten loops say that row 7 is row 2, as if one wall stood for the other.
   Rng rng(23);
