@@ -103,8 +103,11 @@ class Search {
       : graph_(graph), config_(config), bound_(chi2_quantile(config.inlier_probability, P::kDof)) {}
 
   // Graduated non-convexity from the poses of `s`, from the convex surrogate on or from `mu` if that is
-  // larger; `inner` solves each surrogate.
-  [[nodiscard]] Solution<P> graduate(Solution<P> s, double mu, const OptimizerConfig& inner) const {
+  // larger.
+  [[nodiscard]] Solution<P> graduate(Solution<P> s, double mu = 0.0) const {
+    OptimizerConfig inner = warm();
+    inner.relative_tolerance = std::max(inner.relative_tolerance, 1e-3);
+    inner.max_iterations = std::min(inner.max_iterations, 5);
     std::vector<double> costs = edge_costs(graph_, s.poses);
     mu = std::max(mu, first_mu(largest_loop_cost(graph_, costs), bound_));
     for (int outer = 0; s.ok() && outer < config_.max_outer_iterations; ++outer, mu *= config_.mu_step) {
@@ -117,20 +120,12 @@ class Search {
     return s;
   }
 
-  // The same with surrogates solved roughly, as the next one moves their minimum anyhow.
-  [[nodiscard]] Solution<P> graduate(Solution<P> s, double mu = 0.0) const {
-    OptimizerConfig inner = warm();
-    inner.relative_tolerance = std::max(inner.relative_tolerance, 1e-3);
-    inner.max_iterations = std::min(inner.max_iterations, 5);
-    return graduate(std::move(s), mu, inner);
-  }
-
   [[nodiscard]] Solution<P> run(Solution<P> start) const { return settle(graduate(std::move(start)), true); }
 
-  // The paper's search and nothing else: every surrogate is solved to convergence.
+  // The paper's search and nothing else.
   [[nodiscard]] Solution<P> run_plain(Solution<P> start) const {
     if (!start.ok()) return start;
-    const Solution<P> s = graduate(std::move(start), 0.0, warm());
+    const Solution<P> s = graduate(std::move(start));
     return s.ok() ? continued(s, s.poses, warm(), loops_within_bound(s.poses)) : s;
   }
 

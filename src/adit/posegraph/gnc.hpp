@@ -42,8 +42,8 @@ inline Fields fields_of(GncConfig& c) {
 /// nothing come loose), graduated searches from the graph's own poses and from the least-squares solution
 /// with all loops follow, and the lowest truncated cost, the sum over odometry of chi2 plus the sum over
 /// loops of min(chi2, c^2), wins. With `plain` nothing of this paragraph is done but graduated
-/// searches from the graph's own poses and from least squares with all loops, every surrogate solved to
-/// convergence, and a last solve with the loops below the bound; the lower truncated cost wins. Source: Yang,
+/// searches from the graph's own poses and from least squares with all loops, and a last solve with the loops
+/// below the bound; the lower truncated cost wins. Source: Yang,
 /// Antonante, Tzoumas, Carlone, "Graduated Non-Convexity for Robust Spatial Perception" (RA-L 2020),
 /// Proposition 4 (weights), Remark 5 (mu).
 template <class P>
