@@ -461,7 +461,6 @@ bool Agent::compare_clouds_of(RobotId from, const Clouds& clouds) {
   SurfaceStore& surfaces = discernment_->surfaces();
   surfaces.prepare(own);
   std::vector<CheckedPlace> places(asked.size());
-  std::vector<std::uint8_t> differs(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
     const PlannedCheck& check = asked[i];
     PointCloud cloud;
@@ -470,9 +469,8 @@ bool Agent::compare_clouds_of(RobotId from, const Clouds& clouds) {
                              came.at(check.theirs)->viewpoint.cast<double>());
     const LocalFit fit = fit_near(surfaces.at(check.own), theirs, check.T_own_theirs, discernment_->limit(),
                                   config_.registration_in_use());
-    differs[i] = discernment_->differ(fit.agreement) ? 1 : 0;
+    places[i] = {fit.agreement.largest_difference / discernment_->limit(), distinctive[i]};
   });
-  for (std::size_t i = 0; i < asked.size(); ++i) places[i] = {differs[i] != 0, distinctive[i]};
   test.add(places);
   return true;
 }

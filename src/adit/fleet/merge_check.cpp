@@ -11,7 +11,11 @@
 namespace adit {
 namespace {
 
-constexpr double kTrueCheck = 0.97;      // chance that scans do not differ where the alignment is true
+constexpr double kTrueCheck = 0.97;  // chance that scans do not differ where the alignment is true
+// A difference of three times the limit is a niche or a cabinet, not noise: in true alignments only a fit
+// that failed leaves it.
+constexpr double kGross = 3.0;
+constexpr double kTrueGross = 0.005;     // chance of that where the alignment is true
 constexpr double kSide = 3.0;            // metres between two keyframes that are compared
 constexpr double kReach = 50.0;          // metres along odometry, from the nearest loop
 constexpr double kSameAlignment = 3.0;   // metres between two hypotheses that say the same
@@ -72,8 +76,9 @@ double apart(const std::vector<PcmLoop>& first, const std::vector<PcmLoop>& seco
   return nearest;
 }
 
-std::size_t num_differing(const std::vector<CheckedPlace>& places) {
-  return static_cast<std::size_t>(std::ranges::count(places, true, &CheckedPlace::differs));
+std::size_t num_differing(const std::vector<CheckedPlace>& places, double by_more_than = 1.0) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      places, [&](const CheckedPlace& place) { return !(place.difference <= by_more_than); }));
 }
 
 }  // namespace
@@ -81,6 +86,8 @@ std::size_t num_differing(const std::vector<CheckedPlace>& places) {
 Fields fields_of(MergeCheckConfig& c) {
   Fields fields = {
       {"error_rate", &c.error_rate, "", 1e-12, 0.5, "chance that a wrong merge passes"},
+      {"refusal_rate", &c.refusal_rate, "", 1e-12, 0.5,
+       "chance that a true merge is refused because scans differ"},
       {"spacing_m", &c.spacing_m, "m", 0.1, 1000.0, "way between two places where maps are compared"},
       {"max_checks", &c.max_checks, "", 1, 10000, "places that are compared at most, of one hypothesis"},
       {"max_hypotheses", &c.max_hypotheses, "", 1, 1000,
@@ -157,7 +164,7 @@ double MergeTest::evidence_of_agreement() const {
 double MergeTest::evidence(const Hypothesis& hypothesis) const {
   double sum = -std::log(static_cast<double>(loops_.size() - hypothesis.loops.size() + 1));
   for (const CheckedPlace& place : hypothesis.checked) {
-    if (place.differs)
+    if (place.differs())
       sum += std::log((1.0 - kTrueCheck) / (1.0 - std::min(chance_to_go_on_, kTrueCheck)));
     else if (place.is_distinctive || !config_.distinctive_only)
       sum += evidence_of_agreement();
@@ -166,7 +173,9 @@ double MergeTest::evidence(const Hypothesis& hypothesis) const {
 }
 
 bool MergeTest::is_refuted(const Hypothesis& h) const {
-  return at_least(num_differing(h.checked), h.checked.size(), 1.0 - kTrueCheck) < config_.error_rate;
+  const std::size_t num = h.checked.size();
+  return at_least(num_differing(h.checked), num, 1.0 - kTrueCheck) < config_.refusal_rate ||
+         at_least(num_differing(h.checked, kGross), num, kTrueGross) < config_.refusal_rate;
 }
 
 bool MergeTest::is_finished(const Hypothesis& h) const { return h.checked.size() == h.plan.size(); }
@@ -217,7 +226,7 @@ void MergeTest::add(const std::vector<CheckedPlace>& places) {
 std::string MergeTest::reason(const Hypothesis& h, const Hypothesis* rival) const {
   const std::size_t differing = num_differing(h.checked);
   const auto distinctive = std::ranges::count_if(
-      h.checked, [](const CheckedPlace& place) { return place.is_distinctive && !place.differs; });
+      h.checked, [](const CheckedPlace& place) { return place.is_distinctive && !place.differs(); });
   if (is_refuted(h))
     return format(
         "scans differ at {} of {} places along the stretch that {} loops lay over one another: "

@@ -29,10 +29,11 @@ namespace adit {
 
 struct MergeCheckConfig {
   double error_rate = 1e-4;
+  double refusal_rate = 0.01;
   double spacing_m = 3.0;
   int max_checks = 200;
   int max_hypotheses = 6;
-  double odometry_slack = 5.0;
+  double odometry_slack = 1.0;
   bool distinctive_only = true;
   DiscernmentConfig discernment;
 };
@@ -52,8 +53,9 @@ struct PlannedCheck {
 
 /// One place where two maps were compared.
 struct CheckedPlace {
-  bool differs = false;         ///< The scans cannot be of one place.
+  double difference = 0.0;      ///< Over the limit of Discernment: above 1 the scans cannot be of one place.
   bool is_distinctive = false;  ///< A displacement along the way would have shown.
+  [[nodiscard]] bool differs() const { return !(difference <= 1.0); }
 };
 
 /// The test of two robots' loops: asks for comparisons until it knows.

@@ -57,9 +57,10 @@ MergeCheck run(MergeTest& test, const Answer& answer) {
   return test.verdict({0}, {1});
 }
 
-constexpr CheckedPlace kAgrees{false, true};
-constexpr CheckedPlace kDiffers{true, true};
-constexpr CheckedPlace kSilent{false, false};
+constexpr CheckedPlace kAgrees{0.5, true};
+constexpr CheckedPlace kDiffers{1.5, true};
+constexpr CheckedPlace kSilent{0.5, false};
+constexpr CheckedPlace kHasANiche{5.0, true};
 
 TEST(PlanChecks, PutsNeighboursTogetherAllAlongTheStretch) {
   const std::vector<PlannedCheck> plan = plan_checks(along_x(kNum), along_x(kNum), kTrueLoops, {});
@@ -103,6 +104,17 @@ TEST(MergeTest, AStretchThatDiffersHereAndThereIsACopy) {
   const MergeCheck check = run(test, [&](const PlannedCheck&) { return ++n % 4 == 0 ? kDiffers : kAgrees; });
   EXPECT_FALSE(check.accepted);
   EXPECT_NE(check.reason.find("scans differ at"), std::string::npos) << check.reason;
+}
+
+TEST(MergeTest, ANicheThatOnlyOneOfThemHasIsACopy) {
+  // One place in twelve: as many as noise would be forgiven.
+  for (const auto& [place, accepted] : {std::pair{kDiffers, true}, std::pair{kHasANiche, false}}) {
+    MergeTest test = a_test(kTrueLoops);
+    int n = 0;
+    const MergeCheck check = run(
+        test, [&, difference = place](const PlannedCheck&) { return ++n % 12 == 0 ? difference : kAgrees; });
+    EXPECT_EQ(check.accepted, accepted) << check.reason;
+  }
 }
 
 TEST(MergeTest, ARefutedHypothesisIsNotTestedToTheEnd) {
