@@ -64,6 +64,34 @@ TEST(FleetGraph, RobotsWithoutLoopsStayApartWithAReason) {
   EXPECT_LT(largest_error(solution, solution.components[1]), 1e-9);
 }
 
+TEST(FleetGraph, WhereChecksAreNeededOnlyTheLoopsOfAnAcceptedOneCount) {
+  FleetGraph fleet = robots_without_loops(2);
+  for (std::uint32_t k = 5; k < 35; k += 5) add_loop(fleet, {{0}, k}, {{1}, k});
+  // False loops that agree with one another, and outnumber the true ones.
+  const Pose off = true_pose({1}, 0).inverse() * Pose::planar(4.0, 3.0, 0.0) * true_pose({1}, 0);
+  for (std::uint32_t k = 4; k < 36; k += 2)
+    add_loop(fleet, {{0}, k}, {{1}, k + 1}, true_pose({1}, k + 1).inverse() * off * true_pose({1}, k + 1));
+  BackEndConfig config;
+  config.checks_needed = true;
+  EXPECT_FALSE(solve(fleet, config).pairs[0].merged) << "never tested";
+
+  MergeCheck check{{0}, {1}, -3.0, 9.0, 8, 4, false, {}, "scans differ at 4 of 8 places"};
+  fleet.checks[{{0}, {1}}] = check;
+  const FleetSolution refused = solve(fleet, config);
+  EXPECT_FALSE(refused.pairs[0].merged);
+  EXPECT_EQ(refused.pairs[0].refused_reason, check.reason);
+  EXPECT_EQ(refused.components.size(), 2U);
+
+  check.accepted = true;
+  for (std::uint32_t k = 5; k < 35; k += 5) check.loops.emplace_back(k, k);
+  fleet.checks[{{0}, {1}}] = check;
+  const FleetSolution merged = solve(fleet, config);
+  ASSERT_TRUE(merged.pairs[0].merged) << merged.pairs[0].refused_reason;
+  EXPECT_EQ(merged.pairs[0].clique, 6U);
+  ASSERT_EQ(merged.components.size(), 1U);
+  EXPECT_LT(largest_error(merged, merged.components[0]), 1e-3);
+}
+
 TEST(FleetGraph, FalseLoopsAreDroppedByPcm) {
   FleetGraph fleet = robots_without_loops(2);
   for (std::uint32_t k = 5; k < 35; k += 5) add_loop(fleet, {{0}, k}, {{1}, k});
