@@ -65,6 +65,28 @@ TEST(EndToEnd, TwoRobotsMergeByCorrectLoopsIntoAnAccurateMap) {
   EXPECT_EQ(as_text(joint, folder.path()), as_text(again, folder.path()));
 }
 
+TEST(EndToEnd, AdaptiveRobotsMergeByEvidenceAndSayIt) {
+  const std::vector<Recording> recordings = two_robots();
+  ASSERT_EQ(recordings.size(), 2U);
+  RobotSlamConfig config;
+  config.odometry.kinematic_icp.voxel_size = 0.5;
+  AgentConfig loops;
+  loops.adaptive.on = true;
+  BackEndConfig back_end;
+  back_end.checks_needed = true;
+  const test::Joint joint = test::map_and_meet(recordings, config, loops, back_end);
+  ASSERT_EQ(joint.solution.components.size(), 1U) << joint.solution.pairs.at(0).refused_reason;
+  EXPECT_EQ(test::loops_in_use(joint, recordings).wrong(), 0);
+  const MergeCheck& check = joint.fleet.checks.begin()->second;
+  EXPECT_TRUE(check.accepted);
+  EXPECT_GE(check.evidence, check.needed);
+  const std::vector<Trajectory> estimates = test::joint_trajectories(joint);
+  const auto errors = joint_ate(estimates, std::vector{recordings[0].truth, recordings[1].truth});
+  ASSERT_TRUE(errors.has_value()) << errors.error().message;
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_LT((*errors)[i].max_m, 0.01 * path_length(estimates[i])) << recordings[i].name;
+}
+
 TEST(EndToEnd, TheProgramMapsAFolderOfScansIntoASession) {
   const test::TemporaryFolder folder;
   std::vector<Recording> recordings = two_robots();

@@ -21,7 +21,8 @@ struct Joint {
 };
 
 /// Maps each recording, lets the two robots meet and solves what the first then knows.
-inline Joint map_and_meet(const std::vector<Recording>& recordings, const RobotSlamConfig& config) {
+inline Joint map_and_meet(const std::vector<Recording>& recordings, const RobotSlamConfig& config,
+                          const AgentConfig& loops = {}, const BackEndConfig& back_end = {}) {
   Joint joint;
   std::vector<Agent> agents;
   agents.reserve(recordings.size());
@@ -31,14 +32,14 @@ inline Joint map_and_meet(const std::vector<Recording>& recordings, const RobotS
     EXPECT_TRUE(map.has_value()) << map.error().message;
     if (!map) return joint;
     joint.maps.push_back(std::make_shared<const RobotMap>(*map));
-    const AgentConfig loops;
     agents.emplace_back(joint.maps.back(),
-                        std::make_shared<FeatureStore>(joint.maps.back(), loops.registration), loops);
+                        std::make_shared<FeatureStore>(joint.maps.back(), loops.registration_in_use()),
+                        loops);
     bus.join(agents.back());
   }
   EXPECT_TRUE(bus.meet({0}, {1}).has_value());
   joint.fleet = agents[0].known();
-  joint.solution = agents[0].solve({});
+  joint.solution = agents[0].solve(back_end);
   return joint;
 }
 

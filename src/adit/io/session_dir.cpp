@@ -53,6 +53,13 @@ std::string session_toml(const Session& session) {
                               pair.refused_reason));
   }
   table.insert("refusals", refusals);
+  toml::array merges;
+  for (const auto& [pair, check] : session.fleet.checks) {
+    if (!check.accepted) continue;
+    merges.push_back(format("{} and {}: {}", name_of(session.fleet, pair.first),
+                            name_of(session.fleet, pair.second), check.reason));
+  }
+  table.insert("merges", merges);
   std::ostringstream text;
   text << table << "\n";
   const toml::parse_result configuration = toml::parse(session.provenance.configuration);

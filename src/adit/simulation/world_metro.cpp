@@ -85,9 +85,7 @@ std::vector<Drive> draw_drives(const std::array<Tube, 2>& tubes, const WorldConf
 
 WorldPlan plan_metro(const WorldConfig& config) {
   Rng rng(mix64(config.seed, 1));
-  WorldPlan plan;
-  plan.relief = {mix64(furniture_seed(config), 2), {{5.0, 0.006 * config.relief_factor}}, 0.0, 0.0, 1.0};
-  plan.max_edge = 1.0 * config.facet_factor;
+  WorldPlan plan = concrete_plan(config);
   const std::array<Tube, 2> tubes = draw_tubes(config.curvature_factor, rng);
   for (const Tube& tube : tubes) add_tunnel(plan, arch_profile(kTube), tube.line);
   for (const Tube& tube : tubes)

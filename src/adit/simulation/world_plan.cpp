@@ -14,6 +14,13 @@ void add_block(WorldPlan& plan, const Vector3& from, const Vector3& to, const Pr
 
 }  // namespace
 
+WorldPlan concrete_plan(const WorldConfig& config) {
+  WorldPlan plan;
+  plan.relief = {mix64(furniture_seed(config), 2), {{5.0, 0.006 * config.relief_factor}}, 0.0, 0.0, 1.0};
+  plan.max_edge = 1.0 * config.facet_factor;
+  return plan;
+}
+
 std::uint64_t furniture_seed(const WorldConfig& config) {
   return config.furniture_seed == 0 ? config.seed : config.furniture_seed;
 }

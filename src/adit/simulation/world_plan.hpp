@@ -29,6 +29,8 @@ struct WorldPlan {
 [[nodiscard]] WorldPlan plan_metro(const WorldConfig& config);
 [[nodiscard]] WorldPlan plan_tiles(const WorldConfig& config);
 
+/// Nothing yet, to be lined with concrete: facets of a metre, uneven by millimetres.
+[[nodiscard]] WorldPlan concrete_plan(const WorldConfig& config);
 /// What furniture and rock are drawn from, so that they can differ in tunnels that are the same.
 [[nodiscard]] std::uint64_t furniture_seed(const WorldConfig& config);
 /// Draws on where the tunnels were drawn, or anew where the furniture has a seed of its own.

@@ -123,9 +123,7 @@ void add_adit(WorldPlan& plan, const Grid& grid, const Way& way) {
 
 WorldPlan plan_tiles(const WorldConfig& config) {
   Rng rng(mix64(config.seed, 1));
-  WorldPlan plan;
-  plan.relief = {mix64(furniture_seed(config), 2), {{5.0, 0.006 * config.relief_factor}}, 0.0, 0.0, 1.0};
-  plan.max_edge = 1.0 * config.facet_factor;
+  WorldPlan plan = concrete_plan(config);
   Grid grid;
   grid.x = draw_positions<kColumns>(3, rng);
   grid.y = draw_positions<kRows>(2, rng);
