@@ -316,7 +316,7 @@ std::size_t Agent::num_tried() const {
 
 void Agent::find_candidates(RobotId peer_id) {
   std::vector<LoopCandidate> found = best_candidates(peer_id);
-  if (config_.adaptive.on) found = distinctive(std::move(found));
+  if (config_.adaptive.on) found = standing_out(std::move(found));
   Peer& peer = peers_[peer_id];
   peer.places = {};
   const auto in_all = static_cast<std::size_t>(config_.max_candidates);
@@ -482,7 +482,7 @@ Agent::Replies Agent::conclude_test(RobotId peer_id) {
   return checks_from(peer_id, map_->id, decided.size() - 1);
 }
 
-std::vector<LoopCandidate> Agent::distinctive(std::vector<LoopCandidate> found) {
+std::vector<LoopCandidate> Agent::standing_out(std::vector<LoopCandidate> found) {
   if (own_likeness_.empty()) own_likeness_ = other_places().likeness();
   const auto ratio = [&](const LoopCandidate& c) {
     return config_.adaptive.stand_out ? c.distance / std::max(own_likeness_[c.query.index], 1e-6)

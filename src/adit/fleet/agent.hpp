@@ -58,7 +58,8 @@ Fields fields_of(AgentConfig& config);
 ///    registered, 0.6 kB each: with n keyframes a robot and r robots at most
 ///    r (0.4 n + 0.6 (max_candidates + r candidates_per_peer)) kB;
 ///  - the descriptors of one peer at a time, 6 kB a keyframe, until they have been searched;
-///  - the features of its own keyframes, FeatureStore::kMaxBytes at most.
+///  - the features of its own keyframes, FeatureStore::kMaxBytes at most, and if it is adaptive the surfaces
+///    that it compares, SurfaceStore::kMaxBytes at most.
 /// It stores no clouds of others: they are asked for a message at a time, registered and forgotten.
 class Agent {
  public:
@@ -105,7 +106,7 @@ class Agent {
   [[nodiscard]] Replies loops_from(RobotId peer, RobotId author, std::size_t first) const;
   [[nodiscard]] std::vector<LoopCandidate> best_candidates(RobotId peer_id) const;
   /// Those that stand out most from what the robot's own map has that looks like them; spread over its way.
-  [[nodiscard]] std::vector<LoopCandidate> distinctive(std::vector<LoopCandidate> found);
+  [[nodiscard]] std::vector<LoopCandidate> standing_out(std::vector<LoopCandidate> found);
   void register_clouds_of(RobotId from, const Clouds& clouds);
   /// The first test of the maps, when all loops with the peer have been tried.
   void begin_test(RobotId peer_id);
