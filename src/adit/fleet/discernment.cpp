@@ -48,7 +48,10 @@ std::optional<std::uint32_t> keyframe_at(const std::vector<double>& way, double 
 
 OtherPlaces::OtherPlaces(std::shared_ptr<const RobotMap> map, const OdometryChain& chain,
                          PlaceIndexConfig config)
-    : map_(std::move(map)), chain_(chain), way_(way_along(chain_)), index_(for_other_places(config)) {
+    : map_(std::move(map)),
+      chain_(chain),
+      way_(way_along(chain_)),
+      index_(for_other_places(std::move(config))) {
   for (std::uint32_t k = 0; k < map_->places.size(); ++k) index_.add({map_->id, k}, map_->places[k]);
 }
 
@@ -126,7 +129,7 @@ double Discernment::usual_difference() {
     if (one.is_comparable()) differences.push_back(one.largest_difference);
   // A map that is too short to measure on allows nothing.
   if (differences.empty()) return 0.0;
-  const auto usual = static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(differences.size() - 1) + 0.5);
+  const auto usual = std::lround(kUsual * static_cast<double>(differences.size() - 1));
   std::ranges::nth_element(differences, differences.begin() + usual);
   return differences[static_cast<std::size_t>(usual)];
 }

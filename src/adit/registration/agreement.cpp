@@ -27,13 +27,17 @@ constexpr std::array kOtherStarts = {-1.5, 1.5, -0.75, 0.75};  // metres along t
 constexpr double kHopeless = 10.0;  // times what is enough: no small displacement mends that
 constexpr int kMaxIterations = 10;  // of each fit
 
+std::size_t place(int row, int column) {
+  return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
+}
+
 std::size_t cell_of(const Eigen::Vector3f& direction) {
   const float elevation =
       std::atan2(direction.z(), direction.head<2>().norm()) / std::numbers::pi_v<float> + 0.5F;
   const float azimuth = std::atan2(direction.y(), direction.x()) / (2.0F * std::numbers::pi_v<float>)+0.5F;
   const int row = std::clamp(static_cast<int>(elevation * kRows), 0, kRows - 1);
   const int column = std::clamp(static_cast<int>(azimuth * kColumns), 0, kColumns - 1);
-  return static_cast<std::size_t>(row * kColumns + column);
+  return place(row, column);
 }
 
 // How many of the points belong to the largest set that is connected over neighbouring cells of a grid.
@@ -140,11 +144,10 @@ SeenSurface::SeenSurface(OrientedPoints points, const Vector3& viewpoint)
   }
   for (int row = 0; row < kRows; ++row) {
     for (int column = 0; column < kColumns; ++column) {
-      const auto cell = static_cast<std::size_t>(row * kColumns + column);
+      const std::size_t cell = place(row, column);
       if (own[cell].empty()) continue;
       for (int i = std::max(row - 1, 0); i <= std::min(row + 1, kRows - 1); ++i)
-        for (int j = -1; j <= 1; ++j)
-          ranges_[cell].add(own[static_cast<std::size_t>(i * kColumns + (column + j + kColumns) % kColumns)]);
+        for (int j = -1; j <= 1; ++j) ranges_[cell].add(own[place(i, (column + j + kColumns) % kColumns)]);
     }
   }
 }
