@@ -223,7 +223,7 @@ Agent::Replies Agent::loops_from(RobotId peer, RobotId author, std::size_t first
   return replies;
 }
 
-Agent::Replies Agent::on(RobotId /*from*/, const GraphPart& part) {
+Agent::Replies Agent::on(RobotId from, const GraphPart& part) {
   if (part.owner == map_->id || !is_usable(part)) return {};
   const auto known = known_.robots.find(part.owner);
   const std::size_t has = known == known_.robots.end() ? 0 : known->second.nodes.size();
@@ -233,7 +233,11 @@ Agent::Replies Agent::on(RobotId /*from*/, const GraphPart& part) {
   for (std::size_t i = has - part.first_index; i < part.nodes.size(); ++i) {
     graph.nodes.push_back(part.nodes[i]);
   }
-  return {};
+  // A test that waited for this part begins.
+  const auto peer = peers_.find(from);
+  const bool waited = config_.adaptive.on && from == part.owner && peer != peers_.end() && searches(from) &&
+                      peer->second.was_tried && !peer->second.test;
+  return waited && begin_test(from) ? go_on_testing(from) : Replies{};
 }
 
 Agent::Replies Agent::on(RobotId from, const Places& part) {
@@ -382,14 +386,19 @@ Agent::Replies Agent::on(RobotId from, const Clouds& clouds) {
     register_clouds_of(from, clouds);
     replies = loops_from(from, map_->id, before);
     if (!config_.adaptive.on || !peer.waiting.empty()) return with(std::move(replies), cloud_request(from));
-    begin_test(from);
+    peer.was_tried = true;
+    if (!begin_test(from)) return replies;
   } else if (peer.test && !peer.test->next(kCloudsPerMessage).empty()) {
     if (!compare_clouds_of(from, clouds)) return {};
   } else {
     return {};
   }
-  if (peer.test->next(kCloudsPerMessage).empty()) return with(std::move(replies), conclude_test(from));
-  return with(std::move(replies), cloud_request(from));
+  return with(std::move(replies), go_on_testing(from));
+}
+
+Agent::Replies Agent::go_on_testing(RobotId peer_id) {
+  return peers_.at(peer_id).test->next(kCloudsPerMessage).empty() ? conclude_test(peer_id)
+                                                                  : cloud_request(peer_id);
 }
 
 void Agent::register_clouds_of(RobotId from, const Clouds& clouds) {
@@ -427,7 +436,7 @@ const OtherPlaces& Agent::other_places() {
   return *other_places_;
 }
 
-void Agent::begin_test(RobotId peer_id) {
+bool Agent::begin_test(RobotId peer_id) {
   const double slack = config_.adaptive.merge_check.odometry_slack;
   const OdometryChain own = chain_of(known_.robots.at(map_->id), slack);
   if (!discernment_)
@@ -438,13 +447,14 @@ void Agent::begin_test(RobotId peer_id) {
   const std::size_t num_theirs = graph == known_.robots.end() ? 0 : graph->second.nodes.size();
   std::vector<PcmLoop> loops;
   for (const auto& [ends, loop] : known_.loops) {
-    if (ends.first.robot != map_->id || ends.second.robot != peer_id || ends.second.index >= num_theirs ||
-        loop.verdict != LoopVerdict::accepted)
+    if (ends.first.robot != map_->id || ends.second.robot != peer_id || loop.verdict != LoopVerdict::accepted)
       continue;
+    if (ends.second.index >= num_theirs) return false;
     loops.push_back({ends.first.index, ends.second.index, loop.T_from_to, loop_information({})});
   }
   peers_[peer_id].test.emplace(own, num_theirs == 0 ? OdometryChain({}, {}) : chain_of(graph->second, slack),
                                loops, discernment_->chance_to_go_on(), config_.adaptive.merge_check);
+  return true;
 }
 
 bool Agent::compare_clouds_of(RobotId from, const Clouds& clouds) {

@@ -85,6 +85,7 @@ class Agent {
     std::vector<Places::Place> places;  ///< Those of them that have not been searched.
     std::map<std::uint32_t, std::vector<LoopCandidate>>
         waiting;                    ///< By the peer's keyframe whose cloud is awaited.
+    bool was_tried = false;         ///< All loops have been.
     std::optional<MergeTest> test;  ///< When all loops have been tried; it asks for clouds itself.
   };
 
@@ -108,8 +109,11 @@ class Agent {
   /// Those that stand out most from what the robot's own map has that looks like them; spread over its way.
   [[nodiscard]] std::vector<LoopCandidate> standing_out(std::vector<LoopCandidate> found);
   void register_clouds_of(RobotId from, const Clouds& clouds);
-  /// The first test of the maps, when all loops with the peer have been tried.
-  void begin_test(RobotId peer_id);
+  /// The test of the maps, when all loops with the peer have been tried; false while parts of its graph that
+  /// they need are still on their way.
+  bool begin_test(RobotId peer_id);
+  /// What the test asks for next, or its verdict.
+  Replies go_on_testing(RobotId peer_id);
   /// Whether they were what the test had asked for.
   bool compare_clouds_of(RobotId from, const Clouds& clouds);
   Replies conclude_test(RobotId peer_id);

@@ -330,6 +330,26 @@ TEST(AdaptiveAgent, RepeatedMessagesAndThreadsChangeNothing) {
   EXPECT_EQ(a.checks.begin()->second.reason, b.checks.begin()->second.reason);
 }
 
+TEST(AdaptiveAgent, ATestWaitsForAGraphThatWasLost) {
+  TwoRobots fleet(3, adaptive());
+  std::deque<Message> queue;
+  const auto meet = [&](bool lose_graphs) {
+    for (const Message& message : fleet.agents[0].meet({1})) queue.push_back(message);
+    for (int budget = 10000; !queue.empty() && budget > 0; --budget) {
+      const Message message = queue.front();
+      queue.pop_front();
+      if (lose_graphs && std::holds_alternative<GraphPart>(message.body)) continue;
+      for (const Message& reply : fleet.agents[message.to.value].on(message)) queue.push_back(reply);
+    }
+  };
+  meet(true);
+  EXPECT_GT(fleet.agents[0].known().loops.size(), 0U);
+  EXPECT_TRUE(fleet.agents[0].known().checks.empty());
+  meet(false);
+  ASSERT_EQ(fleet.agents[1].known().checks.size(), 1U);
+  EXPECT_TRUE(fleet.agents[0].known().checks.begin()->second.accepted);
+}
+
 TEST(AdaptiveAgent, DecisionsOfOthersThatMakeNoSenseAreLeftOut) {
   TwoRobots fleet(3, adaptive());
   fleet.meet();
