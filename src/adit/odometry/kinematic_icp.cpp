@@ -19,23 +19,11 @@ OdometryStep KinematicIcp::register_scan(const Scan& scan, const WheelDelta& whe
   preprocess(scan.cloud, {config_.min_range, config_.max_range}, T_base_lidar_, motion, cloud_);
   started_ = true;
 
-  OdometryStep step = at_rest(T_prediction) ? resting(T_prediction) : moving(T_prediction);
+  OdometryStep step = is_resting(last_registered_, T_prediction, config_.stationary_motion)
+                          ? resting(*last_registered_, T_prediction)
+                          : moving(T_prediction);
   step.stamp = scan.stamp;
   T_odom_base_ = step.T_odom_base;
-  return step;
-}
-
-bool KinematicIcp::at_rest(const Pose& T_prediction) const {
-  return last_registered_ &&
-         (last_registered_->T_odom_base.inverse() * T_prediction).log().norm() <= config_.stationary_motion;
-}
-
-OdometryStep KinematicIcp::resting(const Pose& T_prediction) const {
-  OdometryStep step = *last_registered_;
-  step.T_odom_base = T_prediction;
-  if (step.status == StepStatus::no_map) step.status = StepStatus::ok;
-  step.num_correspondences = 0;
-  step.iterations = 0;
   return step;
 }
 

@@ -51,8 +51,6 @@ class KinematicIcp {
   [[nodiscard]] const LocalMap& map() const { return map_; }
 
  private:
-  [[nodiscard]] bool at_rest(const Pose& T_prediction) const;
-  [[nodiscard]] OdometryStep resting(const Pose& T_prediction) const;
   [[nodiscard]] OdometryStep moving(const Pose& T_prediction);
   [[nodiscard]] OdometryStep registered(const ThinnedScan& scan, const Pose& T_prediction);
 

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
+#include "adit/odometry/observability.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <vector>
 
 #include "adit/core/parallel.hpp"
-#include "adit/odometry/scan_to_map.hpp"
 
 namespace adit {
 namespace {
@@ -22,23 +22,6 @@ constexpr double kMinPatchRatio = 0.04;
 // No sensor and no map of 0.2 m spacing is better than a centimetre.
 constexpr double kMinVariance = 1e-4;
 
-// One sampled correspondence: d(residual along the normal) / d(right perturbation), and that residual.
-struct PlaneRow {
-  Vector6 jacobian;
-  double residual = 0.0;
-};
-
-std::optional<Vector3> normal_at(const LocalMap& map, const Eigen::Vector3f& point) {
-  const auto radius = static_cast<float>(map.voxel_size());
-  const LocalMap::Moments around = map.moments_within(point, radius);
-  if (around.count < kMinPlanePoints) return {};
-  const Vector3 mean = around.sum.cast<double>() / around.count;
-  Eigen::SelfAdjointEigenSolver<Matrix3> eigen;
-  eigen.computeDirect(around.squares.cast<double>() / around.count - mean * mean.transpose());
-  if (eigen.eigenvalues()[1] < kMinPatchRatio * eigen.eigenvalues()[2]) return {};
-  return eigen.eigenvectors().col(0);
-}
-
 std::vector<PlaneRow> plane_rows(std::span<const Eigen::Vector3f> source, const LocalMap& map,
                                  const Pose& T_map_base, float max_distance) {
   const Matrix3 R = T_map_base.rotation_matrix();
@@ -51,11 +34,10 @@ std::vector<PlaneRow> plane_rows(std::span<const Eigen::Vector3f> source, const 
         const Vector3 at = R * p + T_map_base.translation();
         const auto neighbour = map.nearest(at.cast<float>(), max_distance);
         if (!neighbour) return;
-        const auto normal = normal_at(map, neighbour->point);
-        if (!normal) return;
-        const Vector3 n = R.transpose() * *normal;
-        rows[i] = {(Vector6() << n, p.cross(n)).finished(),
-                   normal->dot(at - neighbour->point.cast<double>())};
+        const auto plane = plane_at(map, neighbour->point, {});
+        if (plane)
+          rows[i] =
+              plane_row(p, {neighbour->point.cast<double>(), plane->normal}, R, T_map_base.translation());
       },
       kGrain);
   std::vector<PlaneRow> found;
@@ -75,9 +57,35 @@ Vector3 lever_arms(std::span<const Eigen::Vector3f> source) {
 
 }  // namespace
 
+std::optional<MapPlane> plane_at(const LocalMap& map, const Eigen::Vector3f& place,
+                                 const PlaneLimits& limits) {
+  const auto radius = static_cast<float>(limits.radius * map.voxel_size());
+  const LocalMap::Moments around = map.moments_within(place, radius);
+  if (around.count < kMinPlanePoints) return {};
+  const Vector3 mean = around.sum.cast<double>() / around.count;
+  Eigen::SelfAdjointEigenSolver<Matrix3> eigen;
+  eigen.computeDirect(around.squares.cast<double>() / around.count - mean * mean.transpose());
+  const Vector3& extents = eigen.eigenvalues();
+  if (extents[1] < kMinPatchRatio * extents[2] || extents[0] > limits.thickness * extents[1]) return {};
+  return MapPlane{place.cast<double>() + mean, eigen.eigenvectors().col(0)};
+}
+
+PlaneRow plane_row(const Vector3& point, const MapPlane& plane, const Matrix3& R_map_base,
+                   const Vector3& t_map_base) {
+  const Vector3 n = R_map_base.transpose() * plane.normal;
+  return {(Vector6() << n, point.cross(n)).finished(),
+          plane.normal.dot(R_map_base * point + t_map_base - plane.point)};
+}
+
 Observability observability(std::span<const Eigen::Vector3f> source, const LocalMap& map,
                             const Pose& T_map_base, double max_distance, double degeneracy_threshold) {
-  const std::vector<PlaneRow> rows = plane_rows(source, map, T_map_base, static_cast<float>(max_distance));
+  // The samples speak for as many correspondences as the stride left out.
+  return observability(plane_rows(source, map, T_map_base, static_cast<float>(max_distance)), source,
+                       static_cast<double>(source.size() / kMaxSamples + 1), degeneracy_threshold);
+}
+
+Observability observability(const std::vector<PlaneRow>& rows, std::span<const Eigen::Vector3f> source,
+                            double weight_of_row, double degeneracy_threshold) {
   Observability out;
   if (rows.size() < kMinPlanePoints) return out;
   Vector6 scale = Vector6::Ones();
@@ -96,8 +104,7 @@ Observability observability(std::span<const Eigen::Vector3f> source, const Local
   const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(mean);
   out.weakest = std::max(0.0, eigen.eigenvalues()[0]);
   out.degenerate = out.weakest < degeneracy_threshold;
-  // The samples speak for as many correspondences as the stride left out.
-  const double weight = static_cast<double>(source.size() / kMaxSamples + 1) * count / variance;
+  const double weight = weight_of_row * count / variance;
   const Vector6 kept =
       (eigen.eigenvalues().array() < degeneracy_threshold).select(0.0, weight * eigen.eigenvalues());
   const Matrix6 V = scale.asDiagonal() * eigen.eigenvectors();

@@ -7,11 +7,12 @@
 namespace adit {
 namespace {
 
-std::variant<KissIcp, KinematicIcp> method_of(OdometryConfig config, const Pose& T_base_lidar) {
+std::variant<KissIcp, KinematicIcp, PlaneIcp> method_of(OdometryConfig config, const Pose& T_base_lidar) {
   const auto valid = check_fields(fields_of(config));
   if (!valid) throw ContractViolation(valid.error().message);
   if (config.method == "kiss-icp") return KissIcp(config.kiss_icp, T_base_lidar);
-  return KinematicIcp(config.kinematic_icp, T_base_lidar);
+  if (config.method == "kinematic-icp") return KinematicIcp(config.kinematic_icp, T_base_lidar);
+  return PlaneIcp(config.plane_icp, T_base_lidar);
 }
 
 }  // namespace
@@ -23,8 +24,11 @@ OdometryStep Odometry::register_scan(const Scan& scan, const std::optional<Wheel
   const bool first = !started_;
   started_ = true;
   if (auto* kiss_icp = std::get_if<KissIcp>(&method_)) return kiss_icp->register_scan(scan);
-  ADIT_CHECK(first || wheel, "Kinematic-ICP needs the wheels' motion since the last scan");
-  return std::get<KinematicIcp>(method_).register_scan(scan, wheel.value_or(WheelDelta{}));
+  ADIT_CHECK(first || wheel, "this odometry needs the wheels' motion since the last scan");
+  const WheelDelta motion = wheel.value_or(WheelDelta{});
+  if (auto* kinematic_icp = std::get_if<KinematicIcp>(&method_))
+    return kinematic_icp->register_scan(scan, motion);
+  return std::get<PlaneIcp>(method_).register_scan(scan, motion);
 }
 
 PointCloud Odometry::cloud_of_last_scan() const {

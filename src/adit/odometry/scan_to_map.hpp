@@ -4,6 +4,7 @@
 /// the judgement on how well the scene fixes the pose.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "adit/core/records.hpp"
 #include "adit/odometry/correspondences.hpp"
 #include "adit/odometry/local_map.hpp"
+#include "adit/odometry/observability.hpp"
 
 namespace adit {
 
@@ -96,22 +98,6 @@ struct Alignment {
                                        const Pose& T_prediction, double max_distance,
                                        const ScanToMapConfig& config);
 
-/// How well the scene fixes the pose. Point-to-point residuals hide open directions (two samplings of one
-/// smooth wall always leave residuals along it), so this looks at the normals of the map around the
-/// correspondences: point-to-plane information with the variance of the residuals along the normals, and
-/// nothing along open directions.
-struct Observability {
-  Matrix6 information = Matrix6::Zero();  ///< Of T_map_base, right perturbation.
-  /// Smallest eigenvalue of the mean information a correspondence, with rotations about each body axis
-  /// measured by the displacement at the scene's root-mean-square distance from it: 0 is open, 1/3 as good as
-  /// can be.
-  double weakest = 0.0;
-  bool degenerate = true;  ///< `weakest` is below `degeneracy_threshold`.
-};
-[[nodiscard]] Observability observability(std::span<const Eigen::Vector3f> source, const LocalMap& map,
-                                          const Pose& T_map_base, double max_distance,
-                                          double degeneracy_threshold);
-
 /// A scan thinned twice (KISS-ICP, section III-B), base frame.
 struct ThinnedScan {
   std::vector<Eigen::Vector3f> map_points;  ///< One a cube of half a voxel: what the map takes.
@@ -127,6 +113,13 @@ struct ThinnedScan {
 /// The step of an aligned scan: diagnosis and information added to a registered pose.
 [[nodiscard]] OdometryStep step_of(const Alignment& alignment, std::span<const Eigen::Vector3f> source,
                                    const LocalMap& map, double max_distance, const ScanToMapConfig& config);
+
+/// Whether the robot has moved by no more than `stationary_motion` (norm [m; rad]) since the scan that was
+/// registered last: such a scan is not registered.
+[[nodiscard]] bool is_resting(const std::optional<OdometryStep>& last_registered, const Pose& T_prediction,
+                              double stationary_motion);
+/// The step of a robot at rest: the wheels' word.
+[[nodiscard]] OdometryStep resting(const OdometryStep& last_registered, const Pose& T_prediction);
 
 /// Whether the scan of such a step may enter the map: it was registered, or it starts the map.
 [[nodiscard]] inline bool enters_map(StepStatus status) {
