@@ -184,9 +184,16 @@ std::string plot_hypotheses(const MergePicture& merge, std::array<std::size_t, 2
     for (const Vector3& loop : drawn[h].loops) canvas.circle(view.at(loop), 3.5, style.color, {kWhite, 1.0});
   }
   if (!merge.path.empty()) draw_start(canvas, view.at(merge.path.front()), robot_color(robots[0]));
-  for (std::size_t h = num_drawn; h-- > 0;) {
-    const Rgba color = style_of(h, robot_color(robots[1])).color;
-    if (!drawn[h].path.empty()) draw_number(canvas, view.at(drawn[h].path.front()), h + 1, color);
+  std::vector<Point2> numbers;  // those that start at one place stand above one another
+  for (std::size_t h = 0; h < num_drawn; ++h) {
+    if (drawn[h].path.empty()) continue;
+    Point2 at = view.at(drawn[h].path.front());
+    const auto is_covered = [&] {
+      return std::ranges::any_of(numbers, [&](const Point2& other) { return (other - at).norm() < 18.0; });
+    };
+    while (is_covered()) at.y() -= 19.0;
+    numbers.push_back(at);
+    draw_number(canvas, at, h + 1, style_of(h, robot_color(robots[1])).color);
   }
   draw_scale_bar(canvas, view);
   return canvas.document();

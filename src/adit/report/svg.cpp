@@ -152,7 +152,7 @@ std::string SvgCanvas::document() const {
 
 double draw_legend(SvgCanvas& canvas, const Point2& at, double width, std::span<const LegendItem> items) {
   constexpr double kRow = 22.0;
-  constexpr double kMark = 24.0;
+  constexpr double kMark = 28.0;
   Point2 pen(at.x(), at.y() + 0.5 * kRow);
   for (const LegendItem& item : items) {
     const double needed = kMark + text_width(item.label, 14.0) + 20.0;
