@@ -6,12 +6,15 @@
 
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
+#include "adit/core/version.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/config_toml.hpp"
 #include "adit/io/session_dir.hpp"
+#include "adit/report/html_report.hpp"
 #include "inputs.hpp"
-#include "meeting.hpp"
+#include "joint_pictures.hpp"
 #include "progress.hpp"
+#include "study_run.hpp"
 
 namespace adit::app {
 namespace {
@@ -85,6 +88,25 @@ nlohmann::ordered_json summary_json(const Session& session, const std::vector<st
   return json;
 }
 
+/// A page without ground truth: what was merged, by which loops, and why or why not.
+Result<> write_report(const std::filesystem::path& dir, const Session& session) {
+  StudyResult page;
+  page.version = version();
+  page.seed = session.provenance.seed;
+  page.configuration = session.provenance.configuration;
+  page.command = session.provenance.command + format(" {}", fmt::join(session.provenance.inputs, " "));
+  for (const auto& map : session.maps) page.robots.push_back(robot_facts(*map, {}));
+  JointResult& joint = page.joint.emplace();
+  const auto name = [&](RobotId id) { return session.fleet.robots.at(id).name; };
+  for (const PairOutcome& pair : session.solution.pairs) {
+    if (!pair.merged)
+      joint.refusals.push_back(format("{} and {}: {}", name(pair.a), name(pair.b), pair.refused_reason));
+  }
+  joint.loop_map = loop_map(session.fleet, session.solution);
+  joint.merges = merge_pictures(session.fleet, session.solution);
+  return write_bytes(dir / "report.html", html_report(page, {}, study_figures(page)));
+}
+
 Result<> slam(const Options& options, const Common& common) {
   RunConfig config;
   if (const Result<> chosen = choose_lidar(options.lidar, config.simulation); !chosen)
@@ -109,6 +131,7 @@ Result<> slam(const Options& options, const Common& common) {
   session.fleet = meeting->agents.front().known();
   session.solution = meeting->agents.front().solve(config.back_end);
   if (const Result<> written = write_session(out->path(), session, MapFiles::write); !written) return written;
+  if (const Result<> written = write_report(out->path(), session); !written) return written;
   if (interrupted()) return fail("interrupted");
   if (const Result<> done = out->commit(); !done) return done;
   if (common.json) {

@@ -19,6 +19,7 @@
 #include "adit/report/png.hpp"
 #include "adit/report/text_tables.hpp"
 #include "inputs.hpp"
+#include "joint_pictures.hpp"
 #include "progress.hpp"
 #include "study_run.hpp"
 
@@ -88,6 +89,8 @@ Result<> study_joint(const std::vector<const RobotRun*>& runs, KeyframeSelection
   if (!judged) return tl::unexpected(judged.error());
   study.joint = joint_result(runs, *meeting, *judged);
   study.joint->keyframes = to_string(selection);
+  study.joint->loop_map = loop_map(meeting->agents.front().known(), judged->solution);
+  study.joint->merges = merge_pictures(meeting->agents.front().known(), judged->solution);
   for (const auto& map : meeting->maps) {
     study.joint->maps.push_back(
         merged_cloud(*map, judged->solution.T_world_keyframe.at(map->id), kFigureMapVoxel));

@@ -101,8 +101,9 @@ TEST(EndToEnd, TheProgramMapsAFolderOfScansIntoASession) {
   }
   command << " --out " << (folder / "session").string() << " > " << (folder / "log").string() << " 2>&1";
   ASSERT_EQ(std::system(command.str().c_str()), 0) << test::get_file(folder / "log");
-  for (const char* file : {"session.toml", "loops.csv", "map.ply", "graph_initial.g2o", "graph_pcm.g2o",
-                           "graph_optimized.g2o", "robot_1/trajectory.tum", "robot_3/odometry.tum"}) {
+  for (const char* file :
+       {"session.toml", "loops.csv", "report.html", "map.ply", "graph_initial.g2o", "graph_pcm.g2o",
+        "graph_optimized.g2o", "robot_1/trajectory.tum", "robot_3/odometry.tum"}) {
     EXPECT_GT(test::get_file(folder / "session" / file).size(), 20U) << file;
   }
 }

@@ -99,6 +99,9 @@ struct LoopCandidate {
   double distance = 1.0;  ///< Descriptor distance, 0 (same) to 1.
 };
 
+/// Two scans whose LoopClosure::weak_axis is below this are free to slide along one another.
+inline constexpr double kWeakAxis = 0.01;
+
 enum class LoopVerdict { accepted, rejected };
 [[nodiscard]] std::string_view to_string(LoopVerdict verdict);
 

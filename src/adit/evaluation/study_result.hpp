@@ -80,6 +80,53 @@ struct PairResult {
   [[nodiscard]] bool success() const;
 };
 
+/// What became of a loop that registration accepted.
+enum class LoopFate {
+  in_use,
+  refused,
+  weak,  ///< Refused, and free to slide along the tunnel.
+};
+
+/// The robots of a fleet as their maps have them, and the loops between them. Different maps have nothing to
+/// do with one another: they are drawn side by side.
+struct LoopMap {
+  struct Robot {
+    std::string name;
+    std::size_t map = 0;        ///< Robots with the same number share a frame.
+    std::vector<Vector3> path;  ///< Keyframe positions.
+  };
+  struct End {
+    std::size_t robot = 0;  ///< Index in `robots`,
+    std::size_t index = 0;  ///< and in its path.
+  };
+  struct Loop {
+    End from, to;
+    LoopFate fate = LoopFate::refused;
+  };
+  std::vector<Robot> robots;
+  std::vector<Loop> loops;
+  int num_weak_in_use = 0;
+  int num_unregistered = 0;  ///< Candidates that registration refused; they have no line.
+};
+
+/// How the merge of two robots was decided: everything in the odometry frame of the first.
+struct MergePicture {
+  struct Hypothesis {
+    std::string outcome;
+    double evidence = 0.0;
+    int places_compared = 0;
+    int places_differing = 0;
+    std::vector<Vector3> path;   ///< Of the second robot, if the hypothesis holds.
+    std::vector<Vector3> loops;  ///< Where its loops lie on that path.
+  };
+  std::array<std::string, 2> robots;
+  bool merged = false;
+  std::string verdict;  ///< One sentence: why, and what would resolve a refusal.
+  double evidence_needed = 0.0;
+  std::vector<Vector3> path;           ///< Of the first robot.
+  std::vector<Hypothesis> hypotheses;  ///< The best one first.
+};
+
 /// All robots at once.
 struct JointResult {
   std::string keyframes;
@@ -92,6 +139,8 @@ struct JointResult {
   std::vector<std::string> refusals;  ///< "robot_0 and robot_3 were not merged: ...".
   std::vector<PointCloud>
       maps;  ///< Each robot's map in the common frame, thinned, for the figure; may be empty.
+  LoopMap loop_map;
+  std::vector<MergePicture> merges;  ///< Of pairs whose merge was tested.
 };
 
 struct StudyResult {

@@ -63,8 +63,8 @@ void keep_consistent(Chains& chains, const BackEndConfig& config, const std::vec
   pair.clique_exact = result.optimal;
 }
 
-/// Where the odometry frame of robot b lies in that of robot a, by the average over loops: chordal mean of
-/// the rotations, mean of the positions that they give to b's keyframes.
+}  // namespace
+
 Pose mean_frame(const FleetGraph& fleet, const std::vector<const LoopClosure*>& loops) {
   Matrix3 sum = Matrix3::Zero();
   Vector3 seen_in_a = Vector3::Zero();
@@ -83,6 +83,8 @@ Pose mean_frame(const FleetGraph& fleet, const std::vector<const LoopClosure*>& 
   const Matrix3 R = svd.matrixU() * flip * svd.matrixV().transpose();
   return {R, (seen_in_a - R * seen_in_b) / static_cast<double>(loops.size())};
 }
+
+namespace {
 
 std::map<RobotPair, std::vector<const LoopClosure*>> loops_by_pair(
     const std::vector<const LoopOutcome*>& outcomes) {
@@ -191,26 +193,35 @@ std::map<RobotPair, Tried> tried_by_pair(const FleetGraph& fleet) {
   return by_pair;
 }
 
-std::string refusal(const FleetGraph& fleet, const PairOutcome& pair, const Tried& tried,
-                    std::size_t num_used) {
+std::string refusal(const FleetGraph& fleet, const BackEndConfig& config, const PairOutcome& pair,
+                    const Tried& tried, std::size_t num_used) {
   for (const RobotId robot : {pair.a, pair.b}) {
     if (fleet.robots.at(robot).nodes.empty()) {
-      return format("the keyframe policy left no keyframe of {}", fleet.robots.at(robot).name);
+      return format("the keyframe policy left no keyframe of {}; keep more of them, or drive on",
+                    fleet.robots.at(robot).name);
     }
   }
   if (tried.num == 0) {
-    return format("no keyframe of {} resembled one of {}", fleet.robots.at(pair.a).name,
-                  fleet.robots.at(pair.b).name);
+    return format("no keyframe of {} resembled one of {}; drive on until both have passed the same place",
+                  fleet.robots.at(pair.a).name, fleet.robots.at(pair.b).name);
   }
   if (pair.num_loops == 0) {
     const auto most =
         std::ranges::max_element(tried.reasons, {}, &decltype(tried.reasons)::value_type::second);
-    return format("none of {} candidates could be registered, mostly because: {}", tried.num, most->first);
+    return format(
+        "none of {} candidates could be registered (mostly: {}); drive on until both have passed the same "
+        "place, nearer to one another",
+        tried.num, most->first);
   }
-  if (const auto check = fleet.checks.find({pair.a, pair.b});
-      check != fleet.checks.end() && !check->second.accepted)
-    return check->second.reason;
-  return format("only {} of {} loops agree with the odometries of both robots", num_used, pair.num_loops);
+  const auto check = fleet.checks.find({pair.a, pair.b});
+  if (check != fleet.checks.end() && !check->second.accepted) return check->second.reason;
+  if (check == fleet.checks.end() && config.checks_needed)
+    return format("{} loops, but scans along them were never compared; the robots have to meet again",
+                  pair.num_loops);
+  return format(
+      "only {} of {} loops agree with the odometries of both robots, {} needed; drive a longer stretch that "
+      "both know",
+      num_used, pair.num_loops, config.min_loops);
 }
 
 bool knows(const FleetGraph& fleet, KeyframeId id) {
@@ -269,7 +280,7 @@ void decide_merges(const FleetGraph& fleet, const BackEndConfig& config, FleetSo
         std::ranges::count_if(of_pair, [&](std::size_t l) { return solution.loops[l].in_use(); }));
     pair.merged = num_used >= static_cast<std::size_t>(config.min_loops);
     if (pair.merged) continue;
-    pair.refused_reason = refusal(fleet, pair, tried[{pair.a, pair.b}], num_used);
+    pair.refused_reason = refusal(fleet, config, pair, tried[{pair.a, pair.b}], num_used);
     // Too few loops are no bridge: they must not join the maps through the back door either.
     for (const std::size_t l : of_pair) solution.loops[l].weight = 0.0;
   }

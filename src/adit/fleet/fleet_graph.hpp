@@ -86,6 +86,10 @@ struct FleetSolution {
 /// The fixed information of a loop, from those sigmas.
 [[nodiscard]] Matrix6 loop_information(const BackEndConfig& config);
 
+/// Where the odometry frame of robot b lies in that of robot a, by the average over loops from a to b (at
+/// least one): chordal mean of the rotations, mean of the positions that they give to b's keyframes.
+[[nodiscard]] Pose mean_frame(const FleetGraph& fleet, const std::vector<const LoopClosure*>& loops);
+
 /// PCM per pair of robots, then GNC per connected component with odometry as known inliers.
 /// A robot without loops is a component of its own, at its odometry. Loops whose keyframes are not (yet)
 /// known take no part.

@@ -61,6 +61,7 @@ TEST(FleetGraph, RobotsWithoutLoopsStayApartWithAReason) {
   ASSERT_EQ(solution.pairs.size(), 1U);
   EXPECT_FALSE(solution.pairs[0].merged);
   EXPECT_NE(solution.pairs[0].refused_reason.find("resembled"), std::string::npos);
+  EXPECT_NE(solution.pairs[0].refused_reason.find("drive on until"), std::string::npos);
   EXPECT_LT(largest_error(solution, solution.components[1]), 1e-9);
 }
 
@@ -73,7 +74,9 @@ TEST(FleetGraph, WhereChecksAreNeededOnlyTheLoopsOfAnAcceptedOneCount) {
     add_loop(fleet, {{0}, k}, {{1}, k + 1}, true_pose({1}, k + 1).inverse() * off * true_pose({1}, k + 1));
   BackEndConfig config;
   config.checks_needed = true;
-  EXPECT_FALSE(solve(fleet, config).pairs[0].merged) << "never tested";
+  const PairOutcome untested = solve(fleet, config).pairs[0];
+  EXPECT_FALSE(untested.merged);
+  EXPECT_NE(untested.refused_reason.find("have to meet again"), std::string::npos) << untested.refused_reason;
 
   MergeCheck check{{0}, {1}, -3.0, 9.0, 8, 4, false, {}, "scans differ at 4 of 8 places"};
   fleet.checks[{{0}, {1}}] = check;
@@ -132,6 +135,8 @@ TEST(FleetGraph, LoopsThatAreTooFewDoNotJoinMaps) {
   config.min_loops = 2;
   const FleetSolution solution = solve(fleet, config);
   EXPECT_FALSE(solution.pairs[0].merged);
+  EXPECT_NE(solution.pairs[0].refused_reason.find("only 1 of 1 loops"), std::string::npos);
+  EXPECT_NE(solution.pairs[0].refused_reason.find("2 needed; drive"), std::string::npos);
   EXPECT_EQ(solution.components.size(), 2U);
   EXPECT_LT(largest_error(solution, solution.components[1]), 1e-6);
 }

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <span>
 
 #include "adit/core/format.hpp"
 
@@ -144,12 +144,10 @@ MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, cons
       hypothesis.loops.push_back(rest[l]);
     std::erase_if(rest, [&](std::size_t l) { return std::ranges::binary_search(hypothesis.loops, l); });
     const std::vector<PcmLoop> agreeing = picked(loops, hypothesis.loops);
-    const bool is_new = std::ranges::all_of(hypotheses_, [&](const Hypothesis& other) {
-      return apart(picked(loops, other.loops), agreeing, own, theirs) > kSameAlignment;
-    });
-    if (!is_new) continue;
-    if (!hypotheses_.empty())
-      hypothesis.offset_m = apart(picked(loops, hypotheses_.front().loops), agreeing, own, theirs);
+    for (const Hypothesis& other : hypotheses_)
+      hypothesis.apart_m.push_back(apart(picked(loops, other.loops), agreeing, own, theirs));
+    if (std::ranges::any_of(hypothesis.apart_m, [](double metres) { return metres <= kSameAlignment; }))
+      continue;
     hypothesis.plan = plan_checks(own, theirs, agreeing, config);
     hypotheses_.push_back(std::move(hypothesis));
   }
@@ -179,15 +177,6 @@ bool MergeTest::is_refuted(const Hypothesis& h) const {
 }
 
 bool MergeTest::is_finished(const Hypothesis& h) const { return h.checked.size() == h.plan.size(); }
-
-std::optional<std::size_t> MergeTest::best(std::optional<std::size_t> but) const {
-  std::optional<std::size_t> found;
-  for (std::size_t h = 0; h < hypotheses_.size(); ++h) {
-    if (h == but || is_refuted(hypotheses_[h])) continue;
-    if (!found || evidence(hypotheses_[h]) > evidence(hypotheses_[*found])) found = h;
-  }
-  return found;
-}
 
 std::optional<std::size_t> MergeTest::to_go_on_with() const {
   double best_finished = -std::numeric_limits<double>::infinity();
@@ -223,35 +212,76 @@ void MergeTest::add(const std::vector<CheckedPlace>& places) {
   std::ranges::copy(places, std::back_inserter(hypotheses_[*which].checked));
 }
 
-std::string MergeTest::reason(const Hypothesis& h, const Hypothesis* rival) const {
+double MergeTest::apart_m(std::size_t one, std::size_t other) const {
+  return one == other ? 0.0 : hypotheses_[std::max(one, other)].apart_m[std::min(one, other)];
+}
+
+std::vector<std::size_t> MergeTest::best_first() const {
+  std::vector<std::size_t> order(hypotheses_.size());
+  for (std::size_t h = 0; h < order.size(); ++h) order[h] = h;
+  std::ranges::stable_sort(order, [&](std::size_t one, std::size_t other) {
+    const Hypothesis& a = hypotheses_[one];
+    const Hypothesis& b = hypotheses_[other];
+    return is_refuted(a) != is_refuted(b) ? is_refuted(b) : evidence(a) > evidence(b);
+  });
+  return order;
+}
+
+std::string MergeTest::what_is_missing(const Hypothesis& h, std::size_t num_distinctive) const {
+  constexpr double kFarthest = 1000.0;  // metres that it makes sense to ask for
+  const double num_places = std::ceil((needed() - evidence(h)) / evidence_of_agreement());
+  const double share = static_cast<double>(num_distinctive) / static_cast<double>(h.checked.size());
+  const double metres = 10.0 * std::ceil(num_places * config_.spacing_m / share / 10.0);
+  if (!(metres <= kFarthest))
+    return "tunnels here look alike for too long; drive the same stretch past a junction or a niche";
+  return format("drive the same stretch for about another {:.0f} m", metres);
+}
+
+std::string MergeTest::reason(std::size_t which, std::optional<std::size_t> rival) const {
+  const Hypothesis& h = hypotheses_[which];
   const std::size_t differing = num_differing(h.checked);
-  const auto distinctive = std::ranges::count_if(
-      h.checked, [](const CheckedPlace& place) { return place.is_distinctive && !place.differs(); });
+  const auto distinctive = static_cast<std::size_t>(std::ranges::count_if(
+      h.checked, [](const CheckedPlace& place) { return place.is_distinctive && !place.differs(); }));
   if (is_refuted(h))
     return format(
         "scans differ at {} of {} places along the stretch that {} loops lay over one another: "
-        "tunnels that only look alike",
+        "tunnels that only look alike; drive on until one passes where the other has truly been",
         differing, h.checked.size(), h.loops.size());
   if (evidence(h) < needed() && distinctive == 0)
     return format(
         "shared stretch has no along-axis constraint: {} places agree, none of which would show a "
-        "displacement; a junction or a niche that both robots see would decide",
+        "displacement; drive on until both pass a junction or a niche",
         h.checked.size() - differing);
   if (evidence(h) < needed())
-    return format(
-        "evidence {:.1f} of {:.1f}: {} of {} places agree, {} of them distinctive, and where "
-        "tunnels only look alike here each further one would with chance {:.2f}; a longer shared "
-        "stretch would decide",
-        evidence(h), needed(), h.checked.size() - differing, h.checked.size(), distinctive, chance_to_go_on_);
-  if (rival != nullptr)
+    return format("evidence {:.1f} of {:.1f}: {} of {} places agree, {} of them distinctive; {}", evidence(h),
+                  needed(), h.checked.size() - differing, h.checked.size(), distinctive,
+                  what_is_missing(h, distinctive));
+  if (rival)
     return format(
         "two hypotheses {:.0f} m apart along the tunnel have similar support, evidence {:.1f} and "
-        "{:.1f}; a stretch that only one of them explains would decide",
-        std::abs(h.offset_m - rival->offset_m), evidence(h), evidence(*rival));
+        "{:.1f}; drive on until both pass something that only one of them explains",
+        apart_m(which, *rival), evidence(h), evidence(hypotheses_[*rival]));
   return format(
       "{} of {} places along the shared stretch agree, {} of them distinctive: evidence {:.1f}, "
       "needed {:.1f}",
       h.checked.size() - differing, h.checked.size(), distinctive, evidence(h), needed());
+}
+
+MergeHypothesis MergeTest::described(std::size_t which, std::size_t best) const {
+  const Hypothesis& h = hypotheses_[which];
+  MergeHypothesis out;
+  out.evidence = evidence(h);
+  out.num_checked = static_cast<std::uint32_t>(h.checked.size());
+  out.num_passed = static_cast<std::uint32_t>(h.checked.size() - num_differing(h.checked));
+  out.from_best_m = apart_m(which, best);
+  for (const std::size_t l : h.loops)
+    out.loops.emplace_back(static_cast<std::uint32_t>(loops_[l].a), static_cast<std::uint32_t>(loops_[l].b));
+  const bool is_near = evidence(hypotheses_[best]) - evidence(h) < needed();
+  out.outcome = is_refuted(h)   ? HypothesisOutcome::refuted
+                : which == best ? HypothesisOutcome::unsure
+                : is_near       ? HypothesisOutcome::rival
+                                : HypothesisOutcome::behind;
+  return out;
 }
 
 MergeCheck MergeTest::verdict(RobotId a, RobotId b) const {
@@ -259,24 +289,24 @@ MergeCheck MergeTest::verdict(RobotId a, RobotId b) const {
   out.a = a;
   out.b = b;
   out.needed = needed();
-  std::optional<std::size_t> which = best();
-  const bool all_refuted = !which;
-  if (all_refuted && !hypotheses_.empty()) which = 0;
-  if (!which) {
-    out.reason = "no loop was accepted";
+  const std::vector<std::size_t> order = best_first();
+  if (order.empty()) {
+    out.reason = "no loop was accepted; drive on until both robots have passed the same place";
     return out;
   }
-  const Hypothesis& h = hypotheses_[*which];
-  const auto second = best(which);
-  const Hypothesis* rival =
-      second && evidence(h) - evidence(hypotheses_[*second]) < needed() ? &hypotheses_[*second] : nullptr;
-  out.evidence = evidence(h);
-  out.num_checked = static_cast<std::uint32_t>(h.checked.size());
-  out.num_passed = static_cast<std::uint32_t>(h.checked.size() - num_differing(h.checked));
-  out.accepted = !all_refuted && rival == nullptr && is_finished(h) && out.evidence >= out.needed;
-  for (const std::size_t l : h.loops)
-    out.loops.emplace_back(static_cast<std::uint32_t>(loops_[l].a), static_cast<std::uint32_t>(loops_[l].b));
-  out.reason = reason(h, rival);
+  for (const std::size_t h : std::span(order).first(std::min(order.size(), kHypothesesPerCheck)))
+    out.hypotheses.push_back(described(h, order.front()));
+  MergeHypothesis& best = out.hypotheses.front();
+  const bool has_rival = out.hypotheses.size() > 1 && out.hypotheses[1].outcome == HypothesisOutcome::rival;
+  out.accepted = best.outcome != HypothesisOutcome::refuted && !has_rival &&
+                 is_finished(hypotheses_[order.front()]) && best.evidence >= out.needed;
+  if (out.accepted) best.outcome = HypothesisOutcome::accepted;
+  if (has_rival && best.evidence >= out.needed) best.outcome = HypothesisOutcome::rival;
+  out.evidence = best.evidence;
+  out.num_checked = best.num_checked;
+  out.num_passed = best.num_passed;
+  out.loops = best.loops;
+  out.reason = reason(order.front(), has_rival ? std::optional(order[1]) : std::nullopt);
   return out;
 }
 

@@ -77,14 +77,17 @@ class MergeTest {
     std::vector<std::size_t> loops;
     std::vector<PlannedCheck> plan;
     std::vector<CheckedPlace> checked;
-    double offset_m = 0.0;  ///< From the first hypothesis, where theirs would stand.
+    std::vector<double> apart_m;  ///< From each hypothesis before this one: where theirs would stand.
   };
   [[nodiscard]] double evidence(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool is_refuted(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool is_finished(const Hypothesis& hypothesis) const;
   [[nodiscard]] std::optional<std::size_t> to_go_on_with() const;
-  [[nodiscard]] std::optional<std::size_t> best(std::optional<std::size_t> but = {}) const;
-  [[nodiscard]] std::string reason(const Hypothesis& hypothesis, const Hypothesis* rival) const;
+  [[nodiscard]] std::vector<std::size_t> best_first() const;
+  [[nodiscard]] double apart_m(std::size_t one, std::size_t other) const;
+  [[nodiscard]] std::string reason(std::size_t hypothesis, std::optional<std::size_t> rival) const;
+  [[nodiscard]] std::string what_is_missing(const Hypothesis& hypothesis, std::size_t num_distinctive) const;
+  [[nodiscard]] MergeHypothesis described(std::size_t hypothesis, std::size_t best) const;
   [[nodiscard]] double needed() const;
   [[nodiscard]] double evidence_of_agreement() const;
 

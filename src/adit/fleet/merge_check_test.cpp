@@ -34,7 +34,7 @@ Pose T_a_b_true(std::size_t a, std::size_t b, double off_m = 0.0) {
 }
 // Keyframes that stand side by side, if b is `off_m` farther on than it truly is.
 PcmLoop loop_at(std::size_t a, double off_m = 0.0) {
-  const std::size_t b = kNum - 1 - a + static_cast<std::size_t>(2.0 * off_m);
+  const auto b = static_cast<std::size_t>(static_cast<double>(kNum - 1 - a) + 2.0 * off_m);
   return {a, b, T_a_b_true(a, b, off_m), loop_information({})};
 }
 
@@ -96,6 +96,10 @@ TEST(MergeTest, PlacesThatAgreeJoinTheMaps) {
   EXPECT_NEAR(check.needed, std::log(1e4), 1e-9);
   const std::vector<std::pair<std::uint32_t, std::uint32_t>> loops = {{80, 119}, {90, 109}, {100, 99}};
   EXPECT_EQ(check.loops, loops);
+  ASSERT_EQ(check.hypotheses.size(), 1U);
+  EXPECT_EQ(check.hypotheses[0].outcome, HypothesisOutcome::accepted);
+  EXPECT_EQ(check.hypotheses[0].loops, loops);
+  EXPECT_EQ(check.hypotheses[0].evidence, check.evidence);
 }
 
 TEST(MergeTest, AStretchThatDiffersHereAndThereIsACopy) {
@@ -104,6 +108,9 @@ TEST(MergeTest, AStretchThatDiffersHereAndThereIsACopy) {
   const MergeCheck check = run(test, [&](const PlannedCheck&) { return ++n % 4 == 0 ? kDiffers : kAgrees; });
   EXPECT_FALSE(check.accepted);
   EXPECT_NE(check.reason.find("scans differ at"), std::string::npos) << check.reason;
+  EXPECT_NE(check.reason.find("drive on until"), std::string::npos) << check.reason;
+  EXPECT_EQ(check.hypotheses.at(0).outcome, HypothesisOutcome::refuted);
+  EXPECT_EQ(check.hypotheses.at(0).num_differing(), check.num_checked - check.num_passed);
 }
 
 TEST(MergeTest, ANicheThatOnlyOneOfThemHasIsACopy) {
@@ -129,6 +136,7 @@ TEST(MergeTest, PlacesWithoutAnAlongAxisConstraintSayNothing) {
   const MergeCheck check = run(test, [](const PlannedCheck&) { return kSilent; });
   EXPECT_FALSE(check.accepted);
   EXPECT_NE(check.reason.find("no along-axis constraint"), std::string::npos) << check.reason;
+  EXPECT_NE(check.reason.find("drive on until both pass a junction"), std::string::npos) << check.reason;
   MergeCheckConfig all_count;
   all_count.distinctive_only = false;
   MergeTest other = a_test(kTrueLoops, 0.5, all_count);
@@ -139,7 +147,18 @@ TEST(MergeTest, WhereLookAlikesGoOnForLongALongerStretchIsNeeded) {
   MergeTest test = a_test(kTrueLoops, 0.9);
   const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
   EXPECT_FALSE(check.accepted);
-  EXPECT_NE(check.reason.find("a longer shared stretch would decide"), std::string::npos) << check.reason;
+  EXPECT_EQ(check.hypotheses.at(0).outcome, HypothesisOutcome::unsure);
+  // Every further 3 m bring log(0.97 / 0.9); what is missing, rounded up to 10 m.
+  const double metres = 3.0 * std::ceil((check.needed - check.evidence) / std::log(0.97 / 0.9));
+  const std::string asked =
+      "drive the same stretch for about another " + std::to_string(10 * std::lround(std::ceil(metres / 10)));
+  EXPECT_NE(check.reason.find(asked + " m"), std::string::npos) << check.reason;
+}
+
+TEST(MergeTest, WhereTunnelsLookAlikeForeverNoDriveAlongThemIsAskedFor) {
+  MergeTest test = a_test(kTrueLoops, 0.9699);
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+  EXPECT_NE(check.reason.find("past a junction or a niche"), std::string::npos) << check.reason;
 }
 
 TEST(MergeTest, ASmallerSetOfLoopsWinsWhereTheLargestIsRefuted) {
@@ -154,6 +173,11 @@ TEST(MergeTest, ASmallerSetOfLoopsWinsWhereTheLargestIsRefuted) {
   EXPECT_TRUE(check.accepted) << check.reason;
   EXPECT_EQ(check.loops.size(), 3U);
   EXPECT_EQ(check.loops.front().first, 80U);
+  ASSERT_EQ(check.hypotheses.size(), 2U);
+  EXPECT_EQ(check.hypotheses[0].outcome, HypothesisOutcome::accepted);
+  EXPECT_EQ(check.hypotheses[1].outcome, HypothesisOutcome::refuted);
+  EXPECT_EQ(check.hypotheses[1].loops.size(), 4U);
+  EXPECT_NEAR(check.hypotheses[1].from_best_m, 30.0, 0.5);
 }
 
 TEST(MergeTest, TwoHypothesesWithTheSameSupportDecideNothing) {
@@ -165,6 +189,47 @@ TEST(MergeTest, TwoHypothesesWithTheSameSupportDecideNothing) {
   EXPECT_NE(check.reason.find("two hypotheses 20 m apart along the tunnel have similar support"),
             std::string::npos)
       << check.reason;
+  EXPECT_NE(check.reason.find("drive on until"), std::string::npos) << check.reason;
+  ASSERT_EQ(check.hypotheses.size(), 2U);
+  EXPECT_EQ(check.hypotheses[0].outcome, HypothesisOutcome::rival);
+  EXPECT_EQ(check.hypotheses[1].outcome, HypothesisOutcome::rival);
+}
+
+TEST(MergeTest, RivalsToEitherSideOfTheFirstAreAsFarApartAsTheyAre) {
+  std::vector<PcmLoop> loops = kTrueLoops;  // refuted; 20 m to each side of it two others agree everywhere
+  loops.push_back(loop_at(95));
+  for (const std::size_t a : {70U, 120U, 130U}) loops.push_back(loop_at(a, 20.0));
+  for (const std::size_t a : {60U, 65U, 75U}) loops.push_back(loop_at(a, -20.0));
+  MergeTest test = a_test(loops);
+  const MergeCheck check = run(test, [](const PlannedCheck& asked) {
+    const double off =
+        (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
+    return off < 5.0 ? kDiffers : kAgrees;
+  });
+  EXPECT_NE(check.reason.find("two hypotheses 40 m apart"), std::string::npos) << check.reason;
+}
+
+TEST(MergeTest, AHypothesisFarBehindTheBestIsNoRival) {
+  std::vector<PcmLoop> loops = kTrueLoops;
+  loops.push_back(loop_at(120, 20.0));
+  MergeTest test = a_test(loops);
+  const MergeCheck check = run(test, [](const PlannedCheck& asked) {
+    const double off =
+        (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
+    return off > 5.0 ? kSilent : kAgrees;
+  });
+  EXPECT_TRUE(check.accepted) << check.reason;
+  ASSERT_EQ(check.hypotheses.size(), 2U);
+  EXPECT_EQ(check.hypotheses[1].outcome, HypothesisOutcome::behind);
+}
+
+TEST(MergeTest, TellsOfABoundedNumberOfHypotheses) {
+  std::vector<PcmLoop> loops;
+  for (std::size_t h = 0; h < 20; ++h) loops.push_back(loop_at(190, 4.0 * static_cast<double>(h)));
+  MergeCheckConfig config;
+  config.max_hypotheses = 1000;
+  MergeTest test = a_test(loops, 0.5, config);
+  EXPECT_EQ(run(test, [](const PlannedCheck&) { return kDiffers; }).hypotheses.size(), kHypothesesPerCheck);
 }
 
 TEST(MergeTest, WithoutLoopsItIsOverAtOnce) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -14,11 +15,12 @@
 
 namespace adit {
 
-inline constexpr std::uint8_t kProtocolVersion = 3;
+inline constexpr std::uint8_t kProtocolVersion = 4;
 inline constexpr std::size_t kPlacesPerMessage = 64;
 inline constexpr std::size_t kCloudsPerMessage = 16;
 inline constexpr std::size_t kNodesPerMessage = 512;
 inline constexpr std::size_t kLoopsPerMessage = 256;
+inline constexpr std::size_t kHypothesesPerCheck = 16;
 
 /// A keyframe as the graph needs it. `step_covariance` is of the relative pose from the keyframe before (zero
 /// for the first).
@@ -83,8 +85,29 @@ struct Loops {
   std::vector<LoopClosure> loops;
 };
 
+enum class HypothesisOutcome : std::uint8_t {
+  accepted,
+  refuted,  ///< Scans differ at more places than a true one would leave.
+  unsure,   ///< The best one, with less evidence than needed.
+  rival,    ///< So near to another one, or another one to it, that neither can be believed.
+  behind,   ///< Left so far behind by the best one that it is out of the question.
+};
+[[nodiscard]] std::string_view to_string(HypothesisOutcome outcome);
+
+/// Loops that agree with one another lay one map over the other; this is one way to do so, as it was tested.
+struct MergeHypothesis {
+  HypothesisOutcome outcome = HypothesisOutcome::refuted;
+  double evidence = 0.0;  ///< As in MergeCheck.
+  std::uint32_t num_checked = 0;
+  std::uint32_t num_passed = 0;
+  double from_best_m = 0.0;  ///< How far from the best one it puts the other robot.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> loops;  ///< Keyframes of a and b.
+
+  [[nodiscard]] std::uint32_t num_differing() const { return num_checked - num_passed; }
+};
+
 /// Whether the loops of two robots may join their maps, decided by the one that searched, `a`. A later one
-/// replaces those before it.
+/// replaces those before it. Evidence, numbers and loops are those of the best hypothesis.
 struct MergeCheck {
   RobotId a, b;
   double evidence = 0.0;  ///< Logarithm of the likelihood ratio of "same stretch" to "looks alike",
@@ -93,7 +116,8 @@ struct MergeCheck {
   std::uint32_t num_passed = 0;
   bool accepted = false;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> loops;  ///< Keyframes of a and b: those it speaks of.
-  std::string reason;                                          ///< One sentence.
+  std::string reason;                         ///< One sentence: why, and what would resolve a refusal.
+  std::vector<MergeHypothesis> hypotheses{};  ///< At most kHypothesesPerCheck, the best one first.
 };
 
 /// Number first, first + 1, ... of those that `author`, who need not be the sender, decided.

@@ -5,11 +5,13 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <sstream>
 
 #include "adit/core/format.hpp"
 #include "adit/core/version.hpp"
+#include "adit/fleet/loop_account.hpp"
 #include "adit/geometry/voxel_grid.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/cloud_files.hpp"
@@ -20,13 +22,37 @@ namespace adit {
 namespace {
 
 constexpr double kMapVoxel = 0.2;
+/// All files begin with these columns; how many later ones follow, each file says itself.
 constexpr std::string_view kLoopHeader =
     "from_robot,from_keyframe,from_stamp,to_robot,to_keyframe,to_stamp,place_distance,inliers,overlap,weak_"
     "axis,"
     "verdict,pcm,gnc_weight,class,x,y,z,qx,qy,qz,qw,reason";
-constexpr std::size_t kLoopColumns = 22;
+constexpr std::string_view kLaterLoopColumns = ",hypothesis,merge_check,registration";
 
 std::string name_of(const FleetGraph& fleet, RobotId id) { return fleet.robots.at(id).name; }
+
+double rounded(double value) { return std::round(100.0 * value) / 100.0; }
+
+/// A merge that was tested, joined or not, with the hypotheses about it, the best one first.
+toml::table merge_table(const FleetGraph& fleet, const MergeCheck& check) {
+  toml::array hypotheses;
+  for (const MergeHypothesis& h : check.hypotheses) {
+    toml::array loops;
+    for (const auto& [a, b] : h.loops)
+      loops.push_back(toml::array{static_cast<std::int64_t>(a), static_cast<std::int64_t>(b)});
+    hypotheses.push_back(toml::table{{"outcome", std::string(to_string(h.outcome))},
+                                     {"evidence", rounded(h.evidence)},
+                                     {"places_compared", static_cast<std::int64_t>(h.num_checked)},
+                                     {"places_differing", static_cast<std::int64_t>(h.num_differing())},
+                                     {"from_best_m", rounded(h.from_best_m)},
+                                     {"loops", loops}});
+  }
+  return toml::table{{"robots", toml::array{name_of(fleet, check.a), name_of(fleet, check.b)}},
+                     {"accepted", check.accepted},
+                     {"evidence_needed", rounded(check.needed)},
+                     {"reason", check.reason},
+                     {"hypotheses", hypotheses}};
+}
 
 std::string session_toml(const Session& session) {
   toml::table table;
@@ -54,11 +80,7 @@ std::string session_toml(const Session& session) {
   }
   table.insert("refusals", refusals);
   toml::array merges;
-  for (const auto& [pair, check] : session.fleet.checks) {
-    if (!check.accepted) continue;
-    merges.push_back(format("{} and {}: {}", name_of(session.fleet, pair.first),
-                            name_of(session.fleet, pair.second), check.reason));
-  }
+  for (const auto& [pair, check] : session.fleet.checks) merges.push_back(merge_table(session.fleet, check));
   table.insert("merges", merges);
   std::ostringstream text;
   text << table << "\n";
@@ -84,13 +106,16 @@ std::string loop_line(const Session& session, const LoopOutcome& outcome, std::s
   };
   const Vector3& t = loop.T_from_to.translation();
   const Eigen::Quaterniond& q = loop.T_from_to.rotation();
-  return format("{},{},{},{},{},{},{:.4f},{},{:.4f},{:.5f},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+  const LoopAccount account = account_of(outcome, session.fleet, session.solution);
+  return format("{},{},{},{},{},{},{:.4f},{},{:.4f},{:.5f},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                 name_of(session.fleet, loop.from.robot), loop.from.index, stamp(loop.from),
                 name_of(session.fleet, loop.to.robot), loop.to.index, stamp(loop.to), loop.place_distance,
                 loop.num_inliers, loop.overlap, loop.weak_axis, to_string(loop.verdict),
                 accepted ? (outcome.in_clique ? "kept" : "dropped") : "",
                 accepted ? format("{:.4f}", outcome.weight) : "", loop_class, t.x(), t.y(), t.z(), q.x(),
-                q.y(), q.z(), q.w(), cell(loop.reason));
+                q.y(), q.z(), q.w(), cell(account.reason),
+                account.hypothesis ? format("{}", *account.hypothesis + 1) : "", account.merge_check,
+                cell(loop.reason));
 }
 
 std::string loops_csv(const Session& session) {
@@ -99,7 +124,7 @@ std::string loops_csv(const Session& session) {
     const LoopClosure& loop = session.solution.loops[l].loop;
     accepted[{loop.from, loop.to}] = l;
   }
-  std::string text = std::string(kLoopHeader) + "\n";
+  std::string text = std::string(kLoopHeader) + std::string(kLaterLoopColumns) + "\n";
   for (const auto& [ends, loop] : session.fleet.loops) {
     const auto found = accepted.find(ends);
     if (found == accepted.end()) {
@@ -181,9 +206,9 @@ T number(std::string_view text, T otherwise = {}) {
   return value;
 }
 
-Result<SavedLoop> parse_loop(std::string_view line) {
+Result<SavedLoop> parse_loop(std::string_view line, std::size_t num_columns) {
   const std::vector<std::string_view> cells = split(line, ',');
-  if (cells.size() != kLoopColumns) return fail(format("{} cells instead of {}", cells.size(), kLoopColumns));
+  if (cells.size() != num_columns) return fail(format("{} cells instead of {}", cells.size(), num_columns));
   SavedLoop saved;
   const std::optional<Stamp> from = parse_stamp(cells[2]);
   const std::optional<Stamp> to = parse_stamp(cells[5]);
@@ -216,14 +241,16 @@ Result<std::vector<SavedLoop>> read_loops(const std::filesystem::path& path) {
   if (!text) return tl::unexpected(text.error());
   std::vector<SavedLoop> loops;
   std::size_t line_number = 0;
+  std::size_t num_columns = 0;
   for (const std::string_view line : split(*text, '\n')) {
     if (++line_number == 1) {
-      if (line != kLoopHeader)
-        return fail(path.string() + ": line 1: not the header of a loops.csv of this version");
+      num_columns = split(line, ',').size();
+      if (!line.starts_with(kLoopHeader) || !split(line.substr(kLoopHeader.size()), ',').front().empty())
+        return fail(path.string() + ": line 1: not the header of a loops.csv");
       continue;
     }
     if (line.empty()) continue;
-    Result<SavedLoop> loop = parse_loop(line);
+    Result<SavedLoop> loop = parse_loop(line, num_columns);
     if (!loop) return fail(format("{}: line {}", path.string(), line_number), loop.error());
     loops.push_back(std::move(*loop));
   }

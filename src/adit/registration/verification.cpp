@@ -58,8 +58,7 @@ double share(std::size_t part, std::size_t whole) {
 }
 
 std::string holding(const Registration& r) {
-  constexpr double kWeak = 0.01;
-  if (r.weak_axis >= kWeak) return {};
+  if (r.weak_axis >= kWeakAxis) return {};
   const Vector3& d = r.weak_direction;
   return format("; free to slide along ({:.2f}, {:.2f}, {:.2f})", d.x(), d.y(), d.z());
 }

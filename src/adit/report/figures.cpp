@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "adit/core/format.hpp"
+#include "adit/report/loop_plots.hpp"
 #include "adit/report/plots.hpp"
 
 namespace adit {
@@ -132,6 +133,45 @@ void add_pair_errors(std::vector<Figure>& figures, const StudyResult& study, con
   figures.push_back(std::move(figure));
 }
 
+Figure loops_figure(const LoopMap& map) {
+  std::string caption = format(
+      "Loops that registration accepted. Weak: the scans are free to slide along the tunnel; so are {} of "
+      "the loops in use. {} further candidates could not be registered.",
+      map.num_weak_in_use, map.num_unregistered);
+  if (std::ranges::any_of(map.robots, [](const LoopMap::Robot& robot) { return robot.map > 0; }))
+    caption += " Each frame holds a map; how they lie to one another is not known.";
+  return {"loops", "", "Loops in use and refused", caption, plot_loop_map(map)};
+}
+
+bool is_worth_a_picture(const MergePicture& merge) {
+  return !merge.hypotheses.empty() && (!merge.merged || merge.hypotheses.size() > 1);
+}
+
+Figure hypotheses_figure(const StudyResult& study, const MergePicture& merge) {
+  const auto& [first, second] = merge.robots;
+  std::string caption = merge.verdict + ".";
+  caption[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(caption[0])));
+  if (merge.hypotheses.size() > kHypothesesDrawn)
+    caption += format(" {} more hypotheses are not drawn.", merge.hypotheses.size() - kHypothesesDrawn);
+  return {file_safe(format("hypotheses_{}_{}", first, second)), kMergeSection,
+          format("{}: {}", pair_section(first, second), merge.merged ? "merged" : "not merged"), caption,
+          plot_hypotheses(merge, {index_of(study, first), index_of(study, second)})};
+}
+
+/// Refused pairs before merged ones; not more than a page can hold.
+void add_merge_figures(std::vector<Figure>& figures, const StudyResult& study, const JointResult& joint) {
+  constexpr std::size_t kMost = 12;
+  std::vector<const MergePicture*> worth;
+  for (const MergePicture& merge : joint.merges)
+    if (is_worth_a_picture(merge)) worth.push_back(&merge);
+  std::ranges::stable_sort(worth, {}, &MergePicture::merged);
+  const std::size_t num_left_out = worth.size() - std::min(worth.size(), kMost);
+  worth.resize(worth.size() - num_left_out);
+  for (const MergePicture* merge : worth) figures.push_back(hypotheses_figure(study, *merge));
+  if (num_left_out > 0)
+    figures.back().caption += format(" {} more pairs are not drawn; session.toml lists them.", num_left_out);
+}
+
 void add_joint_figures(std::vector<Figure>& figures, const StudyResult& study, const JointResult& joint) {
   std::vector<RobotCloud> clouds;
   for (std::size_t i = 0; i < joint.maps.size() && i < joint.robots.size(); ++i) {
@@ -149,6 +189,8 @@ void add_joint_figures(std::vector<Figure>& figures, const StudyResult& study, c
     figures.push_back(
         errors_figure(study, "ate_joint", "Error along the paths of the joint run", joint.robots));
   }
+  if (!joint.loop_map.robots.empty()) figures.push_back(loops_figure(joint.loop_map));
+  add_merge_figures(figures, study, joint);
 }
 
 }  // namespace
@@ -159,7 +201,9 @@ std::string pair_section(const std::string& first, const std::string& second) {
 
 std::vector<Figure> study_figures(const StudyResult& study) {
   std::vector<Figure> figures;
-  if (!study.robots.empty()) figures.push_back(routes_figure(study));
+  const bool has_routes =
+      std::ranges::any_of(study.robots, [](const RobotResult& robot) { return !robot.route.empty(); });
+  if (has_routes) figures.push_back(routes_figure(study));
   const bool has_odometry = std::any_of(study.robots.begin(), study.robots.end(),
                                         [](const RobotResult& robot) { return !robot.odometry.empty(); });
   if (has_odometry) figures.push_back(odometry_figure(study));

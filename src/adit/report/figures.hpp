@@ -19,9 +19,12 @@ struct Figure {
 };
 
 /// Every figure that the study has data for, in the order of the paper: routes, odometry boxes, the pose
-/// graphs of each pair, error-coloured trajectories of each pair, the merged map and the joint run's
-/// trajectories.
+/// graphs of each pair, error-coloured trajectories of each pair, the merged map, the joint run's
+/// trajectories, its loops, and the hypotheses about pairs of robots that were refused or had several.
 [[nodiscard]] std::vector<Figure> study_figures(const StudyResult& study);
+
+/// The section of figures that show how merges were decided.
+inline constexpr const char* kMergeSection = "merges";
 
 /// The section that figures of two robots belong to.
 [[nodiscard]] std::string pair_section(const std::string& first, const std::string& second);

@@ -4,11 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <set>
 
 #include "adit/core/check.hpp"
+#include "adit/report/loop_plots.hpp"
 #include "adit/report/made_up_study.hpp"
+#include "adit/report/palette.hpp"
 #include "adit/report/plots.hpp"
 #include "adit/report/png.hpp"
 
@@ -30,11 +33,64 @@ TEST(Figures, AWholeStudyHasThePapersFigures) {
   }
   EXPECT_EQ(names.size(), figures.size());
   for (const char* name :
-       {"routes", "odometry_ate", "merged_map", "ate_joint", "graph_robot_0_robot_1_all_initial",
-        "graph_robot_0_robot_1_tunnel_filter_optimized", "ate_robot_0_robot_1_tunnel_filter"}) {
+       {"routes", "odometry_ate", "merged_map", "ate_joint", "loops", "hypotheses_robot_0_robot_1",
+        "graph_robot_0_robot_1_all_initial", "graph_robot_0_robot_1_tunnel_filter_optimized",
+        "ate_robot_0_robot_1_tunnel_filter"}) {
     EXPECT_TRUE(names.count(name)) << name;
   }
-  EXPECT_EQ(figures.size(), 12U);  // 4 of the study, 6 graphs, 2 errors
+  EXPECT_EQ(figures.size(), 14U);  // 4 of the study, 2 of merges, 6 graphs, 2 errors
+}
+
+TEST(Figures, OnlyContestedOrRefusedMergesAreDrawnAndNotTooManyOfThem) {
+  StudyResult study = made_up::study();
+  std::vector<MergePicture>& merges = study.joint->merges;
+  const auto num_drawn = [&] {
+    return std::ranges::count(study_figures(study), kMergeSection, &Figure::section);
+  };
+  EXPECT_EQ(num_drawn(), 1);
+  merges[0].merged = true;
+  EXPECT_EQ(num_drawn(), 1) << "it had rivals";
+  merges[0].hypotheses.resize(1);
+  EXPECT_EQ(num_drawn(), 0);
+  merges[0].merged = false;
+  EXPECT_EQ(num_drawn(), 1);
+  merges[0].hypotheses.clear();
+  EXPECT_EQ(num_drawn(), 0) << "there is nothing to draw";
+  const MergePicture refused = made_up::study().joint->merges[0];
+  merges.assign(15, refused);
+  for (std::size_t i = 0; i < merges.size(); ++i) merges[i].robots[1] = "robot_" + std::to_string(i);
+  EXPECT_EQ(num_drawn(), 12);
+  const std::vector<Figure> figures = study_figures(study);
+  const auto last = std::ranges::find(figures, "hypotheses_robot_0_robot_11", &Figure::name);
+  ASSERT_NE(last, figures.end());
+  EXPECT_NE(last->caption.find("3 more pairs are not drawn"), std::string::npos) << last->caption;
+}
+
+TEST(Plots, LoopsOfEachFateHaveTheirOwnLookAndCount) {
+  const std::string svg = plot_loop_map(made_up::study().joint->loop_map);
+  for (const char* label : {"in use: 1", "refused: 1", "refused, weak along the tunnel: 1"})
+    EXPECT_NE(svg.find(label), std::string::npos) << label;
+  std::set<std::string> colors;
+  for (const LoopFate fate : {LoopFate::in_use, LoopFate::refused, LoopFate::weak})
+    colors.insert(hex(fate_color(fate)));
+  EXPECT_EQ(colors.size(), 3U);
+  for (const char* dashes : {"stroke-dasharray=\"8 6\"", "stroke-dasharray=\"0.1 6\""})
+    EXPECT_NE(svg.find(dashes), std::string::npos) << dashes;
+  expect_renders(svg);
+}
+
+TEST(Plots, HypothesesSayWhatWasFoundAndOnlySomeAreDrawn) {
+  const StudyResult study = made_up::study();
+  const MergePicture& merge = study.joint->merges[0];
+  const std::string svg = plot_hypotheses(merge, {0, 1});
+  EXPECT_NE(svg.find("evidence 12.0 (9.2 needed), scans differ at 3 of 40 places, 2 loops"),
+            std::string::npos);
+  EXPECT_EQ(svg.find("scans differ at 4 of 40 places"), std::string::npos) << "the fifth is left out";
+  const std::vector<Figure> figures = study_figures(study);
+  const auto figure = std::ranges::find(figures, "hypotheses_robot_0_robot_1", &Figure::name);
+  ASSERT_NE(figure, figures.end());
+  EXPECT_NE(figure->caption.find("2 more hypotheses are not drawn"), std::string::npos);
+  EXPECT_NE(figure->caption.find("drive on until"), std::string::npos);
 }
 
 TEST(Figures, AnEmptyStudyHasNone) { EXPECT_TRUE(study_figures({}).empty()); }
@@ -60,6 +116,12 @@ TEST(Plots, DegenerateInputStillDraws) {
   expect_renders(plot_error_paths({}, {}));
   expect_renders(
       plot_error_paths({}, std::vector<ErrorPath>{{"r", {Vector3::Zero(), Vector3::Zero()}, {0.0, 0.0}}}));
+  expect_renders(plot_loop_map({}));
+  expect_renders(plot_loop_map({{{"a", 0, {}}, {"b", 1, {}}, {"c", 1, {Vector3(1, 2, 3)}}}, {}, 0, 0}));
+  MergePicture merge;
+  expect_renders(plot_hypotheses(merge, {0, 1}));
+  merge.hypotheses.resize(5);
+  expect_renders(plot_hypotheses(merge, {0, 1}));
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::vector<Eigen::Vector3f> points = {{nan, 0.0F, 0.0F}, {1.0F, 2.0F, 3.0F}};
   expect_renders(plot_merged_map(std::vector<RobotCloud>{{"r", 0, points}, {"none", 1, {}}}));

@@ -61,9 +61,9 @@ std::string facts(const StudyResult& study) {
   return "<dl>\n" + fact("World", study.world) + fact("LiDAR", study.lidar) +
          fact("Robots", format("{}", study.robots.size())) + fact("Driven", format("{:.0f} m", metres)) +
          fact("Scans", format("{}", scans)) + fact("Seed", format("{}", study.seed)) +
-         fact("Time taken", format("{:.0f} s", study.wall_s)) +
-         fact("Peak memory", format("{:.0f} MB", study.peak_rss_mb)) + fact("adit", study.version) +
-         "</dl>\n";
+         fact("Time taken", study.wall_s > 0.0 ? format("{:.0f} s", study.wall_s) : "") +
+         fact("Peak memory", study.peak_rss_mb > 0.0 ? format("{:.0f} MB", study.peak_rss_mb) : "") +
+         fact("adit", study.version) + "</dl>\n";
 }
 
 struct Tally {
@@ -127,29 +127,35 @@ std::string pictures(std::span<const Figure> figures, const std::string& section
   return html.empty() ? "" : format("<div class=\"{}\">\n{}</div>\n", layout, html);
 }
 
-std::string refusals(const StudyResult& study) {
+/// What was merged by which evidence and what was not, with the figures of the hypotheses.
+std::string merges(const StudyResult& study, std::span<const Figure> figures) {
   std::string list;
   for (const PairResult& pair : study.pairs) {
     if (pair.merged) continue;
-    list += format("<li>{}, keyframes {}, {} PCM: {}</li>\n",
+    list += format("<li>{}, keyframes {}, {} PCM, not merged: {}</li>\n",
                    escaped(pair_section(pair.robots[0].name, pair.robots[1].name)), escaped(pair.keyframes),
                    pair.pcm ? "with" : "without",
                    escaped(pair.refused_reason.empty() ? "no reason was given" : pair.refused_reason));
   }
   if (study.joint) {
+    for (const MergePicture& merge : study.joint->merges) {
+      if (!merge.merged) continue;
+      list += format("<li>Jointly, {} <b class=\"good\">merged</b>: {}</li>\n",
+                     escaped(pair_section(merge.robots[0], merge.robots[1])), escaped(merge.verdict));
+    }
     for (const std::string& reason : study.joint->refusals)
-      list += format("<li>Jointly: {}</li>\n", escaped(reason));
+      list += format("<li>Jointly, not merged: {}</li>\n", escaped(reason));
   }
   if (list.empty()) return "";
-  return "<h2 id=\"refusals\">What was not merged, and why</h2>\n<p>No merge is an honest answer; a wrong "
-         "one is not.</p>\n<ul>\n" +
-         list + "</ul>\n";
+  return "<h2 id=\"merges\">What was merged and what was not, and why</h2>\n<p>No merge is an honest answer; "
+         "a wrong one is not.</p>\n<ul>\n" +
+         list + "</ul>\n" + pictures(figures, kMergeSection, "wide");
 }
 
 std::vector<std::string> sections_of(std::span<const Figure> figures) {
   std::vector<std::string> sections;
   for (const Figure& figure : figures) {
-    if (figure.section.empty() ||
+    if (figure.section.empty() || figure.section == kMergeSection ||
         std::find(sections.begin(), sections.end(), figure.section) != sections.end())
       continue;
     sections.push_back(figure.section);
@@ -157,8 +163,11 @@ std::vector<std::string> sections_of(std::span<const Figure> figures) {
   return sections;
 }
 
-std::string navigation(const std::vector<std::string>& sections) {
-  std::string nav = "<nav><a href=\"#tables\">Tables</a><a href=\"#figures\">Figures</a>";
+std::string navigation(const std::vector<std::string>& sections, bool has_tables, bool has_merges) {
+  std::string nav = "<nav>";
+  if (has_tables) nav += "<a href=\"#tables\">Tables</a>";
+  nav += "<a href=\"#figures\">Figures</a>";
+  if (has_merges) nav += "<a href=\"#merges\">Merges</a>";
   for (std::size_t i = 0; i < sections.size(); ++i)
     nav += format("<a href=\"#pair-{}\">{}</a>", i, escaped(sections[i]));
   return nav + "<a href=\"#configuration\">Configuration</a></nav>\n";
@@ -182,16 +191,20 @@ std::string html_report(const StudyResult& study, std::span<const Table> tables,
   std::string html = format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>adit: study of {}</title>\n<style>{}</style>\n</head>\n<body>\n",
-      escaped(study.world), kStyle);
-  html +=
-      "<h1>Multi-robot LiDAR SLAM in tunnels</h1>\n<p class=\"lead\">Odometry comparison, map merging of "
-      "every robot "
-      "pair, and all robots jointly.</p>\n";
-  html += facts(study) + navigation(sections) + summary(study) +
-          "<h2 id=\"tables\">Tables</h2>\n<div class=\"tables\">\n";
-  for (const Table& table : tables) html += html_of(table);
-  html += "</div>\n<h2 id=\"figures\">Figures</h2>\n" + pictures(figures, "", "wide") + refusals(study);
+      "<title>adit{}</title>\n<style>{}</style>\n</head>\n<body>\n",
+      study.world.empty() ? "" : ": study of " + escaped(study.world), kStyle);
+  const std::string merged = merges(study, figures);
+  html += format("<h1>Multi-robot LiDAR SLAM in tunnels</h1>\n<p class=\"lead\">{}</p>\n",
+                 study.pairs.empty() ? "Maps of several robots, merged jointly."
+                                     : "Odometry comparison, map merging of every robot pair, and all robots "
+                                       "jointly.");
+  html += facts(study) + navigation(sections, !tables.empty(), !merged.empty()) + summary(study);
+  if (!tables.empty()) {
+    html += "<h2 id=\"tables\">Tables</h2>\n<div class=\"tables\">\n";
+    for (const Table& table : tables) html += html_of(table);
+    html += "</div>\n";
+  }
+  html += "<h2 id=\"figures\">Figures</h2>\n" + pictures(figures, "", "wide") + merged;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     html += format("<h2 id=\"pair-{}\">{}</h2>\n{}", i, escaped(sections[i]),
                    pictures(figures, sections[i], "grid"));

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 
 #include "adit/evaluation/study_result.hpp"
 
@@ -47,6 +48,27 @@ inline PairResult pair(const std::string& keyframes, bool pcm) {
   return result;
 }
 
+/// Two maps, one loop of each fate, and one pair that two hypotheses compete for.
+inline void add_merges(JointResult& joint) {
+  for (std::size_t i = 0; i < 2; ++i)
+    joint.loop_map.robots.push_back({"robot_" + std::to_string(i), i, path(18.0 * static_cast<double>(i))});
+  for (const LoopFate fate : {LoopFate::in_use, LoopFate::refused, LoopFate::weak}) {
+    const auto k = 40 * static_cast<std::size_t>(fate);
+    joint.loop_map.loops.push_back({{0, k}, {1, k + 3}, fate});
+  }
+  joint.loop_map.num_unregistered = 5;
+  MergePicture merge;
+  merge.robots = {"robot_0", "robot_1"};
+  merge.verdict = "two hypotheses 20 m apart <both> agree; drive on until both pass a junction";
+  merge.evidence_needed = 9.2;
+  merge.path = path(0.0);
+  for (std::size_t h = 0; h < 6; ++h) {
+    const std::vector<Vector3> there = path(4.0 * static_cast<double>(h));
+    merge.hypotheses.push_back({"rival", 12.0, 40, static_cast<int>(h), there, {there[50], there[60]}});
+  }
+  joint.merges.push_back(merge);
+}
+
 inline StudyResult study() {
   StudyResult result;
   result.version = "0.1.0";
@@ -78,6 +100,7 @@ inline StudyResult study() {
     for (const Vector3& p : robot.route) map.points.push_back(p.cast<float>());
     joint.maps.push_back(map);
   }
+  add_merges(joint);
   result.joint = joint;
   result.world_plan = plan_of(result.joint->maps[0].points, 1.0);
   return result;

@@ -95,6 +95,22 @@ std::vector<Point2> MapView::at(std::span<const Vector3> path) const {
   return points;
 }
 
+MapView begin_map(SvgCanvas& canvas, const Eigen::AlignedBox2d& world, std::span<const LegendItem> legend) {
+  constexpr double kTop = 10.0;
+  const double used = draw_legend(canvas, {kMargin, kTop}, kFigureWidth - 2.0 * kMargin, legend);
+  const MapView view(world, kTop + used + 6.0);
+  canvas.set_height(view.bottom() + kMapFooter);
+  return view;
+}
+
+void draw_start(SvgCanvas& canvas, const Point2& at, Rgba color) {
+  canvas.circle(at, 6.5, color, {kWhite, 2.0});
+}
+
+double path_width(std::size_t index, std::size_t count) {
+  return 3.0 + 1.5 * static_cast<double>(count - 1 - index);
+}
+
 void draw_scale_bar(SvgCanvas& canvas, const MapView& view) {
   const double metres = round_down_nicely(0.25 * kFigureWidth / view.pixels_per_metre());
   const double length = metres * view.pixels_per_metre();

@@ -14,6 +14,7 @@
 namespace adit {
 
 inline constexpr double kFigureWidth = 800.0;
+inline constexpr double kMapFooter = 44.0;  ///< Room for the scale bar.
 
 /// The smallest box around everything that a figure shows; `extend` skips what is not finite.
 class MapExtent {
@@ -47,6 +48,15 @@ class MapView {
   double left_ = 0.0;
   double bottom_ = 0.0;
 };
+
+/// Legend at the top, then the view under it, with room for the scale bar below.
+MapView begin_map(SvgCanvas& canvas, const Eigen::AlignedBox2d& world, std::span<const LegendItem> legend);
+
+void draw_start(SvgCanvas& canvas, const Point2& at, Rgba color);
+
+/// Robots that share a tunnel hide one another: the earlier ones are drawn wider, so that a rim of each stays
+/// visible.
+[[nodiscard]] double path_width(std::size_t index, std::size_t count);
 
 /// A bar of round length with its metres, below the map at the left.
 void draw_scale_bar(SvgCanvas& canvas, const MapView& view);

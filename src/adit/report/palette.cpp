@@ -35,6 +35,18 @@ Rgba loop_color(LoopClass loop_class) {
   return kInk;
 }
 
+Rgba fate_color(LoopFate fate) {
+  switch (fate) {
+    case LoopFate::in_use:
+      return {0, 158, 96};
+    case LoopFate::refused:
+      return {214, 39, 40};
+    case LoopFate::weak:
+      return {31, 79, 216};
+  }
+  return kInk;
+}
+
 Rgba method_color(std::size_t method) {
   static constexpr std::array<Rgba, 4> kColors = {
       {{213, 112, 40}, {0, 114, 178}, {0, 158, 115}, {125, 60, 152}}};

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "adit/evaluation/loop_stats.hpp"
+#include "adit/evaluation/study_result.hpp"
 #include "adit/report/png.hpp"
 
 namespace adit {
@@ -23,6 +23,8 @@ inline constexpr Rgba kWhite = {255, 255, 255};
 [[nodiscard]] Rgba robot_color(std::size_t robot);
 /// Green, red, blue.
 [[nodiscard]] Rgba loop_color(LoopClass loop_class);
+/// Green, red, blue.
+[[nodiscard]] Rgba fate_color(LoopFate fate);
 /// The colour of method i in a comparison.
 [[nodiscard]] Rgba method_color(std::size_t method);
 /// Perceptually even, dark to bright, for s in [0, 1]; values outside are clamped.

@@ -17,32 +17,10 @@
 namespace adit {
 namespace {
 
-Point2 legend_at() { return {16.0, 10.0}; }
-constexpr double kLegendWidth = kFigureWidth - 32.0;
-constexpr double kFooter = 44.0;
-
 std::vector<LegendItem> legend_of(std::span<const RobotPath> routes) {
   std::vector<LegendItem> items;
   for (const RobotPath& route : routes) items.push_back({route.name, robot_color(route.robot)});
   return items;
-}
-
-/// Legend at the top, then the view under it, with room for the scale bar below.
-MapView begin_map(SvgCanvas& canvas, const Eigen::AlignedBox2d& world, std::span<const LegendItem> legend) {
-  const double used = draw_legend(canvas, legend_at(), kLegendWidth, legend);
-  const MapView view(world, legend_at().y() + used + 6.0);
-  canvas.set_height(view.bottom() + kFooter);
-  return view;
-}
-
-void draw_start(SvgCanvas& canvas, const Point2& at, Rgba color) {
-  canvas.circle(at, 6.5, color, {kWhite, 2.0});
-}
-
-/// Robots that share a tunnel hide one another: the earlier ones are drawn wider, so that a rim of each stays
-/// visible.
-double path_width(std::size_t index, std::size_t count) {
-  return 3.0 + 1.5 * static_cast<double>(count - 1 - index);
 }
 
 using LoopLines = std::vector<std::pair<Point2, Point2>>;
@@ -290,7 +268,7 @@ std::string plot_error_paths(const Plan& plan, std::span<const ErrorPath> paths)
   SvgCanvas canvas(kFigureWidth);
   canvas.text({16.0, 24.0}, summary);
   const MapView view(extent.box(), 38.0);
-  canvas.set_height(view.bottom() + kFooter);
+  canvas.set_height(view.bottom() + kMapFooter);
   Rgba walls = kWall;
   draw_plan(canvas, view, plan, walls);
   for (const ErrorPath& path : paths) {

@@ -129,6 +129,22 @@ TEST(HtmlReport, IsSelfContainedEscapedAndComplete) {
   EXPECT_EQ(html, html_report(study, tables, figures));
 }
 
+TEST(HtmlReport, ASessionWithoutGroundTruthClaimsNothingAboutIt) {
+  StudyResult session;
+  session.joint = made_up::study().joint;
+  session.joint->robots.clear();
+  session.joint->maps.clear();
+  session.joint->refusals = {"robot_0 and robot_1: two hypotheses"};
+  const std::vector<Figure> figures = study_figures(session);
+  EXPECT_EQ(figures.size(), 2U);
+  const std::string html = html_report(session, {}, figures);
+  EXPECT_EQ(occurrences(html, "<svg "), 2U);
+  EXPECT_NE(html.find("not merged: robot_0 and robot_1: two hypotheses"), std::string::npos);
+  EXPECT_NE(html.find("agree; drive on until both pass a junction"), std::string::npos);
+  for (const char* unknown : {"wrong loops", "In short", "Tables", "Peak memory", "study of"})
+    EXPECT_EQ(html.find(unknown), std::string::npos) << unknown;
+}
+
 TEST(HtmlReport, AnEmptyStudyIsAPageToo) {
   EXPECT_NE(html_report({}, {}, {}).find("</html>"), std::string::npos);
 }

@@ -22,9 +22,14 @@ std::string number(double value) {
 
 std::string pair(const Point2& p) { return format("{} {}", number(p.x()), number(p.y())); }
 
+const char* pattern(Dash dash) {
+  return dash == Dash::dashes ? "8 6" : dash == Dash::dots ? "0.1 6" : "12 5 0.1 5";
+}
+
 std::string stroke_attributes(const Stroke& stroke) {
   std::string text = format(R"( stroke="{}" stroke-width="{}")", hex(stroke.color), number(stroke.width));
   if (stroke.opacity < 1.0) text += format(R"( stroke-opacity="{:.2g}")", stroke.opacity);
+  if (stroke.dash != Dash::none) text += format(R"( stroke-dasharray="{}")", pattern(stroke.dash));
   return text;
 }
 
@@ -84,7 +89,8 @@ void SvgCanvas::set_height(double height) {
 }
 
 void SvgCanvas::line(const Point2& a, const Point2& b, const Stroke& stroke) {
-  body_ += format("<path d=\"M{}L{}\"{}/>\n", pair(a), pair(b), stroke_attributes(stroke));
+  const char* cap = stroke.dash == Dash::none ? "" : " stroke-linecap=\"round\"";  // a dot is a cap
+  body_ += format("<path{} d=\"M{}L{}\"{}/>\n", cap, pair(a), pair(b), stroke_attributes(stroke));
 }
 
 void SvgCanvas::polyline(std::span<const Point2> points, const Stroke& stroke) {
@@ -146,13 +152,14 @@ std::string SvgCanvas::document() const {
 
 double draw_legend(SvgCanvas& canvas, const Point2& at, double width, std::span<const LegendItem> items) {
   constexpr double kRow = 22.0;
-  constexpr double kMark = 24.0;
+  constexpr double kMark = 28.0;
   Point2 pen(at.x(), at.y() + 0.5 * kRow);
   for (const LegendItem& item : items) {
     const double needed = kMark + text_width(item.label, 14.0) + 20.0;
     if (pen.x() > at.x() && pen.x() + needed - 20.0 > at.x() + width) pen = {at.x(), pen.y() + kRow};
     if (item.mark == LegendItem::Mark::dash) {
-      canvas.line(pen, pen + Point2(16.0, 0.0), {item.color, 3.0});
+      const double length = item.dash == Dash::none ? 16.0 : 20.0;
+      canvas.line(pen, pen + Point2(length, 0.0), {item.color, 3.0, 1.0, item.dash});
     } else {
       canvas.circle(pen + Point2(8.0, 0.0), 6.0, item.color);
     }

@@ -16,10 +16,13 @@ namespace adit {
 
 using Point2 = Eigen::Vector2d;
 
+enum class Dash { none, dashes, dots, dashes_and_dots };
+
 struct Stroke {
   Rgba color;
   double width = 1.0;
   double opacity = 1.0;
+  Dash dash = Dash::none;
 };
 
 enum class Anchor { start, middle, end };
@@ -73,6 +76,7 @@ struct LegendItem {
   std::string label;
   Rgba color;
   enum class Mark { dot, dash } mark = Mark::dot;
+  Dash dash = Dash::none;  ///< Of a dash.
 };
 /// Rows of items from `at` rightwards within `width`. Returns the height used.
 double draw_legend(SvgCanvas& canvas, const Point2& at, double width, std::span<const LegendItem> items);

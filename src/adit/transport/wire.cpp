@@ -278,6 +278,26 @@ void get(Reader& in, std::pair<std::uint32_t, std::uint32_t>& ends) {
   ends.second = in.scalar<std::uint32_t>();
 }
 
+void put(Writer& out, const MergeHypothesis& hypothesis) {
+  out.scalar(hypothesis.outcome);
+  out.scalar(hypothesis.evidence);
+  out.scalar(hypothesis.num_checked);
+  out.scalar(hypothesis.num_passed);
+  out.scalar(hypothesis.from_best_m);
+  out.vector(hypothesis.loops);
+}
+void get(Reader& in, MergeHypothesis& hypothesis) {
+  hypothesis.outcome = in.scalar<HypothesisOutcome>();
+  hypothesis.evidence = in.scalar<double>();
+  hypothesis.num_checked = in.scalar<std::uint32_t>();
+  hypothesis.num_passed = in.scalar<std::uint32_t>();
+  hypothesis.from_best_m = in.scalar<double>();
+  in.vector(hypothesis.loops);
+  if (hypothesis.outcome > HypothesisOutcome::behind || !std::isfinite(hypothesis.evidence) ||
+      !std::isfinite(hypothesis.from_best_m) || hypothesis.num_passed > hypothesis.num_checked)
+    in.refuse();
+}
+
 void put(Writer& out, const MergeCheck& check) {
   out.scalar(check.a.value);
   out.scalar(check.b.value);
@@ -288,6 +308,7 @@ void put(Writer& out, const MergeCheck& check) {
   out.scalar(static_cast<std::uint8_t>(check.accepted ? 1 : 0));
   out.vector(check.loops);
   put(out, check.reason);
+  out.vector(check.hypotheses);
 }
 void get(Reader& in, MergeCheck& check) {
   check.a.value = in.scalar<std::uint8_t>();
@@ -299,6 +320,10 @@ void get(Reader& in, MergeCheck& check) {
   check.accepted = in.scalar<std::uint8_t>() != 0;
   in.vector(check.loops);
   get(in, check.reason);
+  in.vector(check.hypotheses);
+  if (!std::isfinite(check.evidence) || !std::isfinite(check.needed) ||
+      check.num_passed > check.num_checked || check.hypotheses.size() > kHypothesesPerCheck)
+    in.refuse();
 }
 
 void put(Writer& out, const MergeChecks& checks) {

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <limits>
+
 #include "adit/core/rng.hpp"
 #include "support/wire.hpp"
 
@@ -29,7 +32,10 @@ LoopClosure a_loop() {
 }
 
 MergeCheck a_check() {
-  return {{1}, {3}, 12.75, 9.25, 40, 39, true, {{5, 70000}, {6, 8}}, "39 of 40 places agree"};
+  MergeCheck check{{1}, {3}, 12.75, 9.25, 40, 39, true, {{5, 70000}, {6, 8}}, "39 of 40 places agree"};
+  check.hypotheses = {{HypothesisOutcome::accepted, 12.75, 40, 39, 0.0, check.loops},
+                      {HypothesisOutcome::refuted, -3.5, 20, 13, 21.5, {{7, 9}}}};
+  return check;
 }
 
 std::vector<Message> one_of_each() {
@@ -88,6 +94,36 @@ TEST(Wire, DecisionsTravelExactly) {
   EXPECT_TRUE(check.accepted);
   EXPECT_EQ(check.loops, a_check().loops);
   EXPECT_EQ(check.reason, a_check().reason);
+  ASSERT_EQ(check.hypotheses.size(), 2U);
+  const MergeHypothesis& second = check.hypotheses[1];
+  EXPECT_EQ(second.outcome, HypothesisOutcome::refuted);
+  EXPECT_EQ(second.evidence, -3.5);
+  EXPECT_EQ(second.num_checked, 20U);
+  EXPECT_EQ(second.num_differing(), 7U);
+  EXPECT_EQ(second.from_best_m, 21.5);
+  EXPECT_EQ(second.loops, a_check().hypotheses[1].loops);
+}
+
+TEST(Wire, DecisionsThatCannotBeAreRefused) {
+  const auto is_refused = [](const MergeCheck& check) {
+    return !decode(encode({{0}, {2}, MergeChecks{{1}, 4, {check}}})).has_value();
+  };
+  EXPECT_FALSE(is_refused(a_check()));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::function<void(MergeCheck&)>> spoilers = {
+      [&](MergeCheck& c) { c.evidence = nan; },
+      [&](MergeCheck& c) { c.needed = -std::numeric_limits<double>::infinity(); },
+      [&](MergeCheck& c) { c.num_passed = c.num_checked + 1; },
+      [&](MergeCheck& c) { c.hypotheses[0].evidence = nan; },
+      [&](MergeCheck& c) { c.hypotheses[1].from_best_m = nan; },
+      [&](MergeCheck& c) { c.hypotheses[1].num_passed = c.hypotheses[1].num_checked + 1; },
+      [&](MergeCheck& c) { c.hypotheses[0].outcome = static_cast<HypothesisOutcome>(5); },
+      [&](MergeCheck& c) { c.hypotheses.resize(kHypothesesPerCheck + 1); }};
+  for (std::size_t i = 0; i < spoilers.size(); ++i) {
+    MergeCheck check = a_check();
+    spoilers[i](check);
+    EXPECT_TRUE(is_refused(check)) << i;
+  }
 }
 
 TEST(Wire, PointsKeepFiveMillimetresAndFarOnesStayBehind) {

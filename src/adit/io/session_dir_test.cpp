@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/session_dir.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "support/files.hpp"
+
+namespace adit {
+namespace {
+
+using test::get_file;
+using test::put_file;
+using test::TemporaryFolder;
+
+constexpr std::uint32_t kNum = 20;
+
+std::shared_ptr<const RobotMap> straight_map(RobotId id, const std::string& name) {
+  RobotMap map;
+  map.id = id;
+  map.name = name;
+  for (std::uint32_t k = 0; k < kNum; ++k) {
+    const Stamp stamp{1'000'000'000LL * (k + 1)};
+    const Pose pose = Pose::translation_of(k, 0, 0);
+    map.keyframes.push_back({{id, k}, stamp, pose, std::make_shared<PointCloud>()});
+    map.odometry.push_back({stamp, pose});
+  }
+  return std::make_shared<const RobotMap>(std::move(map));
+}
+
+void add_loop(FleetGraph& fleet, std::uint32_t a, std::uint32_t b, double along_m, LoopVerdict verdict) {
+  LoopClosure loop;
+  loop.from = {{0}, a};
+  loop.to = {{1}, b};
+  loop.T_from_to = Pose::translation_of(along_m, 1, 0);
+  loop.verdict = verdict;
+  loop.reason = verdict == LoopVerdict::accepted ? "70 inliers, overlap 0.93" : "4 inliers, 10 needed";
+  fleet.loops[{loop.from, loop.to}] = loop;
+}
+
+/// Three loops that a test accepted, two that it refuted, one that could not be registered.
+Session two_robots() {
+  Session session;
+  session.maps = {straight_map({0}, "ada"), straight_map({1}, "bo")};
+  for (const auto& map : session.maps) {
+    RobotGraph& graph = session.fleet.robots[map->id];
+    graph.name = map->name;
+    for (const Keyframe& k : map->keyframes)
+      graph.nodes.push_back({k.stamp, k.T_odom_base, Matrix6::Identity() * 1e-4});
+  }
+  MergeCheck check{{0}, {1}, 12.5, 9.21, 10, 10, true, {{2, 2}, {6, 6}, {9, 9}}, "10 of 10 places agree"};
+  check.hypotheses = {{HypothesisOutcome::accepted, 12.5, 10, 10, 0.0, check.loops},
+                      {HypothesisOutcome::refuted, -4.0, 8, 3, 5.0, {{3, 8}, {4, 9}}}};
+  session.fleet.checks[{{0}, {1}}] = check;
+  for (const auto& [a, b] : check.loops) add_loop(session.fleet, a, b, 0.0, LoopVerdict::accepted);
+  for (const auto& [a, b] : check.hypotheses[1].loops)
+    add_loop(session.fleet, a, b, 0.0, LoopVerdict::accepted);
+  add_loop(session.fleet, 11, 3, 0.0, LoopVerdict::rejected);
+  BackEndConfig config;
+  config.checks_needed = true;
+  session.solution = solve(session.fleet, config);
+  return session;
+}
+
+std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    std::replace(line.begin(), line.end(), ',', '\n');
+    std::istringstream cells(line + "\n");
+    std::vector<std::string>& row = rows.emplace_back();
+    for (std::string cell; std::getline(cells, cell);) row.push_back(cell);
+  }
+  return rows;
+}
+
+TEST(SessionDir, EveryCandidateSaysWhyItIsInTheSolutionOrNot) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_session(folder.path(), two_robots(), MapFiles::leave_out));
+  const auto rows = cells_of(get_file(folder / "loops.csv"));
+  ASSERT_EQ(rows.size(), 7U);
+  const auto column = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::ranges::find(rows[0], name) - rows[0].begin());
+  };
+  std::size_t num_of_first = 0;
+  for (std::size_t r = 1; r < rows.size(); ++r) {
+    ASSERT_EQ(rows[r].size(), rows[0].size());
+    const std::string& hypothesis = rows[r][column("hypothesis")];
+    const std::string& reason = rows[r][column("reason")];
+    EXPECT_EQ(rows[r][column("merge_check")], "accepted");
+    if (hypothesis == "1") {
+      EXPECT_EQ(reason, "in use: scans agree at 10 of 10 places along hypothesis 1");
+      EXPECT_EQ(rows[r][column("registration")], "70 inliers; overlap 0.93");
+      ++num_of_first;
+    } else {
+      EXPECT_EQ(reason, hypothesis == "2" ? "not in use: scans differ at 5 of 8 places along hypothesis 2"
+                                          : "not registered: 4 inliers; 10 needed");
+    }
+  }
+  EXPECT_EQ(num_of_first, 3U);
+}
+
+TEST(SessionDir, TheProvenanceListsTheHypotheses) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_session(folder.path(), two_robots(), MapFiles::leave_out));
+  const std::string toml = get_file(folder / "session.toml");
+  for (const char* part : {"'10 of 10 places agree'", "outcome = 'accepted'", "outcome = 'refuted'",
+                           "places_compared = 8", "places_differing = 5", "from_best_m = 5.0", "[ 3, 8 ]"})
+    EXPECT_NE(toml.find(part), std::string::npos) << part << "\n" << toml;
+}
+
+TEST(SessionDir, LoopsOfEarlierVersionsAreReadToo) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_session(folder.path(), two_robots(), MapFiles::leave_out));
+  const Result<SavedSession> now = read_session(folder.path());
+  ASSERT_TRUE(now.has_value()) << now.error().message;
+  ASSERT_EQ(now->loops.size(), 6U);
+
+  std::string earlier;
+  for (const auto& row : cells_of(get_file(folder / "loops.csv"))) {
+    for (std::size_t c = 0; c < 22; ++c) earlier += (c == 0 ? "" : ",") + row[c];
+    earlier += "\n";
+  }
+  put_file(folder / "loops.csv", earlier);
+  const Result<SavedSession> then = read_session(folder.path());
+  ASSERT_TRUE(then.has_value()) << then.error().message;
+  ASSERT_EQ(then->loops.size(), 6U);
+  for (std::size_t l = 0; l < 6; ++l) {
+    EXPECT_EQ(then->loops[l].weight, now->loops[l].weight);
+    EXPECT_EQ(then->loops[l].loop.verdict, now->loops[l].loop.verdict);
+    EXPECT_EQ(then->loops[l].loop.reason, now->loops[l].loop.reason);
+  }
+
+  put_file(folder / "loops.csv", "a," + earlier);
+  EXPECT_FALSE(read_session(folder.path()).has_value());
+  put_file(folder / "loops.csv", earlier.insert(earlier.find('\n'), "_renamed"));
+  EXPECT_FALSE(read_session(folder.path()).has_value());
+}
+
+}  // namespace
+}  // namespace adit
