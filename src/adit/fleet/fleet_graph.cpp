@@ -12,6 +12,7 @@
 
 #include "adit/core/format.hpp"
 #include "adit/fleet/condensed_graph.hpp"
+#include "adit/fleet/merge_cycles.hpp"
 
 namespace adit {
 namespace {
@@ -244,6 +245,48 @@ void keep_checked(const FleetGraph& fleet, const std::vector<std::size_t>& of_pa
   }
 }
 
+std::string taken_back(const FleetGraph& fleet, const std::vector<Merge>& merges,
+                       const Contradiction& contradiction) {
+  std::string others;
+  bool has_least_evidence = true;
+  for (const std::size_t m : contradiction.others) {
+    others += format("{}{}-{}", others.empty() ? "" : " and ", fleet.robots.at(merges[m].a).name,
+                     fleet.robots.at(merges[m].b).name);
+    if (merges[m].evidence < merges[contradiction.merge].evidence) has_least_evidence = false;
+  }
+  return format(
+      "taken back: with {} it misses by {:.0f} m around a cycle with {:.0f} m of odometry, and {}; a meeting "
+      "with further robots would decide",
+      others, contradiction.miss_m, contradiction.driven_m,
+      has_least_evidence ? "has the least evidence of them" : "without it the others agree best");
+}
+
+/// Takes the loops of merges out that cycles of robots contradict.
+void take_back(const FleetGraph& fleet, Chains& chains, const BackEndConfig& config,
+               FleetSolution& solution) {
+  const LoopsOfPairs of_pairs = loops_of_pairs(solution);
+  std::vector<Merge> merges;
+  std::vector<PairOutcome*> pairs;
+  std::map<RobotId, OdometryChain> of_robots;
+  for (PairOutcome& pair : solution.pairs) {
+    if (pair.clique == 0) continue;
+    Merge merge{pair.a, pair.b, fleet.checks.at({pair.a, pair.b}).evidence, {}};
+    for (const std::size_t l : of_pairs.at({pair.a, pair.b})) {
+      const LoopClosure& loop = solution.loops[l].loop;
+      if (solution.loops[l].in_clique)
+        merge.loops.push_back({loop.from.index, loop.to.index, loop.T_from_to, loop_information(config)});
+    }
+    merges.push_back(std::move(merge));
+    pairs.push_back(&pair);
+    for (const RobotId robot : {pair.a, pair.b}) of_robots.emplace(robot, chains.of(robot));
+  }
+  for (const Contradiction& contradiction : contradictions(merges, of_robots)) {
+    PairOutcome& pair = *pairs[contradiction.merge];
+    pair.refused_reason = taken_back(fleet, merges, contradiction);
+    for (const std::size_t l : of_pairs.at({pair.a, pair.b})) solution.loops[l].in_clique = false;
+  }
+}
+
 void run_pcm(const FleetGraph& fleet, const BackEndConfig& config, FleetSolution& solution) {
   const LoopsOfPairs of_pairs = loops_of_pairs(solution);
   Chains chains(fleet);
@@ -258,6 +301,7 @@ void run_pcm(const FleetGraph& fleet, const BackEndConfig& config, FleetSolution
       keep_consistent(chains, config, of_pair, solution.loops, pair);
     }
   }
+  if (config.checks_needed && config.cycles_needed) take_back(fleet, chains, config, solution);
 }
 
 void decide_merges(const FleetGraph& fleet, const BackEndConfig& config, FleetSolution& solution) {
@@ -269,7 +313,8 @@ void decide_merges(const FleetGraph& fleet, const BackEndConfig& config, FleetSo
         std::ranges::count_if(of_pair, [&](std::size_t l) { return solution.loops[l].in_use(); }));
     pair.merged = num_used >= static_cast<std::size_t>(config.min_loops);
     if (pair.merged) continue;
-    pair.refused_reason = refusal(fleet, pair, tried[{pair.a, pair.b}], num_used);
+    if (pair.refused_reason.empty())
+      pair.refused_reason = refusal(fleet, pair, tried[{pair.a, pair.b}], num_used);
     // Too few loops are no bridge: they must not join the maps through the back door either.
     for (const std::size_t l : of_pair) solution.loops[l].weight = 0.0;
   }
@@ -354,6 +399,8 @@ Fields fields_of(BackEndConfig& c) {
       {"pcm_on", &c.pcm_on, "", 0, 0, "drop loops that disagree pairwise before the graph is solved"},
       {"gnc_on", &c.gnc_on, "", 0, 0, "let graduated non-convexity reject loops while the graph is solved"},
       {"checks_needed", &c.checks_needed, "", 0, 0, "let only pairs share a map that passed the merge check"},
+      {"cycles_needed", &c.cycles_needed, "", 0, 0,
+       "take back merges that passed it and that merges with third robots contradict"},
       {"min_loops", &c.min_loops, "", 1, 10000, "loops in use that two robots need to share a map"},
       {"loop_translation", &c.loop_translation, "m", 1e-4, 10.0, "sigma of a loop's translation"},
       {"loop_rotation_deg", &c.loop_rotation_deg, "deg", 1e-3, 90.0, "sigma of a loop's rotation"}};
