@@ -16,8 +16,11 @@ FleetGraph between(const FleetGraph& all, RobotId a, RobotId b) {
   FleetGraph pair;
   for (const RobotId robot : {a, b}) pair.robots[robot] = all.robots.at(robot);
   for (const auto& [ends, loop] : all.loops)
-    if (ends.first.robot == a && ends.second.robot == b) pair.loops.emplace(ends, loop);
-  if (const auto check = all.checks.find({a, b}); check != all.checks.end()) pair.checks.insert(*check);
+    if (pair.robots.contains(ends.first.robot) && pair.robots.contains(ends.second.robot))
+      pair.loops.emplace(ends, loop);
+  for (const auto& [robots, check] : all.checks)
+    if (pair.robots.contains(robots.first) && pair.robots.contains(robots.second))
+      pair.checks.emplace(robots, check);
   return pair;
 }
 

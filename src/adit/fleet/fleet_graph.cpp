@@ -231,18 +231,26 @@ std::vector<PairOutcome> all_pairs(const FleetGraph& fleet) {
   return pairs;
 }
 
-/// The loops that an accepted check speaks of.
-void keep_checked(const FleetGraph& fleet, const std::vector<std::size_t>& of_pair,
-                  std::vector<LoopOutcome>& loops, PairOutcome& pair) {
-  const auto check = fleet.checks.find({pair.a, pair.b});
-  if (check == fleet.checks.end() || !check->second.accepted) return;
+/// Keeps the loops between two robots, or within one, that an accepted check speaks of; their number.
+std::size_t keep_checked(const FleetGraph& fleet, const RobotPair& robots,
+                         const std::vector<std::size_t>& of_pair, std::vector<LoopOutcome>& loops) {
+  const auto check = fleet.checks.find(robots);
+  if (check == fleet.checks.end() || !check->second.accepted) return 0;
+  std::size_t num = 0;
   const std::set<std::pair<std::uint32_t, std::uint32_t>> checked(check->second.loops.begin(),
                                                                   check->second.loops.end());
   for (const std::size_t l : of_pair) {
     const LoopClosure& loop = loops[l].loop;
     loops[l].in_clique = checked.contains({loop.from.index, loop.to.index});
-    pair.clique += loops[l].in_clique ? 1 : 0;
+    num += loops[l].in_clique ? 1 : 0;
   }
+  return num;
+}
+
+/// Loops within one robot's map are used only where they passed their test, whatever the other pairs need.
+void keep_revisits(const FleetGraph& fleet, const LoopsOfPairs& of_pairs, FleetSolution& solution) {
+  for (const auto& [robots, of_pair] : of_pairs)
+    if (robots.first == robots.second) keep_checked(fleet, robots, of_pair, solution.loops);
 }
 
 std::string taken_back(const FleetGraph& fleet, const std::vector<Merge>& merges,
@@ -294,13 +302,14 @@ void run_pcm(const FleetGraph& fleet, const BackEndConfig& config, FleetSolution
     const std::vector<std::size_t>& of_pair = of_pairs.at({pair.a, pair.b});
     pair.num_loops = of_pair.size();
     if (config.checks_needed) {
-      keep_checked(fleet, of_pair, solution.loops, pair);
+      pair.clique = keep_checked(fleet, {pair.a, pair.b}, of_pair, solution.loops);
     } else if (!config.pcm_on || of_pair.empty()) {
       for (const std::size_t l : of_pair) solution.loops[l].in_clique = true;
     } else {
       keep_consistent(chains, config, of_pair, solution.loops, pair);
     }
   }
+  keep_revisits(fleet, of_pairs, solution);
   if (config.checks_needed && config.cycles_needed) take_back(fleet, chains, config, solution);
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "adit/core/format.hpp"
+#include "adit/fleet/revisits.hpp"
 
 namespace adit {
 namespace {
@@ -118,6 +119,7 @@ std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryCh
     double best = kSide;
     for (std::uint32_t i = 0; i < own.size(); ++i) {
       if (std::abs(own_way[i] - own_way[loop.a]) > from_loop + 2.0 * kSide) continue;
+      if (&own == &theirs && their_way[j] - own_way[i] < kRevisitWay) continue;
       const double distance = (own.pose(i).translation() - at).norm();
       if (distance < best) {
         best = distance;

@@ -46,7 +46,8 @@ struct PlannedCheck {
   Pose T_own_theirs;
 };
 /// Along the whole stretch that both drove, as far as `loops` (which agree with one another) say; places
-/// far apart first, those between them later.
+/// far apart first, those between them later. With the same chain given twice: revisits, the earlier keyframe
+/// of the two as `own`.
 [[nodiscard]] std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryChain& theirs,
                                                     const std::vector<PcmLoop>& loops,
                                                     const MergeCheckConfig& config);

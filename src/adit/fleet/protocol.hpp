@@ -14,7 +14,7 @@
 
 namespace adit {
 
-inline constexpr std::uint8_t kProtocolVersion = 3;
+inline constexpr std::uint8_t kProtocolVersion = 4;
 inline constexpr std::size_t kPlacesPerMessage = 64;
 inline constexpr std::size_t kCloudsPerMessage = 16;
 inline constexpr std::size_t kNodesPerMessage = 512;
@@ -76,15 +76,16 @@ struct Clouds {
 };
 
 /// Loops number first, first + 1, ... of those that `author`, who need not be the sender, registered:
-/// accepted and rejected ones alike, so that all know what was tried. They start at keyframes of the author.
+/// accepted and rejected ones alike, so that all know what was tried. They start at keyframes of the author;
+/// those within its own map at the earlier one.
 struct Loops {
   RobotId author;
   std::uint32_t first = 0;
   std::vector<LoopClosure> loops;
 };
 
-/// Whether the loops of two robots may join their maps, decided by the one that searched, `a`. A later one
-/// replaces those before it.
+/// Whether the loops of two robots may join their maps, decided by the one that searched, `a`; or, where `b`
+/// is the same robot, whether it came back to places of its own map. A later one replaces those before it.
 struct MergeCheck {
   RobotId a, b;
   double evidence = 0.0;  ///< Logarithm of the likelihood ratio of "same stretch" to "looks alike",

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/revisits.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "adit/posegraph/gnc.hpp"
+
+namespace adit {
+namespace {
+
+constexpr double kSlack = 3.0;         // sigmas, and factor on them
+constexpr double kNear = 5.0;          // metres between two keyframes of one place
+constexpr double kProbability = 0.99;  // that a true loop agrees
+
+}  // namespace
+
+std::vector<std::uint32_t> possible_revisits(const OdometryChain& chain, const std::vector<double>& way,
+                                             std::uint32_t k) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t later = k + 1; later < chain.size(); ++later) {
+    if (way[later] - way[k] < kRevisitWay) continue;
+    const double drift = std::sqrt(chain.covariance(k, later).topLeftCorner<3, 3>().trace());
+    if (chain.between(k, later).translation().norm() < kNear + kSlack * drift) out.push_back(later);
+  }
+  return out;
+}
+
+bool fits_odometry(const OdometryChain& chain, const PcmLoop& loop) {
+  const Matrix6 covariance =
+      chain.covariance(loop.a, loop.b) + Eigen::LLT<Matrix6>(loop.information).solve(Matrix6::Identity());
+  const Vector6 error = (chain.between(loop.a, loop.b).inverse() * loop.T_a_b).log();
+  return error.dot(covariance.ldlt().solve(error)) < kSlack * kSlack * chi2_quantile(kProbability, 6);
+}
+
+}  // namespace adit
