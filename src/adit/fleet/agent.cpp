@@ -456,7 +456,10 @@ void Agent::find_revisits() {
   const OdometryChain chain = own_chain();
   const std::vector<PcmLoop> loops = register_own(own_candidates(chain), chain);
   if (loops.empty()) return;
-  MergeTest test(chain, chain, loops, discernment().chance_to_go_on(), config_.adaptive.merge_check);
+  std::vector<double> known_before;
+  for (const PcmLoop& loop : loops) known_before.push_back(odometry_evidence(chain, loop));
+  MergeTest test(chain, chain, loops, discernment().chance_to_go_on(), config_.adaptive.merge_check,
+                 known_before);
   for (auto asked = test.next(kCloudsPerMessage); !asked.empty(); asked = test.next(kCloudsPerMessage))
     test.add(compare_own(asked));
   decide(test.verdict(map_->id, map_->id));

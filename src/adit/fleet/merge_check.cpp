@@ -136,7 +136,8 @@ std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryCh
 }
 
 MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
-                     double chance_to_go_on, const MergeCheckConfig& config)
+                     double chance_to_go_on, const MergeCheckConfig& config,
+                     const std::vector<double>& known_before)
     : loops_(loops), chance_to_go_on_(chance_to_go_on), config_(config) {
   std::vector<std::size_t> rest(loops.size());
   for (std::size_t l = 0; l < rest.size(); ++l) rest[l] = l;
@@ -153,6 +154,10 @@ MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, cons
     if (!hypotheses_.empty())
       hypothesis.offset_m = apart(picked(loops, hypotheses_.front().loops), agreeing, own, theirs);
     hypothesis.plan = plan_checks(own, theirs, agreeing, config);
+    if (!known_before.empty()) {
+      const auto known = [&](std::size_t l) { return known_before[l]; };
+      hypothesis.known_before = known(*std::ranges::min_element(hypothesis.loops, {}, known));
+    }
     hypotheses_.push_back(std::move(hypothesis));
   }
 }
@@ -164,7 +169,8 @@ double MergeTest::evidence_of_agreement() const {
 }
 
 double MergeTest::evidence(const Hypothesis& hypothesis) const {
-  double sum = -std::log(static_cast<double>(loops_.size() - hypothesis.loops.size() + 1));
+  double sum =
+      hypothesis.known_before - std::log(static_cast<double>(loops_.size() - hypothesis.loops.size() + 1));
   for (const CheckedPlace& place : hypothesis.checked) {
     if (place.differs())
       sum += std::log((1.0 - kTrueCheck) / (1.0 - std::min(chance_to_go_on_, kTrueCheck)));

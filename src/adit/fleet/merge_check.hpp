@@ -62,9 +62,11 @@ struct CheckedPlace {
 /// The test of two robots' loops: asks for comparisons until it knows.
 class MergeTest {
  public:
-  /// `loops`: all that registration accepted, with those that say something else.
+  /// `loops`: all that registration accepted, with those that say something else. `known_before`: evidence
+  /// for each that does not come from comparing scans; of a hypothesis the least of its loops' counts.
   MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
-            double chance_to_go_on, const MergeCheckConfig& config);
+            double chance_to_go_on, const MergeCheckConfig& config,
+            const std::vector<double>& known_before = {});
 
   /// The next comparisons, at most `num`, each with another keyframe of theirs; none when the test is over.
   /// Asked again without `add` in between it answers the same.
@@ -79,6 +81,7 @@ class MergeTest {
     std::vector<PlannedCheck> plan;
     std::vector<CheckedPlace> checked;
     double offset_m = 0.0;  ///< From the first hypothesis, where theirs would stand.
+    double known_before = 0.0;
   };
   [[nodiscard]] double evidence(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool is_refuted(const Hypothesis& hypothesis) const;

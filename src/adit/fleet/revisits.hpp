@@ -23,4 +23,9 @@ inline constexpr double kRevisitWay = 40.0;
 /// Whether a loop within one map is compatible with its odometry, generously: odometry slips.
 [[nodiscard]] bool fits_odometry(const OdometryChain& chain, const PcmLoop& loop);
 
+/// Evidence that such a loop is true: the logarithm of the likelihood ratio of how far it lies, in the plane,
+/// from where the odometry led. A true one is as far as the odometry drifts; one that only looks alike may be
+/// anywhere that `possible_revisits` allows.
+[[nodiscard]] double odometry_evidence(const OdometryChain& chain, const PcmLoop& loop);
+
 }  // namespace adit
