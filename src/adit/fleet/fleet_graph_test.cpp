@@ -162,6 +162,24 @@ TEST(FleetGraph, OfTwoMapsThatOneTakenBackMergeJoinedBothStayAsTheyWere) {
   expect_same_poses(apart, solve(fleet, config));
 }
 
+TEST(FleetGraph, LoopsWithinARobotCountWhereAnAcceptedCheckSpeaksOfThem) {
+  FleetGraph fleet = robots_without_loops(1);
+  std::vector<GraphNode>& nodes = fleet.robots.at({0}).nodes;
+  for (std::uint32_t k = 1; k < kNodes; ++k)  // odometry that turns too little
+    nodes[k].T_odom_base = nodes[k - 1].T_odom_base * true_pose({0}, k - 1).inverse() * true_pose({0}, k) *
+                           Pose::planar(0.0, 0.0, 0.004);
+  add_loop(fleet, {{0}, 0}, {{0}, 39});
+  add_loop(fleet, {{0}, 2}, {{0}, 37});
+  const FleetSolution before = solve(fleet, {});
+  ASSERT_EQ(before.components.size(), 1U);
+  for (const LoopOutcome& loop : before.loops) EXPECT_FALSE(loop.in_use()) << "never tested";
+  fleet.checks[{{0}, {0}}] = {{0}, {0}, 10.0, 9.0, 9, 9, true, {{0, 39}, {2, 37}}, "9 of 9 places agree"};
+  const FleetSolution after = solve(fleet, {});
+  EXPECT_TRUE(after.pairs.empty());
+  for (const LoopOutcome& loop : after.loops) EXPECT_TRUE(loop.in_use());
+  EXPECT_LT(largest_error(after, after.components.at(0)), 0.4 * largest_error(before, before.components[0]));
+}
+
 TEST(FleetGraph, FalseLoopsAreDroppedByPcm) {
   FleetGraph fleet = robots_without_loops(2);
   for (std::uint32_t k = 5; k < 35; k += 5) add_loop(fleet, {{0}, k}, {{1}, k});
