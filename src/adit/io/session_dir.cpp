@@ -53,13 +53,22 @@ std::string session_toml(const Session& session) {
                               pair.refused_reason));
   }
   table.insert("refusals", refusals);
+  const auto is_merged = [&](const MergeCheck& check) {
+    return std::ranges::any_of(session.solution.pairs, [&](const PairOutcome& pair) {
+      return pair.a == check.a && pair.b == check.b && pair.merged;
+    });
+  };
   toml::array merges;
+  toml::array revisits;
   for (const auto& [pair, check] : session.fleet.checks) {
-    if (!check.accepted) continue;
+    if (check.a == check.b)
+      revisits.push_back(format("{}: {}", name_of(session.fleet, check.a), check.reason));
+    if (!is_merged(check)) continue;
     merges.push_back(format("{} and {}: {}", name_of(session.fleet, pair.first),
                             name_of(session.fleet, pair.second), check.reason));
   }
   table.insert("merges", merges);
+  table.insert("revisits", revisits);
   std::ostringstream text;
   text << table << "\n";
   const toml::parse_result configuration = toml::parse(session.provenance.configuration);
