@@ -31,6 +31,7 @@ Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps, 
   for (const auto& map : meeting.maps) {
     meeting.agents.emplace_back(map, std::make_shared<FeatureStore>(map, config.loops.registration_in_use()),
                                 config.loops);
+    meeting.agents.back().find_revisits();
     bus.join(meeting.agents.back());
   }
   for (int round = 0; round < kRounds; ++round) {

@@ -16,8 +16,11 @@ FleetGraph between(const FleetGraph& all, RobotId a, RobotId b) {
   FleetGraph pair;
   for (const RobotId robot : {a, b}) pair.robots[robot] = all.robots.at(robot);
   for (const auto& [ends, loop] : all.loops)
-    if (ends.first.robot == a && ends.second.robot == b) pair.loops.emplace(ends, loop);
-  if (const auto check = all.checks.find({a, b}); check != all.checks.end()) pair.checks.insert(*check);
+    if (pair.robots.contains(ends.first.robot) && pair.robots.contains(ends.second.robot))
+      pair.loops.emplace(ends, loop);
+  for (const auto& [robots, check] : all.checks)
+    if (pair.robots.contains(robots.first) && pair.robots.contains(robots.second))
+      pair.checks.emplace(robots, check);
   return pair;
 }
 
@@ -112,10 +115,10 @@ MergeJoint joint_of(const std::vector<RobotRun>& runs, const MergeTruth& truth, 
 
 }  // namespace
 
-Result<MergeTruth> merge_truth(const std::vector<RobotRun>& runs) {
+Result<MergeTruth> merge_truth(const std::vector<RobotRun>& runs, KeyframeSelection selection) {
   MergeTruth truth;
   for (const RobotRun& a : runs) {
-    const Result<AteResult> odometry = ate(a.map->odometry, a.truth);
+    const Result<AteResult> odometry = ate(a.map_for(selection)->odometry, a.truth);
     if (!odometry) return fail(a.result.name, odometry.error());
     truth.odometry_ate_max_m.push_back(odometry->max_m);
     std::vector<double>& row = truth.shared_m.emplace_back();

@@ -10,12 +10,12 @@
 
 namespace adit::app {
 
-/// What the ground truth says about the robots of one world, whatever the policy.
+/// What the ground truth says about the robots of one world.
 struct MergeTruth {
   std::vector<std::vector<double>> shared_m;  ///< [a][b], metres.
   std::vector<double> odometry_ate_max_m;     ///< One a robot, after its own alignment.
 };
-Result<MergeTruth> merge_truth(const std::vector<RobotRun>& runs);
+Result<MergeTruth> merge_truth(const std::vector<RobotRun>& runs, KeyframeSelection selection);
 
 /// All robots meet once; then every pair is solved by itself on the loops that it found, and all jointly.
 /// Neither sees the ground truth; it only judges.

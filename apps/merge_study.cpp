@@ -71,13 +71,13 @@ void print_line(const MergeRun& run, std::FILE* to) {
 Result<> run_world(const ListedWorld& world, const std::vector<KeyframeSelection>& selections,
                    const RunConfig& config, const Options& options, std::vector<MergeRun>& runs) {
   const Result<std::vector<RobotRun>> robots =
-      driven_robots(world, config, std::filesystem::path(options.out) / "maps");
+      driven_robots(world, config, selections, std::filesystem::path(options.out) / "maps");
   if (!robots) return tl::unexpected(robots.error());
-  const Result<MergeTruth> truth = merge_truth(*robots);
-  if (!truth) return fail(world.name, truth.error());
   for (const KeyframeSelection selection : selections) {
     if (interrupted()) return fail("interrupted");
-    Result<MergeRun> run = run_merges(*robots, *truth, selection, under(selection, config));
+    const Result<MergeTruth> truth = merge_truth(*robots, selection);
+    if (!truth) return fail(world.name, truth.error());
+    Result<MergeRun> run = run_merges(*robots, *truth, selection, studied_under(selection, config));
     if (!run) return fail(world.name, run.error());
     run->world = world.name;
     run->group = world.group;

@@ -45,11 +45,11 @@ Result<> check(const std::deque<ListedWorld>& worlds) {
 }
 
 /// Everything that decides what the robots record; a world may change its group.
-std::string key_of(ListedWorld world, RunConfig& config) {
+std::string key_of(ListedWorld world, ScenarioConfig simulation, RobotSlamConfig robot) {
   world.group = ListedWorld{}.group;
   Fields fields = fields_of(world);
-  append(fields, "simulation", adit::fields_of(config.simulation));
-  append(fields, "robot", adit::fields_of(config.robot));
+  append(fields, "simulation", adit::fields_of(simulation));
+  append(fields, "robot", adit::fields_of(robot));
   return format("{:08x}", crc32(std::string(version()) + to_toml(fields)));
 }
 
@@ -65,45 +65,76 @@ std::filesystem::path truth_file(const std::filesystem::path& folder, std::size_
   return folder / format("{}_truth.tum", robot);
 }
 
-/// Drives one recording and writes what it left.
-Result<> record(const Recording& recording, std::size_t robot, const RobotSlamConfig& config,
-                const std::filesystem::path& folder, Progress& progress) {
+/// What one odometry makes of a world, and the folder that keeps it.
+struct Drives {
+  RobotSlamConfig config;
+  std::filesystem::path folder;
+};
+
+/// Drives one recording and writes what it left, into the folder of each configuration.
+Result<> record(const Recording& recording, std::size_t robot, const std::vector<RobotSlamConfig>& configs,
+                const std::vector<OutputDir>& folders, Progress& progress) {
   const auto observer = [&](std::size_t) {
     progress.advance();
     return !interrupted();
   };
-  const Result<RobotMap> map = map_recording(recording, {static_cast<std::uint8_t>(robot)}, config, observer);
-  if (!map) return tl::unexpected(map.error());
-  return write_robot_map(map_file(folder, robot), *map).and_then([&] {
-    return write_tum(truth_file(folder, robot), recording.truth);
-  });
+  const Result<std::vector<RobotMap>> maps =
+      map_recording(recording, {static_cast<std::uint8_t>(robot)}, configs, observer);
+  if (!maps) return tl::unexpected(maps.error());
+  Result<> done;
+  for (std::size_t i = 0; done && i < maps->size(); ++i) {
+    done = write_robot_map(map_file(folders[i].path(), robot), (*maps)[i]).and_then([&] {
+      return write_tum(truth_file(folders[i].path(), robot), recording.truth);
+    });
+  }
+  return done;
 }
 
-/// Drives all robots of the world; the folder appears whole or not at all.
-Result<> record_all(const ListedWorld& listed, const RunConfig& config, const std::filesystem::path& folder) {
+/// Drives all robots of the world; each folder appears whole or not at all.
+Result<> record_all(const ListedWorld& listed, const ScenarioConfig& simulation,
+                    const std::vector<Drives>& wanted) {
   const Result<World> world = world_of(listed);
   if (!world) return tl::unexpected(world.error());
-  const Result<std::vector<Recording>> recordings = simulate(*world, config.simulation);
+  const Result<std::vector<Recording>> recordings = simulate(*world, simulation);
   if (!recordings) return tl::unexpected(recordings.error());
-  Result<OutputDir> out = OutputDir::create(folder, "maps");
-  if (!out) return tl::unexpected(out.error());
+  std::vector<RobotSlamConfig> configs;
+  std::vector<OutputDir> folders;
+  for (const Drives& drives : wanted) {
+    Result<OutputDir> out = OutputDir::create(drives.folder, "maps");
+    if (!out) return tl::unexpected(out.error());
+    configs.push_back(drives.config);
+    folders.push_back(std::move(*out));
+  }
   std::size_t num_scans = 0;
   for (const Recording& recording : *recordings) num_scans += recording.num_scans();
   Progress progress(listed.name + ": scans", num_scans);
   std::vector<Result<>> done(recordings->size());
   parallel_for_each(recordings->size(), [&](std::size_t i) {
-    done[i] = record((*recordings)[i], i, config.robot, out->path(), progress);
+    done[i] = record((*recordings)[i], i, configs, folders, progress);
   });
   const auto failed = std::ranges::find_if(done, [](const Result<>& result) { return !result; });
-  return failed == done.end() ? out->commit() : *failed;
+  if (failed != done.end()) return *failed;
+  for (OutputDir& folder : folders)
+    if (const Result<> committed = folder.commit(); !committed) return committed;
+  return {};
 }
 
-Result<RobotRun> read_robot(const std::filesystem::path& folder, std::size_t robot) {
-  Result<RobotMap> map = read_robot_map(map_file(folder, robot));
+Result<std::shared_ptr<const RobotMap>> read_map(const std::filesystem::path& folder, std::size_t robot) {
+  return read_robot_map(map_file(folder, robot)).map([](RobotMap&& map) {
+    return std::make_shared<const RobotMap>(std::move(map));
+  });
+}
+
+/// The first folder holds the maps of the configured odometry, the last those of the paper's.
+Result<RobotRun> read_robot(const std::vector<Drives>& drives, std::size_t robot) {
+  Result<std::shared_ptr<const RobotMap>> map = read_map(drives.front().folder, robot);
   if (!map) return tl::unexpected(map.error());
-  Result<Trajectory> truth = read_tum(truth_file(folder, robot));
+  Result<std::shared_ptr<const RobotMap>> paper_map =
+      drives.size() == 1 ? map : read_map(drives.back().folder, robot);
+  if (!paper_map) return tl::unexpected(paper_map.error());
+  Result<Trajectory> truth = read_tum(truth_file(drives.front().folder, robot));
   if (!truth) return tl::unexpected(truth.error());
-  RobotRun run{std::make_shared<const RobotMap>(std::move(*map)), std::move(*truth), {}};
+  RobotRun run{*map, *paper_map, std::move(*truth), {}};
   run.result = robot_facts(*run.map, run.truth);
   return run;
 }
@@ -129,17 +160,28 @@ bool is_available(const ListedWorld& world) {
 }
 
 Result<std::vector<RobotRun>> driven_robots(const ListedWorld& world, RunConfig config,
+                                            const std::vector<KeyframeSelection>& selections,
                                             const std::filesystem::path& cache) {
   config.simulation.seed = world.noise_seed;
-  const std::filesystem::path folder = cache / format("{}-{}", world.name, key_of(world, config));
-  if (!std::filesystem::exists(folder)) {
-    if (const Result<> recorded = record_all(world, config, folder); !recorded)
+  std::vector<Drives> drives;
+  std::vector<Drives> missing;
+  for (const bool papers : {false, true}) {
+    const auto selection = std::ranges::find_if(
+        selections, [&](KeyframeSelection s) { return (s != KeyframeSelection::adaptive) == papers; });
+    if (selection == selections.end()) continue;
+    const RobotSlamConfig robot = studied_under(*selection, config).robot;
+    if (!drives.empty() && drives.front().config.odometry.method == robot.odometry.method) continue;
+    drives.push_back({robot, cache / format("{}-{}", world.name, key_of(world, config.simulation, robot))});
+    if (!std::filesystem::exists(drives.back().folder)) missing.push_back(drives.back());
+  }
+  if (!missing.empty()) {
+    if (const Result<> recorded = record_all(world, config.simulation, missing); !recorded)
       return tl::unexpected(recorded.error());
   }
   std::vector<RobotRun> runs;
-  for (std::size_t robot = 0; std::filesystem::exists(map_file(folder, robot)); ++robot) {
-    Result<RobotRun> run = read_robot(folder, robot);
-    if (!run) return fail(run.error().message + "; remove " + folder.string() + " and run again");
+  for (std::size_t robot = 0; std::filesystem::exists(map_file(drives.front().folder, robot)); ++robot) {
+    Result<RobotRun> run = read_robot(drives, robot);
+    if (!run) return fail(run.error().message + "; remove " + cache.string() + " and run again");
     runs.push_back(std::move(*run));
   }
   if (runs.size() < 2) return fail(world.name + ": merging needs at least two robots");

@@ -29,11 +29,12 @@ Result<std::vector<ListedWorld>> read_world_list(const std::filesystem::path& li
 /// Whether the files that the world needs are there; generated ones need none.
 [[nodiscard]] bool is_available(const ListedWorld& world);
 
-/// The robots' maps and ground truth, from `cache` where that world was driven before with the same
-/// configuration of simulation and robots; else simulated and put there. What is used is always what the
-/// cache holds. The code itself is not part of the key: after a change of simulation, odometry, keyframes or
-/// descriptors the cache has to go.
+/// The robots' maps, by the odometries that those policies are studied under, and ground truth; from `cache`
+/// where that world was driven before with the same configuration of simulation and robots; else simulated
+/// and put there. What is used is always what the cache holds. The code itself is not part of the key: after
+/// a change of simulation, odometry, keyframes or descriptors the cache has to go.
 Result<std::vector<RobotRun>> driven_robots(const ListedWorld& world, RunConfig config,
+                                            const std::vector<KeyframeSelection>& selections,
                                             const std::filesystem::path& cache);
 
 }  // namespace adit::app

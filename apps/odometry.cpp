@@ -20,7 +20,7 @@ namespace {
 
 struct Options {
   std::string input;
-  std::string method = "kinematic-icp";
+  std::string method = "plane-icp";
   std::string out;
   std::string truth;
 };
@@ -32,9 +32,9 @@ struct Run {
 };
 
 Result<Run> run(const Recording& recording, const OdometryConfig& config) {
-  if (config.method == "kinematic-icp" && recording.wheel.empty()) {
-    return fail(recording.name +
-                ": kinematic-icp needs wheel odometry and the recording has none; use --method kiss-icp");
+  if (config.needs_wheels() && recording.wheel.empty()) {
+    return fail(recording.name + ": " + config.method +
+                " needs wheel odometry and the recording has none; use --method kiss-icp");
   }
   Odometry odometry(config, recording.T_base_lidar);
   Progress progress("scans", recording.num_scans());
@@ -103,8 +103,10 @@ void add_odometry(Program& program) {
       program.add_command("odometry", "Odometry of one robot",
                           [options](const Common& common) { return odometry(*options, common); });
   command->add_option("input", options->input, "Recording (.mcap) or folder of scans")->required();
-  command->add_option("--method", options->method, "kiss-icp: LiDAR alone; kinematic-icp: with wheels")
-      ->check(CLI::IsMember({"kiss-icp", "kinematic-icp"}))
+  command
+      ->add_option("--method", options->method,
+                   "plane-icp, kinematic-icp: with wheels; kiss-icp: LiDAR alone")
+      ->check(CLI::IsMember({"plane-icp", "kinematic-icp", "kiss-icp"}))
       ->capture_default_str();
   command->add_option("--out", options->out, "Trajectory to write (TUM)")->required();
   command->add_option("--truth", options->truth,

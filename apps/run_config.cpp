@@ -18,8 +18,19 @@ RunConfig under(KeyframeSelection selection, RunConfig config) {
   return config;
 }
 
+RunConfig studied_under(KeyframeSelection selection, RunConfig config) {
+  if (selection != KeyframeSelection::adaptive) config.robot.odometry.method = config.paper_odometry;
+  return under(selection, std::move(config));
+}
+
 Fields fields_of(RunConfig& c) {
-  Fields fields;
+  Fields fields = {{"paper_odometry",
+                    &c.paper_odometry,
+                    "",
+                    0,
+                    0,
+                    "odometry of the paper's keyframe policies in `adit study` and `merge-study`",
+                    {"plane-icp", "kinematic-icp", "kiss-icp"}}};
   append(fields, "simulation", fields_of(c.simulation));
   append(fields, "robot", fields_of(c.robot));
   append(fields, "loops", fields_of(c.loops));

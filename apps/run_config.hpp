@@ -17,14 +17,19 @@ struct RunConfig {
   AgentConfig loops;
   BackEndConfig back_end;
   LoopbackConfig bus;
+  std::string paper_odometry = "kinematic-icp";
 
-  /// The paper's pipeline: Kinematic-ICP, KISS-Matcher's global result accepted by its inliers, PCM, GNC.
+  /// The paper's pipeline behind the odometry: KISS-Matcher's global result accepted by its inliers, PCM,
+  /// GNC.
   RunConfig();
 };
 Fields fields_of(RunConfig& config);
 
 /// The configuration under a keyframe policy: `adaptive` chooses candidates and tests merges by evidence.
 [[nodiscard]] RunConfig under(KeyframeSelection selection, RunConfig config);
+
+/// The same in a study, where the paper's policies run on the paper's odometry.
+[[nodiscard]] RunConfig studied_under(KeyframeSelection selection, RunConfig config);
 
 /// That pipeline with the thresholds of the studies. The paper's are unstated and, as it says, tuned to the
 /// site; these are tuned to zab.

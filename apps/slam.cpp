@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -52,9 +53,14 @@ Result<std::vector<std::shared_ptr<const RobotMap>>> map_robots(const std::vecto
 void print_summary(const Session& session, const std::vector<std::uint64_t>& bytes_sent) {
   for (std::size_t i = 0; i < session.maps.size(); ++i) {
     const RobotMap& map = *session.maps[i];
-    std::printf("%s: %zu scans, %zu keyframes, %d degenerate and %d refused steps, %.2f MB sent\n",
-                map.name.c_str(), map.odometry.size(), map.keyframes.size(), map.num_degenerate,
-                map.num_refused, static_cast<double>(bytes_sent[i]) * 1e-6);
+    const auto own_loops = std::ranges::count_if(session.solution.loops, [&](const LoopOutcome& loop) {
+      return loop.in_use() && loop.loop.from.robot == map.id && loop.loop.to.robot == map.id;
+    });
+    std::printf(
+        "%s: %zu scans, %zu keyframes, %td loops of its own, %d degenerate and %d refused steps, %.2f MB "
+        "sent\n",
+        map.name.c_str(), map.odometry.size(), map.keyframes.size(), own_loops, map.num_degenerate,
+        map.num_refused, static_cast<double>(bytes_sent[i]) * 1e-6);
   }
   const auto name = [&](RobotId id) { return session.fleet.robots.at(id).name; };
   for (const PairOutcome& pair : session.solution.pairs) {

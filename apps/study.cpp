@@ -52,7 +52,7 @@ Result<World> world_of(const Options& options, const WorldConfig& built_in) {
 /// The two solutions of a pair under one policy, without and with PCM, and the folder of the latter.
 Result<> study_pair(const std::vector<const RobotRun*>& runs, KeyframeSelection selection,
                     const RunConfig& given, const std::filesystem::path& dir, StudyResult& study) {
-  const RunConfig config = under(selection, given);
+  const RunConfig config = studied_under(selection, given);
   const Result<Meeting> meeting = hold_meeting(selected_maps(runs, selection), config);
   if (!meeting) return tl::unexpected(meeting.error());
   for (const bool pcm_on : {false, true}) {
@@ -82,7 +82,7 @@ Result<> study_pair(const std::vector<const RobotRun*>& runs, KeyframeSelection 
 
 Result<> study_joint(const std::vector<const RobotRun*>& runs, KeyframeSelection selection,
                      const RunConfig& given, const std::filesystem::path& dir, StudyResult& study) {
-  const RunConfig config = under(selection, given);
+  const RunConfig config = studied_under(selection, given);
   const Result<Meeting> meeting = hold_meeting(selected_maps(runs, selection), config);
   if (!meeting) return tl::unexpected(meeting.error());
   const Result<JudgedSolution> judged = judge(runs, *meeting, meeting->agents.front().solve(config.back_end));
@@ -173,7 +173,7 @@ Result<> study(const Options& options, const Common& common) {
   Result<OutputDir> out = OutputDir::create(options.out, "study");
   if (!out) return tl::unexpected(out.error());
   catch_interrupts();
-  const Result<std::vector<RobotRun>> runs = run_robots(*recordings, config.robot);
+  const Result<std::vector<RobotRun>> runs = run_robots(*recordings, config);
   if (!runs) return tl::unexpected(runs.error());
 
   StudyResult study;

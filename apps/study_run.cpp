@@ -29,27 +29,57 @@ OdometryResult odometry_result(const std::string& method, const Trajectory& esti
   return result;
 }
 
-std::string json_name(const std::string& method) {
-  return method == "kiss-icp" ? "kiss_icp" : "kinematic_icp";
+std::string json_name(std::string method) {
+  std::ranges::replace(method, '-', '_');
+  return method;
 }
 
-Result<RobotRun> run_robot(const Recording& recording, RobotId id, const RobotSlamConfig& config,
+/// A robot's drive under one odometry.
+class Drive {
+ public:
+  Drive(const Recording& recording, RobotId id, RobotSlamConfig config, const std::string& method)
+      : method_(method), slam_(id, recording.name, with_method(config, method), recording.T_base_lidar) {}
+
+  void process(const Scan& scan, const std::optional<WheelDelta>& wheel) {
+    RobotStep step;
+    const double ms = timed_ms([&] { step = slam_.process(scan, wheel); });
+    if (!step.keyframe) ms_.push_back(ms);
+  }
+  [[nodiscard]] const std::string& method() const { return method_; }
+  [[nodiscard]] const RobotMap& map() const { return slam_.map(); }
+  [[nodiscard]] OdometryResult result(const Trajectory& truth) const {
+    return odometry_result(json_name(method_), slam_.map().odometry, truth, ms_);
+  }
+
+ private:
+  static RobotSlamConfig with_method(RobotSlamConfig config, const std::string& method) {
+    config.odometry.method = method;
+    return config;
+  }
+
+  std::string method_;
+  RobotSlam slam_;
+  std::vector<double> ms_;  ///< Of scans that became no keyframe, so that it is the odometry's time alone.
+};
+
+Result<RobotRun> run_robot(const Recording& recording, RobotId id, const RunConfig& config,
                            Progress& progress) {
-  RobotSlam slam(id, recording.name, config, recording.T_base_lidar);
-  KissIcp kiss_icp(config.odometry.kiss_icp, recording.T_base_lidar);
-  const bool compare = config.odometry.method != "kiss-icp";
+  const std::string& method = config.robot.odometry.method;
+  std::vector<Drive> drives;
+  drives.emplace_back(recording, id, config.robot, method);
+  if (config.paper_odometry != method)
+    drives.emplace_back(recording, id, config.robot, config.paper_odometry);
+  KissIcp kiss_icp(config.robot.odometry.kiss_icp, recording.T_base_lidar);
+  const bool compare = std::ranges::find(drives, "kiss-icp", &Drive::method) == drives.end();
   Trajectory kiss_trajectory;
   std::vector<double> kiss_ms;
-  std::vector<double> own_ms;  // of scans that became no keyframe, so that it is the odometry's time alone
   for (std::size_t i = 0; i < recording.num_scans(); ++i) {
     if (interrupted()) return fail(recording.name + ": interrupted");
     const Result<Scan> scan = recording.read_scan(i);
     if (!scan) return fail(recording.name, scan.error());
     const Result<std::optional<WheelDelta>> wheel = wheel_before(recording, i);
     if (!wheel) return fail(recording.name, wheel.error());
-    RobotStep step;
-    const double ms = timed_ms([&] { step = slam.process(*scan, *wheel); });
-    if (!step.keyframe) own_ms.push_back(ms);
+    for (Drive& drive : drives) drive.process(*scan, *wheel);
     if (compare) {
       OdometryStep kiss_step;
       kiss_ms.push_back(timed_ms([&] { kiss_step = kiss_icp.register_scan(*scan); }));
@@ -58,14 +88,16 @@ Result<RobotRun> run_robot(const Recording& recording, RobotId id, const RobotSl
     progress.advance();
   }
   RobotRun run;
-  run.map = std::make_shared<const RobotMap>(slam.map());
-  if (run.map->keyframes.empty()) return fail(recording.name + ": no scan became a keyframe");
+  run.map = std::make_shared<const RobotMap>(drives.front().map());
+  run.paper_map = drives.size() == 1 ? run.map : std::make_shared<const RobotMap>(drives.back().map());
+  if (run.map->keyframes.empty() || run.paper_map->keyframes.empty())
+    return fail(recording.name + ": no scan became a keyframe");
   run.truth = recording.truth;
   run.result = robot_facts(*run.map, run.truth);
   if (compare)
     run.result.odometry.push_back(odometry_result("kiss_icp", kiss_trajectory, run.truth, kiss_ms));
-  run.result.odometry.push_back(
-      odometry_result(json_name(config.odometry.method), run.map->odometry, run.truth, own_ms));
+  for (auto drive = drives.rbegin(); drive != drives.rend(); ++drive)  // the paper's first
+    run.result.odometry.push_back(drive->result(run.truth));
   return run;
 }
 
@@ -181,8 +213,7 @@ Trajectory solved_trajectory(const RobotMap& map, const std::vector<Pose>& T_wor
   return trajectory;
 }
 
-Result<std::vector<RobotRun>> run_robots(const std::vector<Recording>& recordings,
-                                         const RobotSlamConfig& config) {
+Result<std::vector<RobotRun>> run_robots(const std::vector<Recording>& recordings, const RunConfig& config) {
   std::size_t num_scans = 0;
   for (const Recording& recording : recordings) num_scans += recording.num_scans();
   Progress progress("scans", num_scans);
@@ -197,7 +228,7 @@ std::vector<std::shared_ptr<const RobotMap>> selected_maps(const std::vector<con
                                                            KeyframeSelection selection) {
   std::vector<std::shared_ptr<const RobotMap>> maps;
   for (const RobotRun* run : runs) {
-    maps.push_back(std::make_shared<const RobotMap>(select_keyframes(*run->map, selection)));
+    maps.push_back(std::make_shared<const RobotMap>(select_keyframes(*run->map_for(selection), selection)));
   }
   return maps;
 }

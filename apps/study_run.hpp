@@ -12,17 +12,23 @@
 
 namespace adit::app {
 
-/// One robot after its drive: its map (by the configured odometry) and what the evaluation needs.
+/// One robot after its drive: its map (by the configured odometry), that of the paper's odometry, where its
+/// policies are studied too, and what the evaluation needs.
 struct RobotRun {
   std::shared_ptr<const RobotMap> map;
+  std::shared_ptr<const RobotMap> paper_map;
   Trajectory truth;  ///< For evaluation alone.
   RobotResult result;
+
+  /// The one that a policy selects keyframes of.
+  [[nodiscard]] const std::shared_ptr<const RobotMap>& map_for(KeyframeSelection selection) const {
+    return selection == KeyframeSelection::adaptive ? map : paper_map;
+  }
 };
 
-/// Drives every recording once through RobotSlam and, beside it, through KISS-ICP for the comparison of
-/// section 3.1; robots in parallel.
-Result<std::vector<RobotRun>> run_robots(const std::vector<Recording>& recordings,
-                                         const RobotSlamConfig& config);
+/// Drives every recording once through RobotSlam with either odometry and, beside them, through KISS-ICP for
+/// the comparison of section 3.1; robots in parallel.
+Result<std::vector<RobotRun>> run_robots(const std::vector<Recording>& recordings, const RunConfig& config);
 
 /// What a robot drove and how many scans and keyframes it made of that, without its odometries.
 RobotResult robot_facts(const RobotMap& map, const Trajectory& truth);

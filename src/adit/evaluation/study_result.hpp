@@ -19,7 +19,7 @@ namespace adit {
 
 /// One odometry method on one robot.
 struct OdometryResult {
-  std::string method;            ///< "kiss_icp", "kinematic_icp".
+  std::string method;            ///< "kiss_icp", "kinematic_icp", "plane_icp".
   std::optional<AteResult> ate;  ///< After the robot's own alignment; none where there is no truth.
   std::optional<double> ms_per_scan_median;
 };

@@ -165,6 +165,7 @@ Row max_ate_cells(const PairResult* run) {
 std::string method_title(const std::string& method) {
   if (method == "kiss_icp") return "KISS-ICP";
   if (method == "kinematic_icp") return "Kinematic-ICP";
+  if (method == "plane_icp") return "plane-icp";
   return method;
 }
 

@@ -24,6 +24,8 @@ struct AdaptiveConfig {
   bool stand_out = true;
   double lane_m = 1.0;
   int lanes = 2;
+  bool revisits = true;
+  int revisit_candidates = 32;
   RegistrationConfig registration;
   MergeCheckConfig merge_check;
   ScanContextConfig context;  ///< With which the keyframes were described; no setting of its own.
@@ -68,6 +70,9 @@ class Agent {
         const AgentConfig& config);
 
   [[nodiscard]] RobotId id() const { return map_->id; }
+  /// Looks for places of its own map to which the robot came back, and tests what it finds as it does with
+  /// peers: an adaptive agent, once. Call it before the first meeting.
+  void find_revisits();
   /// What to say when `peer` comes into range.
   [[nodiscard]] std::vector<Message> meet(RobotId peer) const;
   /// What to answer. Messages for another robot are a ContractViolation.
@@ -107,7 +112,12 @@ class Agent {
   [[nodiscard]] Replies loops_from(RobotId peer, RobotId author, std::size_t first) const;
   [[nodiscard]] std::vector<LoopCandidate> best_candidates(RobotId peer_id) const;
   /// Those that stand out most from what the robot's own map has that looks like them; spread over its way.
-  [[nodiscard]] std::vector<LoopCandidate> standing_out(std::vector<LoopCandidate> found);
+  [[nodiscard]] std::vector<LoopCandidate> standing_out(std::vector<LoopCandidate> found, int max_candidates);
+  [[nodiscard]] std::vector<LoopCandidate> own_candidates(const OdometryChain& chain);
+  /// Those that registration and odometry accept.
+  std::vector<PcmLoop> register_own(const std::vector<LoopCandidate>& candidates, const OdometryChain& chain);
+  /// Of comparisons within the own map.
+  [[nodiscard]] std::vector<CheckedPlace> compare_own(const std::vector<PlannedCheck>& asked);
   void register_clouds_of(RobotId from, const Clouds& clouds);
   /// The test of the maps, when all loops with the peer have been tried; false while parts of its graph that
   /// they need are still on their way.
@@ -117,7 +127,10 @@ class Agent {
   /// Whether they were what the test had asked for.
   bool compare_clouds_of(RobotId from, const Clouds& clouds);
   Replies conclude_test(RobotId peer_id);
+  void decide(MergeCheck check);
   [[nodiscard]] const OtherPlaces& other_places();
+  [[nodiscard]] Discernment& discernment();
+  [[nodiscard]] OdometryChain own_chain() const;
   [[nodiscard]] Replies checks_from(RobotId peer, RobotId author, std::size_t first) const;
   void find_candidates(RobotId peer_id);
   /// What keyframe k would have looked like to a robot that drove beside this one.
@@ -134,6 +147,7 @@ class Agent {
   std::map<RobotId, std::vector<Ends>> registered_;     ///< By author, in the order of registration.
   std::map<RobotId, std::vector<MergeCheck>> decided_;  ///< By author, in order.
   std::map<RobotId, Peer> peers_;
+  bool looked_for_revisits_ = false;
   // Of an adaptive agent, each made when it is first needed.
   std::unique_ptr<OtherPlaces> other_places_;
   std::vector<double> own_likeness_;  ///< Distance of each keyframe to the most similar other place.

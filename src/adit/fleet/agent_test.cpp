@@ -313,6 +313,84 @@ TEST(AdaptiveAgent, KeepsRobotsOfTwoStreetsApartWithAReason) {
   EXPECT_EQ(solution.components.size(), 2U);
 }
 
+/// A robot that drives up the street and back again, on the other lane.
+struct ThereAndBack {
+  std::vector<Pose> truth = street(0.0, 50.0, -0.5);
+  std::shared_ptr<const RobotMap> map;
+
+  explicit ThereAndBack(double yaw_drift = 0.003) {
+    for (const Pose& pose : street(50.0, 0.0, 0.5)) truth.push_back(pose);
+    map = std::make_shared<const RobotMap>(test::drive(test::BoxWorld(3), {0}, truth, yaw_drift));
+  }
+  [[nodiscard]] Agent agent(const AgentConfig& config = adaptive()) const {
+    return {map, std::make_shared<FeatureStore>(map, config.registration_in_use()), config};
+  }
+  [[nodiscard]] double largest_error(const FleetSolution& solution) const {
+    double worst = 0.0;
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      const Vector3 expected = (truth.front().inverse() * truth[k]).translation();
+      worst = std::max(worst, (solution.T_world_keyframe.at({0})[k].translation() - expected).norm());
+    }
+    return worst;
+  }
+};
+
+TEST(AdaptiveAgent, FindsThatItCameBackAndMapsBetterAlone) {
+  const ThereAndBack robot;
+  Agent agent = robot.agent();
+  const double before = robot.largest_error(agent.solve(with_checks()));
+  agent.find_revisits();
+  const FleetSolution solution = agent.solve(with_checks());
+  const MergeCheck& check = agent.known().checks.at({{0}, {0}});
+  ASSERT_TRUE(check.accepted) << check.reason;
+  EXPECT_LT(robot.largest_error(solution), 0.5 * before);
+  EXPECT_TRUE(solution.pairs.empty());
+  int in_use = 0;
+  for (const LoopOutcome& outcome : solution.loops) {
+    if (!outcome.in_use()) continue;
+    ++in_use;
+    EXPECT_LT(outcome.loop.from, outcome.loop.to);
+    const Pose T_true = robot.truth[outcome.loop.from.index].inverse() * robot.truth[outcome.loop.to.index];
+    EXPECT_LT((T_true.inverse() * outcome.loop.T_from_to).translation().norm(), 0.5);
+  }
+  EXPECT_GE(in_use, 2);
+
+  agent.find_revisits();  // again: nothing new
+  EXPECT_EQ(agent.known().checks.size(), 1U);
+  EXPECT_LE(agent.known().loops.size(), static_cast<std::size_t>(adaptive().adaptive.revisit_candidates));
+}
+
+TEST(AdaptiveAgent, FindsNoRevisitWhereItNeverCameBackOrMayNotLook) {
+  TwoRobots fleet(3, adaptive());
+  fleet.agents[0].find_revisits();
+  EXPECT_TRUE(fleet.agents[0].known().loops.empty());
+  EXPECT_TRUE(fleet.agents[0].known().checks.empty());
+  AgentConfig config = adaptive();
+  config.adaptive.revisits = false;
+  Agent off = ThereAndBack().agent(config);
+  off.find_revisits();
+  EXPECT_TRUE(off.known().loops.empty());
+}
+
+TEST(AdaptiveAgent, APeerLearnsOfRevisitsAndComputesTheSame) {
+  const ThereAndBack robot;
+  TwoRobots fleet(3, adaptive());
+  fleet.agents[0] = robot.agent();
+  fleet.agents[0].find_revisits();
+  fleet.meet();
+  ASSERT_TRUE(fleet.agents[1].known().checks.contains({{0}, {0}}));
+  const FleetSolution first = fleet.agents[0].solve(with_checks());
+  const FleetSolution second = fleet.agents[1].solve(with_checks());
+  ASSERT_EQ(first.pairs.size(), 1U);
+  const auto within_one = [](const LoopOutcome& loop) {
+    return loop.in_use() && loop.loop.from.robot == loop.loop.to.robot;
+  };
+  EXPECT_GT(std::ranges::count_if(second.loops, within_one), 0);
+  for (const auto& [id, poses] : first.T_world_keyframe)
+    for (std::size_t k = 0; k < poses.size(); ++k)
+      EXPECT_EQ(poses[k].matrix(), second.T_world_keyframe.at(id)[k].matrix());
+}
+
 TEST(AdaptiveAgent, RepeatedMessagesAndThreadsChangeNothing) {
   set_num_threads(1);
   TwoRobots once(3, adaptive());

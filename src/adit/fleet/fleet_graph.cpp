@@ -12,6 +12,7 @@
 
 #include "adit/core/format.hpp"
 #include "adit/fleet/condensed_graph.hpp"
+#include "adit/fleet/merge_cycles.hpp"
 
 namespace adit {
 namespace {
@@ -241,17 +242,67 @@ std::vector<PairOutcome> all_pairs(const FleetGraph& fleet) {
   return pairs;
 }
 
-/// The loops that an accepted check speaks of.
-void keep_checked(const FleetGraph& fleet, const std::vector<std::size_t>& of_pair,
-                  std::vector<LoopOutcome>& loops, PairOutcome& pair) {
-  const auto check = fleet.checks.find({pair.a, pair.b});
-  if (check == fleet.checks.end() || !check->second.accepted) return;
+/// Keeps the loops between two robots, or within one, that an accepted check speaks of; their number.
+std::size_t keep_checked(const FleetGraph& fleet, const RobotPair& robots,
+                         const std::vector<std::size_t>& of_pair, std::vector<LoopOutcome>& loops) {
+  const auto check = fleet.checks.find(robots);
+  if (check == fleet.checks.end() || !check->second.accepted) return 0;
+  std::size_t num = 0;
   const std::set<std::pair<std::uint32_t, std::uint32_t>> checked(check->second.loops.begin(),
                                                                   check->second.loops.end());
   for (const std::size_t l : of_pair) {
     const LoopClosure& loop = loops[l].loop;
     loops[l].in_clique = checked.contains({loop.from.index, loop.to.index});
-    pair.clique += loops[l].in_clique ? 1 : 0;
+    num += loops[l].in_clique ? 1 : 0;
+  }
+  return num;
+}
+
+/// Loops within one robot's map are used only where they passed their test, whatever the other pairs need.
+void keep_revisits(const FleetGraph& fleet, const LoopsOfPairs& of_pairs, FleetSolution& solution) {
+  for (const auto& [robots, of_pair] : of_pairs)
+    if (robots.first == robots.second) keep_checked(fleet, robots, of_pair, solution.loops);
+}
+
+std::string taken_back(const FleetGraph& fleet, const std::vector<Merge>& merges,
+                       const Contradiction& contradiction) {
+  std::string others;
+  bool has_least_evidence = true;
+  for (const std::size_t m : contradiction.others) {
+    others += format("{}{}-{}", others.empty() ? "" : " and ", fleet.robots.at(merges[m].a).name,
+                     fleet.robots.at(merges[m].b).name);
+    if (merges[m].evidence < merges[contradiction.merge].evidence) has_least_evidence = false;
+  }
+  return format(
+      "taken back: with {} it misses by {:.0f} m around a cycle with {:.0f} m of odometry, and {}; a meeting "
+      "with further robots would decide",
+      others, contradiction.miss_m, contradiction.driven_m,
+      has_least_evidence ? "has the least evidence of them" : "without it the others agree best");
+}
+
+/// Takes the loops of merges out that cycles of robots contradict.
+void take_back(const FleetGraph& fleet, Chains& chains, const BackEndConfig& config,
+               FleetSolution& solution) {
+  const LoopsOfPairs of_pairs = loops_of_pairs(solution);
+  std::vector<Merge> merges;
+  std::vector<PairOutcome*> pairs;
+  std::map<RobotId, OdometryChain> of_robots;
+  for (PairOutcome& pair : solution.pairs) {
+    if (pair.clique == 0) continue;
+    Merge merge{pair.a, pair.b, fleet.checks.at({pair.a, pair.b}).evidence, {}};
+    for (const std::size_t l : of_pairs.at({pair.a, pair.b})) {
+      const LoopClosure& loop = solution.loops[l].loop;
+      if (solution.loops[l].in_clique)
+        merge.loops.push_back({loop.from.index, loop.to.index, loop.T_from_to, loop_information(config)});
+    }
+    merges.push_back(std::move(merge));
+    pairs.push_back(&pair);
+    for (const RobotId robot : {pair.a, pair.b}) of_robots.emplace(robot, chains.of(robot));
+  }
+  for (const Contradiction& contradiction : contradictions(merges, of_robots)) {
+    PairOutcome& pair = *pairs[contradiction.merge];
+    pair.refused_reason = taken_back(fleet, merges, contradiction);
+    for (const std::size_t l : of_pairs.at({pair.a, pair.b})) solution.loops[l].in_clique = false;
   }
 }
 
@@ -262,13 +313,15 @@ void run_pcm(const FleetGraph& fleet, const BackEndConfig& config, FleetSolution
     const std::vector<std::size_t>& of_pair = of_pairs.at({pair.a, pair.b});
     pair.num_loops = of_pair.size();
     if (config.checks_needed) {
-      keep_checked(fleet, of_pair, solution.loops, pair);
+      pair.clique = keep_checked(fleet, {pair.a, pair.b}, of_pair, solution.loops);
     } else if (!config.pcm_on || of_pair.empty()) {
       for (const std::size_t l : of_pair) solution.loops[l].in_clique = true;
     } else {
       keep_consistent(chains, config, of_pair, solution.loops, pair);
     }
   }
+  keep_revisits(fleet, of_pairs, solution);
+  if (config.checks_needed && config.cycles_needed) take_back(fleet, chains, config, solution);
 }
 
 void decide_merges(const FleetGraph& fleet, const BackEndConfig& config, FleetSolution& solution) {
@@ -280,7 +333,8 @@ void decide_merges(const FleetGraph& fleet, const BackEndConfig& config, FleetSo
         std::ranges::count_if(of_pair, [&](std::size_t l) { return solution.loops[l].in_use(); }));
     pair.merged = num_used >= static_cast<std::size_t>(config.min_loops);
     if (pair.merged) continue;
-    pair.refused_reason = refusal(fleet, config, pair, tried[{pair.a, pair.b}], num_used);
+    if (pair.refused_reason.empty())
+      pair.refused_reason = refusal(fleet, config, pair, tried[{pair.a, pair.b}], num_used);
     // Too few loops are no bridge: they must not join the maps through the back door either.
     for (const std::size_t l : of_pair) solution.loops[l].weight = 0.0;
   }
@@ -365,6 +419,8 @@ Fields fields_of(BackEndConfig& c) {
       {"pcm_on", &c.pcm_on, "", 0, 0, "drop loops that disagree pairwise before the graph is solved"},
       {"gnc_on", &c.gnc_on, "", 0, 0, "let graduated non-convexity reject loops while the graph is solved"},
       {"checks_needed", &c.checks_needed, "", 0, 0, "let only pairs share a map that passed the merge check"},
+      {"cycles_needed", &c.cycles_needed, "", 0, 0,
+       "take back merges that passed it and that merges with third robots contradict"},
       {"min_loops", &c.min_loops, "", 1, 10000, "loops in use that two robots need to share a map"},
       {"loop_translation", &c.loop_translation, "m", 1e-4, 10.0, "sigma of a loop's translation"},
       {"loop_rotation_deg", &c.loop_rotation_deg, "deg", 1e-3, 90.0, "sigma of a loop's rotation"}};

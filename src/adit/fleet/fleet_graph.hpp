@@ -34,6 +34,7 @@ struct BackEndConfig {
   bool pcm_on = true;
   bool gnc_on = true;
   bool checks_needed = false;     ///< Only pairs with an accepted MergeCheck may share a map.
+  bool cycles_needed = true;      ///< And only as long as the merges of others do not contradict it.
   int min_loops = 1;              ///< Loops in use between two robots before they count as merged.
   double loop_translation = 0.1;  ///< Fixed sigmas of a loop, as in Swarm-SLAM's back-end.
   double loop_rotation_deg = 0.6;
@@ -90,7 +91,8 @@ struct FleetSolution {
 /// least one): chordal mean of the rotations, mean of the positions that they give to b's keyframes.
 [[nodiscard]] Pose mean_frame(const FleetGraph& fleet, const std::vector<const LoopClosure*>& loops);
 
-/// PCM per pair of robots, then GNC per connected component with odometry as known inliers.
+/// PCM per pair of robots, or the loops of the accepted checks but for those that merges with third robots
+/// contradict; then GNC per connected component with odometry as known inliers.
 /// A robot without loops is a component of its own, at its odometry. Loops whose keyframes are not (yet)
 /// known take no part.
 [[nodiscard]] FleetSolution solve(const FleetGraph& fleet, const BackEndConfig& config);

@@ -95,6 +95,94 @@ TEST(FleetGraph, WhereChecksAreNeededOnlyTheLoopsOfAnAcceptedOneCount) {
   EXPECT_LT(largest_error(merged, merged.components[0]), 1e-3);
 }
 
+/// Loops between two robots that passed their test; with `displaced` they put the second one elsewhere.
+void add_merge(FleetGraph& fleet, RobotId a, RobotId b, double evidence, const Pose& displaced = {}) {
+  MergeCheck check{a, b, evidence, 9.0, 20, 20, true, {}, "20 of 20 places agree"};
+  for (std::uint32_t k = 5; k < 35; k += 5) {
+    add_loop(fleet, {a, k}, {b, k}, true_pose(b, k).inverse() * displaced * true_pose(b, k));
+    check.loops.emplace_back(k, k);
+  }
+  fleet.checks[{a, b}] = check;
+}
+
+void expect_same_poses(const FleetSolution& first, const FleetSolution& second) {
+  ASSERT_EQ(first.components.size(), second.components.size());
+  for (const auto& [robot, poses] : first.T_world_keyframe)
+    for (std::size_t k = 0; k < poses.size(); ++k)
+      EXPECT_EQ(poses[k].matrix(), second.T_world_keyframe.at(robot)[k].matrix());
+}
+
+TEST(FleetGraph, AMergeThatLaterOnesContradictIsTakenBack) {
+  BackEndConfig config;
+  config.checks_needed = true;
+  FleetGraph fleet = robots_without_loops(3);
+  add_merge(fleet, {0}, {2}, 10.0, Pose::translation_of(25.0, 10.0, 0.0));
+  add_merge(fleet, {0}, {1}, 20.0);
+  const FleetSolution before = solve(fleet, config);
+  EXPECT_TRUE(before.pairs[1].merged) << "nothing speaks against it yet";
+
+  FleetGraph later = fleet;
+  add_merge(later, {1}, {2}, 15.0);
+  const FleetSolution after = solve(later, config);
+  EXPECT_FALSE(after.pairs[1].merged);
+  EXPECT_EQ(after.pairs[1].refused_reason.find("taken back: with robot_0-robot_1 and robot_1-robot_2"), 0U)
+      << after.pairs[1].refused_reason;
+  ASSERT_EQ(after.components.size(), 1U) << "robot 2 is joined by robot 1";
+  EXPECT_LT(largest_error(after, after.components[0]), 1e-3);
+  config.cycles_needed = false;
+  for (const PairOutcome& pair : solve(later, config).pairs)
+    EXPECT_EQ(pair.refused_reason.find("taken back"), std::string::npos);
+  config.cycles_needed = true;
+
+  FleetGraph without_it = robots_without_loops(3);
+  add_merge(without_it, {0}, {1}, 20.0);
+  add_merge(without_it, {1}, {2}, 15.0);
+  expect_same_poses(after, solve(without_it, config));
+
+  later.checks.at({{1}, {2}}).accepted = false;  // withdrawn: no cycle, no contradiction
+  expect_same_poses(before, solve(later, config));
+  EXPECT_TRUE(solve(later, config).pairs[1].merged);
+}
+
+TEST(FleetGraph, OfTwoMapsThatOneTakenBackMergeJoinedBothStayAsTheyWere) {
+  BackEndConfig config;
+  config.checks_needed = true;
+  FleetGraph fleet = robots_without_loops(4);
+  add_merge(fleet, {0}, {1}, 20.0);
+  add_merge(fleet, {2}, {3}, 20.0);
+  const FleetSolution apart = solve(fleet, config);
+  // Two merges join the maps of 0 and 1 with those of 2 and 3, and contradict one another: the weaker goes.
+  add_merge(fleet, {0}, {2}, 12.0);
+  add_merge(fleet, {1}, {3}, 10.0, Pose::translation_of(-30.0, 5.0, 0.0));
+  const FleetSolution joined = solve(fleet, config);
+  EXPECT_TRUE(joined.pairs[1].merged);
+  EXPECT_FALSE(joined.pairs[4].merged);
+  ASSERT_EQ(joined.components.size(), 1U);
+  EXPECT_LT(largest_error(joined, joined.components[0]), 1e-3);
+  // Nothing was lost: without either the maps are what they were.
+  fleet.checks.at({{0}, {2}}).accepted = false;
+  fleet.checks.at({{1}, {3}}).accepted = false;
+  expect_same_poses(apart, solve(fleet, config));
+}
+
+TEST(FleetGraph, LoopsWithinARobotCountWhereAnAcceptedCheckSpeaksOfThem) {
+  FleetGraph fleet = robots_without_loops(1);
+  std::vector<GraphNode>& nodes = fleet.robots.at({0}).nodes;
+  for (std::uint32_t k = 1; k < kNodes; ++k)  // odometry that turns too little
+    nodes[k].T_odom_base = nodes[k - 1].T_odom_base * true_pose({0}, k - 1).inverse() * true_pose({0}, k) *
+                           Pose::planar(0.0, 0.0, 0.004);
+  add_loop(fleet, {{0}, 0}, {{0}, 39});
+  add_loop(fleet, {{0}, 2}, {{0}, 37});
+  const FleetSolution before = solve(fleet, {});
+  ASSERT_EQ(before.components.size(), 1U);
+  for (const LoopOutcome& loop : before.loops) EXPECT_FALSE(loop.in_use()) << "never tested";
+  fleet.checks[{{0}, {0}}] = {{0}, {0}, 10.0, 9.0, 9, 9, true, {{0, 39}, {2, 37}}, "9 of 9 places agree"};
+  const FleetSolution after = solve(fleet, {});
+  EXPECT_TRUE(after.pairs.empty());
+  for (const LoopOutcome& loop : after.loops) EXPECT_TRUE(loop.in_use());
+  EXPECT_LT(largest_error(after, after.components.at(0)), 0.4 * largest_error(before, before.components[0]));
+}
+
 TEST(FleetGraph, FalseLoopsAreDroppedByPcm) {
   FleetGraph fleet = robots_without_loops(2);
   for (std::uint32_t k = 5; k < 35; k += 5) add_loop(fleet, {{0}, k}, {{1}, k});

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "adit/core/format.hpp"
+#include "adit/fleet/revisits.hpp"
 
 namespace adit {
 namespace {
@@ -118,6 +119,7 @@ std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryCh
     double best = kSide;
     for (std::uint32_t i = 0; i < own.size(); ++i) {
       if (std::abs(own_way[i] - own_way[loop.a]) > from_loop + 2.0 * kSide) continue;
+      if (&own == &theirs && their_way[j] - own_way[i] < kRevisitWay) continue;
       const double distance = (own.pose(i).translation() - at).norm();
       if (distance < best) {
         best = distance;
@@ -134,7 +136,8 @@ std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryCh
 }
 
 MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
-                     double chance_to_go_on, const MergeCheckConfig& config)
+                     double chance_to_go_on, const MergeCheckConfig& config,
+                     const std::vector<double>& known_before)
     : loops_(loops), chance_to_go_on_(chance_to_go_on), config_(config) {
   std::vector<std::size_t> rest(loops.size());
   for (std::size_t l = 0; l < rest.size(); ++l) rest[l] = l;
@@ -149,6 +152,10 @@ MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, cons
     if (std::ranges::any_of(hypothesis.apart_m, [](double metres) { return metres <= kSameAlignment; }))
       continue;
     hypothesis.plan = plan_checks(own, theirs, agreeing, config);
+    if (!known_before.empty()) {
+      const auto known = [&](std::size_t l) { return known_before[l]; };
+      hypothesis.known_before = known(*std::ranges::min_element(hypothesis.loops, {}, known));
+    }
     hypotheses_.push_back(std::move(hypothesis));
   }
 }
@@ -160,7 +167,8 @@ double MergeTest::evidence_of_agreement() const {
 }
 
 double MergeTest::evidence(const Hypothesis& hypothesis) const {
-  double sum = -std::log(static_cast<double>(loops_.size() - hypothesis.loops.size() + 1));
+  double sum =
+      hypothesis.known_before - std::log(static_cast<double>(loops_.size() - hypothesis.loops.size() + 1));
   for (const CheckedPlace& place : hypothesis.checked) {
     if (place.differs())
       sum += std::log((1.0 - kTrueCheck) / (1.0 - std::min(chance_to_go_on_, kTrueCheck)));

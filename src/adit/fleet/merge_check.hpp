@@ -46,7 +46,8 @@ struct PlannedCheck {
   Pose T_own_theirs;
 };
 /// Along the whole stretch that both drove, as far as `loops` (which agree with one another) say; places
-/// far apart first, those between them later.
+/// far apart first, those between them later. With the same chain given twice: revisits, the earlier keyframe
+/// of the two as `own`.
 [[nodiscard]] std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryChain& theirs,
                                                     const std::vector<PcmLoop>& loops,
                                                     const MergeCheckConfig& config);
@@ -61,9 +62,11 @@ struct CheckedPlace {
 /// The test of two robots' loops: asks for comparisons until it knows.
 class MergeTest {
  public:
-  /// `loops`: all that registration accepted, with those that say something else.
+  /// `loops`: all that registration accepted, with those that say something else. `known_before`: evidence
+  /// for each that does not come from comparing scans; of a hypothesis the least of its loops' counts.
   MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
-            double chance_to_go_on, const MergeCheckConfig& config);
+            double chance_to_go_on, const MergeCheckConfig& config,
+            const std::vector<double>& known_before = {});
 
   /// The next comparisons, at most `num`, each with another keyframe of theirs; none when the test is over.
   /// Asked again without `add` in between it answers the same.
@@ -78,6 +81,7 @@ class MergeTest {
     std::vector<PlannedCheck> plan;
     std::vector<CheckedPlace> checked;
     std::vector<double> apart_m;  ///< From each hypothesis before this one: where theirs would stand.
+    double known_before = 0.0;
   };
   [[nodiscard]] double evidence(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool is_refuted(const Hypothesis& hypothesis) const;

@@ -87,6 +87,20 @@ TEST(PlanChecks, WithoutLoopsThereIsNothingToCheck) {
   EXPECT_TRUE(plan_checks(along_x(kNum), along_x(kNum), {}, {}).empty());
 }
 
+TEST(PlanChecks, WithinOneMapAKeyframeIsNotComparedWithItselfOrItsNeighbours) {
+  std::vector<Pose> poses;  // up a street of 100 m and back
+  for (int k = 0; k <= 200; ++k)
+    poses.push_back(k <= 100 ? Pose::planar(k, 0.0, 0.0) : Pose::planar(200 - k, 1.0, std::numbers::pi));
+  const OdometryChain chain(poses, std::vector<Matrix6>(200, odometry_covariance({}, 1.0)));
+  const std::vector<PlannedCheck> plan =
+      plan_checks(chain, chain, {{70, 130, chain.between(70, 130)}, {50, 150, chain.between(50, 150)}}, {});
+  ASSERT_GE(plan.size(), 10U);
+  for (const PlannedCheck& check : plan) {
+    EXPECT_GE(check.theirs, check.own + 40);
+    EXPECT_LT((poses[check.own].translation() - poses[check.theirs].translation()).norm(), 3.0);
+  }
+}
+
 TEST(MergeTest, PlacesThatAgreeJoinTheMaps) {
   MergeTest test = a_test(kTrueLoops);
   const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });

@@ -78,7 +78,8 @@ struct Clouds {
 };
 
 /// Loops number first, first + 1, ... of those that `author`, who need not be the sender, registered:
-/// accepted and rejected ones alike, so that all know what was tried. They start at keyframes of the author.
+/// accepted and rejected ones alike, so that all know what was tried. They start at keyframes of the author;
+/// those within its own map at the earlier one.
 struct Loops {
   RobotId author;
   std::uint32_t first = 0;
@@ -106,8 +107,9 @@ struct MergeHypothesis {
   [[nodiscard]] std::uint32_t num_differing() const { return num_checked - num_passed; }
 };
 
-/// Whether the loops of two robots may join their maps, decided by the one that searched, `a`. A later one
-/// replaces those before it. Evidence, numbers and loops are those of the best hypothesis.
+/// Whether the loops of two robots may join their maps, decided by the one that searched, `a`; or, where `b`
+/// is the same robot, whether it came back to places of its own map. A later one replaces those before it.
+/// Evidence, numbers and loops are those of the best hypothesis.
 struct MergeCheck {
   RobotId a, b;
   double evidence = 0.0;  ///< Logarithm of the likelihood ratio of "same stretch" to "looks alike",

@@ -79,9 +79,20 @@ std::string session_toml(const Session& session) {
                               pair.refused_reason));
   }
   table.insert("refusals", refusals);
+  const auto is_merged = [&](const MergeCheck& check) {
+    return std::ranges::any_of(session.solution.pairs, [&](const PairOutcome& pair) {
+      return pair.a == check.a && pair.b == check.b && pair.merged;
+    });
+  };
   toml::array merges;
-  for (const auto& [pair, check] : session.fleet.checks) merges.push_back(merge_table(session.fleet, check));
+  toml::array revisits;
+  for (const auto& [pair, check] : session.fleet.checks) {
+    toml::table tested = merge_table(session.fleet, check);
+    if (check.a != check.b) tested.insert("merged", is_merged(check));  // an accepted one may be taken back
+    (check.a == check.b ? revisits : merges).push_back(std::move(tested));
+  }
   table.insert("merges", merges);
+  table.insert("revisits", revisits);
   std::ostringstream text;
   text << table << "\n";
   const toml::parse_result configuration = toml::parse(session.provenance.configuration);

@@ -49,6 +49,7 @@ Figure odometry_figure(const StudyResult& study) {
       methods.push_back(odometry.method);
       titles.push_back(odometry.method == "kiss_icp"        ? "KISS-ICP"
                        : odometry.method == "kinematic_icp" ? "Kinematic-ICP"
+                       : odometry.method == "plane_icp"     ? "plane-icp"
                                                             : odometry.method);
     }
   }

@@ -78,26 +78,41 @@ Result<std::optional<WheelDelta>> wheel_before(const Recording& recording, std::
 
 Result<RobotMap> map_recording(const Recording& recording, RobotId id, const RobotSlamConfig& config,
                                const ScanObserver& observer) {
-  if (config.odometry.method == "kinematic-icp" && recording.wheel.empty()) {
-    return fail(
-        format("{}: kinematic-icp needs wheel odometry and the recording has none; use "
-               "--set robot.odometry.method=kiss-icp",
-               recording.name));
+  return map_recording(recording, id, std::vector{config}, observer).map([](std::vector<RobotMap>&& maps) {
+    return std::move(maps.front());
+  });
+}
+
+Result<std::vector<RobotMap>> map_recording(const Recording& recording, RobotId id,
+                                            const std::vector<RobotSlamConfig>& configs,
+                                            const ScanObserver& observer) {
+  std::vector<RobotSlam> robots;
+  for (const RobotSlamConfig& config : configs) {
+    if (config.odometry.needs_wheels() && recording.wheel.empty()) {
+      return fail(
+          format("{}: {} needs wheel odometry and the recording has none; use "
+                 "--set robot.odometry.method=kiss-icp",
+                 recording.name, config.odometry.method));
+    }
+    robots.emplace_back(id, recording.name, config, recording.T_base_lidar);
   }
-  RobotSlam slam(id, recording.name, config, recording.T_base_lidar);
   for (std::size_t i = 0; i < recording.num_scans(); ++i) {
     const Result<Scan> scan = recording.read_scan(i);
     if (!scan) return fail(recording.name, scan.error());
     const Result<std::optional<WheelDelta>> wheel = wheel_before(recording, i);
     if (!wheel) return fail(recording.name, wheel.error());
-    slam.process(*scan, *wheel);
+    for (RobotSlam& robot : robots) robot.process(*scan, *wheel);
     if (observer && !observer(i + 1)) return fail(recording.name + ": interrupted");
   }
-  if (slam.map().keyframes.empty()) {
-    return fail(format("{}: none of {} scans became a keyframe: each had too few points for the odometry",
-                       recording.name, recording.num_scans()));
+  std::vector<RobotMap> maps;
+  for (const RobotSlam& robot : robots) {
+    if (robot.map().keyframes.empty()) {
+      return fail(format("{}: none of {} scans became a keyframe: each had too few points for the odometry",
+                         recording.name, recording.num_scans()));
+    }
+    maps.push_back(robot.map());
   }
-  return slam.map();
+  return maps;
 }
 
 }  // namespace adit

@@ -33,7 +33,7 @@ class RobotSlam {
   /// Throws ContractViolation when `config` is out of its documented ranges.
   RobotSlam(RobotId id, const std::string& name, const RobotSlamConfig& config, const Pose& T_base_lidar);
 
-  /// `wheel` from the scan before to this one; needed by kinematic-icp, ignored by kiss-icp.
+  /// `wheel` from the scan before to this one; ignored by kiss-icp, needed by the others.
   RobotStep process(const Scan& scan, const std::optional<WheelDelta>& wheel);
 
   [[nodiscard]] const RobotMap& map() const { return map_; }
@@ -54,10 +54,14 @@ class RobotSlam {
 /// Called after each scan with the number done; returns false to stop early.
 using ScanObserver = std::function<bool(std::size_t num_done)>;
 
-/// The whole recording through RobotSlam. Fails when a scan cannot be read, when kinematic-icp is asked for
+/// The whole recording through RobotSlam. Fails when a scan cannot be read, when the odometry needs wheels
 /// and there is no wheel odometry, or when the observer stops it.
 [[nodiscard]] Result<RobotMap> map_recording(const Recording& recording, RobotId id,
                                              const RobotSlamConfig& config,
                                              const ScanObserver& observer = {});
+/// The same under several configurations, a map for each; every scan is read once.
+[[nodiscard]] Result<std::vector<RobotMap>> map_recording(const Recording& recording, RobotId id,
+                                                          const std::vector<RobotSlamConfig>& configs,
+                                                          const ScanObserver& observer = {});
 
 }  // namespace adit
