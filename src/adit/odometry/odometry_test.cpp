@@ -115,10 +115,59 @@ TEST(Odometry, KinematicIcpHoldsToTheWheelsInASmoothTube) {
   EXPECT_LT(information(0, 0), 1e-3 * information(1, 1));
 }
 
+TEST(Odometry, PlaneIcpCorrectsPoorWheels) {
+  Trip trip = room_trip();
+  trip.wheel_scale = 1.04;
+  trip.wheel_yaw_error = 0.003;
+  const Outcome outcome = run("plane-icp", trip);
+  const Pose T_truth = trip.drive.at(0).inverse() * trip.drive.at(4.9);
+  EXPECT_LT((T_truth.inverse() * outcome.steps.back().T_odom_base).angle(), 0.01);
+  EXPECT_LT(outcome.max_error, 0.05);
+  EXPECT_EQ(count(outcome, StepStatus::ok), 49);
+}
+
+// Ring patterns repeat from scan to scan in a real sensor, and draw point-to-point residuals back to where
+// the robot was: most of all at the start, when the map holds the rings of one scan.
+TEST(Odometry, PlaneIcpHoldsToTheWheelsInASmoothTubeFromTheFirstScanOn) {
+  Trip trip = tube_trip();
+  trip.lidar.jitter = 0.0;
+  const Outcome outcome = run("plane-icp", trip);
+  for (int i = 0; i < trip.num_scans; ++i) {
+    const double truth =
+        (trip.drive.at(0).inverse() * trip.drive.at(i * to_seconds(trip.lidar.period))).translation().x();
+    EXPECT_NEAR(outcome.steps[static_cast<std::size_t>(i)].T_odom_base.translation().x(), truth,
+                0.02 + 0.01 * truth)
+        << i;
+  }
+  EXPECT_GE(count(outcome, StepStatus::degenerate), 75);
+  const Matrix6& information = outcome.steps.back().information;
+  EXPECT_LT(information(0, 0), 1e-3 * information(1, 1));
+}
+
+TEST(Odometry, PlaneIcpMeasuresTheClimbThatWheelsDoNot) {
+  Trip trip = room_trip();
+  trip.drive.velocity[2] = 0.15;   // up,
+  trip.drive.velocity[4] = -0.04;  // nose up
+  Odometry odometry(config_of("plane-icp"), kMount);
+  Pose T_wheels, T_odom_base;
+  for (int i = 0; i < trip.num_scans; ++i) {
+    WheelDelta wheel = test::wheels_of(trip.lidar, trip.drive, i);
+    const Vector3 moved = wheel.T_base0_base1.translation();
+    wheel.T_base0_base1 = Pose::planar(moved.x(), moved.y(), wheel.T_base0_base1.yaw());
+    if (i > 0) T_wheels = T_wheels * wheel.T_base0_base1;
+    T_odom_base = odometry.register_scan(test::scan_of(trip.scene, trip.lidar, kMount, trip.drive, i), wheel)
+                      .T_odom_base;
+  }
+  const Pose T_truth = trip.drive.at(0).inverse() * trip.drive.at(4.9);
+  EXPECT_GT((T_truth.translation() - T_wheels.translation()).norm(), 0.5);
+  EXPECT_LT((T_truth.translation() - T_odom_base.translation()).norm(), 0.05);
+  EXPECT_LT((T_truth.inverse() * T_odom_base).angle(), 0.01);
+}
+
 TEST(Odometry, TurningOnTheSpot) {
   Trip trip = room_trip();
   trip.drive.velocity = twist(0.0, 0.6);
-  for (const char* method : {"kiss-icp", "kinematic-icp"}) {
+  for (const char* method : {"kiss-icp", "kinematic-icp", "plane-icp"}) {
     const Outcome outcome = run(method, trip);
     EXPECT_LT(outcome.max_error, 0.05) << method;
     EXPECT_NEAR(outcome.steps.back().T_odom_base.yaw(), wrap_angle(0.6 * (3.9 + std::exp(-4.9))), 0.01)
@@ -129,7 +178,7 @@ TEST(Odometry, TurningOnTheSpot) {
 TEST(Odometry, SameBytesWithOneAndTwoThreads) {
   Trip trip = room_trip();
   trip.num_scans = 8;
-  for (const char* method : {"kiss-icp", "kinematic-icp"}) {
+  for (const char* method : {"kiss-icp", "kinematic-icp", "plane-icp"}) {
     const int before = num_threads();
     set_num_threads(1);
     const Outcome one = run(method, trip);
@@ -151,7 +200,7 @@ Scan still_scan(int index) {
 
 TEST(Odometry, EmptyAndNanScansLeaveThePredictionAndTheMap) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  for (const char* method : {"kiss-icp", "kinematic-icp"}) {
+  for (const char* method : {"kiss-icp", "kinematic-icp", "plane-icp"}) {
     Odometry odometry(config_of(method), kMount);
     WheelDelta wheel;
     wheel.duration = std::chrono::milliseconds(100);
@@ -171,7 +220,7 @@ TEST(Odometry, EmptyAndNanScansLeaveThePredictionAndTheMap) {
 }
 
 TEST(Odometry, NanPointsAmongGoodOnesChangeNothing) {
-  for (const char* method : {"kiss-icp", "kinematic-icp"}) {
+  for (const char* method : {"kiss-icp", "kinematic-icp", "plane-icp"}) {
     Odometry clean(config_of(method), kMount);
     Odometry dirty(config_of(method), kMount);
     WheelDelta wheel;
@@ -191,7 +240,7 @@ TEST(Odometry, NanPointsAmongGoodOnesChangeNothing) {
 }
 
 TEST(Odometry, WithoutTimesScansAreUsedAsTheyAre) {
-  for (const char* method : {"kiss-icp", "kinematic-icp"}) {
+  for (const char* method : {"kiss-icp", "kinematic-icp", "plane-icp"}) {
     Odometry odometry(config_of(method), Pose());
     WheelDelta wheel;  // no duration either: nothing needs it
     wheel.T_base0_base1 = Pose::translation_of(0.05, 0, 0);
@@ -226,8 +275,16 @@ TEST(Odometry, CloudOfLastScanIsDeskewedIntoTheBase) {
   EXPECT_LT(off_surface, cloud.size() / 50);
 }
 
-TEST(KinematicIcp, RestingRobotIsNotRegistered) {
-  KinematicIcp odometry(config_of("kinematic-icp").kinematic_icp, kMount);
+template <class Method>
+class WheelOdometries : public testing::Test {};
+using Methods = testing::Types<KinematicIcp, PlaneIcp>;
+TYPED_TEST_SUITE(WheelOdometries, Methods);
+
+KinematicIcp made(const KinematicIcp* /*type*/) { return {config_of("kinematic-icp").kinematic_icp, kMount}; }
+PlaneIcp made(const PlaneIcp* /*type*/) { return {config_of("plane-icp").plane_icp, kMount}; }
+
+TYPED_TEST(WheelOdometries, RestingRobotIsNotRegistered) {
+  TypeParam odometry = made(static_cast<const TypeParam*>(nullptr));
   WheelDelta rest;
   rest.duration = std::chrono::milliseconds(100);
   EXPECT_EQ(odometry.register_scan(still_scan(0), rest).status, StepStatus::no_map);
@@ -246,11 +303,28 @@ TEST(KinematicIcp, RestingRobotIsNotRegistered) {
   EXPECT_GT(odometry.register_scan(still_scan(6), rest).iterations, 0);
 }
 
-TEST(KinematicIcp, FirstWheelMotionIsIgnored) {
-  KinematicIcp odometry({}, kMount);
+TYPED_TEST(WheelOdometries, FirstWheelMotionIsIgnored) {
+  TypeParam odometry = made(static_cast<const TypeParam*>(nullptr));
   WheelDelta wheel;
   wheel.T_base0_base1 = Pose::translation_of(5, 0, 0);
   EXPECT_EQ(odometry.register_scan(still_scan(0), wheel).T_odom_base.matrix(), Pose().matrix());
+}
+
+TEST(PlaneIcp, ARobotThatLeftItsMapGoesOnWhereTheWheelsSay) {
+  PlaneIcp odometry = made(static_cast<const PlaneIcp*>(nullptr));
+  WheelDelta wheel;
+  wheel.duration = std::chrono::milliseconds(100);
+  odometry.register_scan(still_scan(0), wheel);
+  wheel.T_base0_base1 = Pose::translation_of(300, 0, 0);
+  const OdometryStep lost = odometry.register_scan(still_scan(1), wheel);
+  EXPECT_EQ(lost.status, StepStatus::degenerate);
+  EXPECT_EQ(lost.information, Matrix6::Zero());
+  EXPECT_NEAR(lost.T_odom_base.translation().x(), 300.0, 1e-9);
+  wheel.T_base0_base1 = Pose::translation_of(0.01, 0, 0);
+  OdometryStep found = lost;  // planes take some scans to grow
+  for (int i = 2; i < 10 && found.status != StepStatus::ok; ++i)
+    found = odometry.register_scan(still_scan(i), wheel);
+  EXPECT_EQ(found.status, StepStatus::ok);
 }
 
 TEST(KinematicIcp, ARobotThatLeftItsMapStartsANewOne) {
