@@ -29,8 +29,8 @@ int loops_in_use(const FleetSolution& solution) {
       std::ranges::count_if(solution.loops, [](const LoopOutcome& loop) { return loop.in_use(); }));
 }
 
-MergeEvidence::Robot evidence_of(const MergedRobot& robot, double odometry_ate_max_m) {
-  return {robot.path_length_m, robot.ate ? robot.ate->max_m : 0.0, odometry_ate_max_m};
+MergeEvidence::Robot evidence_of(const MergedRobot& robot, double drift_m) {
+  return {robot.path_length_m, robot.ate ? robot.ate->max_m : 0.0, drift_m};
 }
 
 /// The largest ATE of a robot; a robot without a pose to compare has none.
@@ -55,11 +55,11 @@ Result<MergePair> run_pair(const std::vector<RobotRun>& runs, const Meeting& mee
   pair.wrong_loops_in_use = result.wrong_loops_in_solution;
   pair.ate_max_m = {ate_max(result.robots[0]), ate_max(result.robots[1])};
   pair.ate_max_over_path_pct = {ate_pct(result.robots[0]), ate_pct(result.robots[1])};
-  pair.outcome = judge_merge({result.merged,
-                              pair.loops_in_use,
-                              pair.wrong_loops_in_use,
-                              {evidence_of(result.robots[0], truth.odometry_ate_max_m[a]),
-                               evidence_of(result.robots[1], truth.odometry_ate_max_m[b])}});
+  pair.outcome = judge_merge(
+      {result.merged,
+       pair.loops_in_use,
+       pair.wrong_loops_in_use,
+       {evidence_of(result.robots[0], truth.drift_m[a]), evidence_of(result.robots[1], truth.drift_m[b])}});
   return pair;
 }
 
@@ -92,7 +92,7 @@ bool is_wrong(const MergeTruth& truth, const JointResult& result, int num_loops_
     const bool is_alone = std::ranges::any_of(result.components, [&](const std::vector<std::string>& map) {
       return map.size() == 1 && map.front() == result.robots[i].name;
     });
-    if (!is_alone) evidence.robots.push_back(evidence_of(result.robots[i], truth.odometry_ate_max_m[i]));
+    if (!is_alone) evidence.robots.push_back(evidence_of(result.robots[i], truth.drift_m[i]));
   }
   return judge_merge(evidence) == MergeOutcome::wrong;
 }
@@ -118,9 +118,9 @@ MergeJoint joint_of(const std::vector<RobotRun>& runs, const MergeTruth& truth, 
 Result<MergeTruth> merge_truth(const std::vector<RobotRun>& runs, KeyframeSelection selection) {
   MergeTruth truth;
   for (const RobotRun& a : runs) {
-    const Result<AteResult> odometry = ate(a.map_for(selection)->odometry, a.truth);
-    if (!odometry) return fail(a.result.name, odometry.error());
-    truth.odometry_ate_max_m.push_back(odometry->max_m);
+    const Result<double> drift = largest_drift_m(a.map_for(selection)->odometry, a.truth);
+    if (!drift) return fail(a.result.name, drift.error());
+    truth.drift_m.push_back(*drift);
     std::vector<double>& row = truth.shared_m.emplace_back();
     for (const RobotRun& b : runs) row.push_back(&a == &b ? 0.0 : shared_stretch_m(a.truth, b.truth));
   }

@@ -13,7 +13,7 @@ namespace adit::app {
 /// What the ground truth says about the robots of one world.
 struct MergeTruth {
   std::vector<std::vector<double>> shared_m;  ///< [a][b], metres.
-  std::vector<double> odometry_ate_max_m;     ///< One a robot, after its own alignment.
+  std::vector<double> drift_m;                ///< Of each robot's odometry (largest_drift_m).
 };
 Result<MergeTruth> merge_truth(const std::vector<RobotRun>& runs, KeyframeSelection selection);
 

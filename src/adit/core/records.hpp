@@ -81,6 +81,7 @@ struct OdometryStep {
   StepStatus status = StepStatus::no_map;
   int num_correspondences = 0;
   int iterations = 0;
+  bool is_guess = false;  ///< No prediction could be relied on: several were tried and the best fit counts.
 };
 
 /// Immutable once made. `cloud` is in the base frame of this keyframe, deskewed and thinned.

@@ -57,4 +57,18 @@ Result<AteResult> ate(const Trajectory& estimate, const Trajectory& truth) {
   });
 }
 
+Result<double> largest_drift_m(const Trajectory& estimate, const Trajectory& truth) {
+  return associate(estimate, truth).map([](const AssociatedPoses& pairs) {
+    double largest = 0.0;
+    for (const std::size_t anchor : {std::size_t{0}, pairs.size() / 2, pairs.size() - 1}) {
+      const Pose T_world_estimate = pairs.truth[anchor] * pairs.estimate[anchor].inverse();
+      for (std::size_t i = 0; i < pairs.size(); ++i)
+        largest = std::max(
+            largest,
+            (T_world_estimate * pairs.estimate[i].translation() - pairs.truth[i].translation()).norm());
+    }
+    return largest;
+  });
+}
+
 }  // namespace adit

@@ -25,6 +25,10 @@ struct AteResult {
 /// ATE of one trajectory after its own SE(3) alignment (Umeyama, no scale). Fails as `associate` does.
 [[nodiscard]] Result<AteResult> ate(const Trajectory& estimate, const Trajectory& truth);
 
+/// How far odometry alone leads astray: the largest distance of any position from the true one when the pose
+/// is right at the start, in the middle, or at the end, whichever is worst. Fails as `associate` does.
+[[nodiscard]] Result<double> largest_drift_m(const Trajectory& estimate, const Trajectory& truth);
+
 /// ATE of several robots whose estimates share one frame, after ONE SE(3) alignment of all poses together, so
 /// that a map that was merged wrongly shows. The results are in the order of the robots. Fails when a robot
 /// has no pose with a truth; the message says which. Throws ContractViolation when the spans differ in

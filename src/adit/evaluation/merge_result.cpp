@@ -25,14 +25,15 @@ bool is_precise(const MergeEvidence& evidence) {
   });
 }
 
-/// Drift alone bends a merged map about as much as the robots' own; a wrong place is far beyond that.
+/// Drift alone bends a merged map by what the robots' odometries lose on the way from where they met; a wrong
+/// place is far beyond that.
 bool is_worse_than_drift(const MergeEvidence& evidence) {
-  constexpr double kFactor = 2.0;
+  constexpr double kFactor = 1.5;
   constexpr double kSlack = 1.0;  // Metres: odometries may be better than registrations.
   double drift = 0.0;
   double error = 0.0;
   for (const MergeEvidence::Robot& robot : evidence.robots) {
-    drift = std::max(drift, robot.odometry_ate_max_m);
+    drift = std::max(drift, robot.drift_m);
     error = std::max(error, robot.ate_max_m);
   }
   return error > kFactor * drift + kSlack;

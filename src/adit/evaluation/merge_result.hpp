@@ -30,8 +30,8 @@ enum class MergeOutcome {
 struct MergeEvidence {
   struct Robot {
     double path_length_m = 0.0;
-    double ate_max_m = 0.0;           ///< After one alignment of all robots of the map together.
-    double odometry_ate_max_m = 0.0;  ///< Of its odometry, after its own alignment.
+    double ate_max_m = 0.0;  ///< After one alignment of all robots of the map together.
+    double drift_m = 0.0;    ///< Of its odometry (largest_drift_m).
   };
   bool merged = false;
   int loops_in_use = 0;

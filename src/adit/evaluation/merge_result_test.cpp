@@ -22,8 +22,8 @@ TEST(JudgeMerge, ThePapersRuleDecidesSuccess) {
 }
 
 TEST(JudgeMerge, AWrongPlaceIsToldFromDrift) {
-  EXPECT_EQ(judge_merge(evidence(6.9, 0)), MergeOutcome::bent);
-  EXPECT_EQ(judge_merge(evidence(7.1, 0)), MergeOutcome::wrong);
+  EXPECT_EQ(judge_merge(evidence(5.4, 0)), MergeOutcome::bent);
+  EXPECT_EQ(judge_merge(evidence(5.6, 0)), MergeOutcome::wrong);
   EXPECT_EQ(judge_merge(evidence(5.0, 4)), MergeOutcome::bent);
   EXPECT_EQ(judge_merge(evidence(5.0, 5)), MergeOutcome::wrong);
 }

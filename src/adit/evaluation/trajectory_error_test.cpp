@@ -120,6 +120,23 @@ TEST(JointAte, NamesTheRobotWithoutTruth) {
   EXPECT_FALSE(joint_ate({}, {}));
 }
 
+TEST(LargestDrift, IsThatFromTheWorstOfThreePlacesWhateverTheFrame) {
+  const Trajectory truth = winding(500);
+  EXPECT_LT(largest_drift_m(moved(kElsewhere, truth), truth).value(), 1e-9);
+
+  Trajectory straight;
+  Trajectory turning;
+  for (int i = 0; i <= 100; ++i) {
+    straight.push_back({at(i), Pose::planar(i, 0.0, 0.0)});
+    turning.push_back({at(i), i < 90 ? Pose::planar(i, 0.0, 0.0)
+                                     : Pose::planar(90.0, 0.0, 0.1) * Pose::planar(i - 90.0, 0.0, 0.0)});
+  }
+  // Right at the end, its heading is off by 0.1 all along the 90 m before.
+  EXPECT_NEAR(largest_drift_m(moved(kElsewhere, turning), straight).value(), 2.0 * std::sin(0.05) * 90.0,
+              1e-6);
+  EXPECT_FALSE(largest_drift_m(straight, {}).has_value());
+}
+
 TEST(Rpe, IsZeroInAnyFrameAndSeesAConstantDrift) {
   const Trajectory truth = winding(500);
   const RpeResult perfect = rpe(moved(kElsewhere, truth), truth).value();

@@ -105,15 +105,14 @@ double Discernment::chance_to_go_on() const {
          (static_cast<double>(num_steps_) + kPriorSteps);
 }
 
-std::vector<Agreement> Discernment::fits(const std::vector<Fit>& asked, bool from_elsewhere_too) {
+std::vector<Agreement> Discernment::fits(const std::vector<Fit>& asked, double enough, FitFrom from) {
   std::vector<std::uint32_t> used;
   for (const Fit& fit : asked) used.insert(used.end(), {fit.a, fit.b});
   surfaces_.prepare(used);
   std::vector<Agreement> out(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
     const auto& [a, b, T_a_b] = asked[i];
-    const double enough = from_elsewhere_too ? limit_ : std::numeric_limits<double>::infinity();
-    out[i] = fit_near(surfaces_.at(a), surfaces_.at(b), T_a_b, enough, registration_).agreement;
+    out[i] = fit_near(surfaces_.at(a), surfaces_.at(b), T_a_b, enough, registration_, from).agreement;
   });
   return out;
 }
@@ -125,7 +124,7 @@ double Discernment::usual_difference() {
       if (const auto next = keyframe_at(way_, way_[k] + distance))
         pairs.push_back({k, *next, chain_.between(k, *next)});
   std::vector<double> differences;
-  for (const Agreement& one : fits(pairs, false))
+  for (const Agreement& one : fits(pairs, std::numeric_limits<double>::infinity(), FitFrom::guess))
     if (one.is_comparable()) differences.push_back(one.largest_difference);
   // A map that is too short to measure on allows nothing.
   if (differences.empty()) return 0.0;
@@ -177,7 +176,7 @@ void Discernment::follow(std::vector<Walk> walks) {
     }
     std::erase_if(walks, [](const Walk& walk) { return walk.is_over; });
     const std::vector<bool> tells = distinctive(places);
-    const std::vector<Agreement> found = fits(next, true);
+    const std::vector<Agreement> found = fits(next, limit_, FitFrom::along_the_way);
     for (std::size_t w = 0; w < walks.size(); ++w) {
       walks[w].is_over = differ(found[w]);
       if (walks[w].is_over || tells[w]) ++num_steps_;
@@ -194,7 +193,7 @@ std::vector<bool> Discernment::distinctive(const std::vector<std::uint32_t>& ind
     for (const double by : {-config_.displacement_m, config_.displacement_m})
       if (const auto other = keyframe_at(way_, way_[k] + by)) displaced.push_back({k, *other, Pose()});
   }
-  const std::vector<Agreement> found = fits(displaced, false);
+  const std::vector<Agreement> found = fits(displaced, limit_, FitFrom::guess);
   // Both ways: an end of a niche may show one way and not the other.
   for (const Fit& fit : displaced) distinctive_[fit.a] = true;
   for (std::size_t i = 0; i < displaced.size(); ++i)

@@ -83,7 +83,7 @@ class Discernment {
     Pose T_a_b;
   };
   struct Walk;
-  [[nodiscard]] std::vector<Agreement> fits(const std::vector<Fit>& asked, bool from_elsewhere_too);
+  [[nodiscard]] std::vector<Agreement> fits(const std::vector<Fit>& asked, double enough, FitFrom from);
   [[nodiscard]] double usual_difference();
   [[nodiscard]] std::vector<Walk> look_alikes(const OtherPlaces& others, FeatureStore& features);
   void follow(std::vector<Walk> walks);

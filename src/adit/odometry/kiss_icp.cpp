@@ -34,6 +34,7 @@ OdometryStep KissIcp::register_scan(const Scan& scan) {
   const ThinnedScan thin = thinned(cloud_.points, config_.voxel_size, thinner_);
   OdometryStep step = map_.empty() ? first_step(thin, T_prediction, config_) : registered(thin, T_prediction);
   step.stamp = scan.stamp;
+  step.is_guess = irregular_;
   update_map(map_, thin, step, config_);
   if (stamp_) motion_ = {T_odom_base_.inverse() * step.T_odom_base, scan.stamp - *stamp_};
   stamp_ = scan.stamp;

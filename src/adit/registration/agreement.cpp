@@ -20,7 +20,7 @@ constexpr int kRows = 60;
 // A point is before or behind a surface when it is by more than this many voxels and this share of the range.
 constexpr float kMarginVoxels = 1.0F;
 constexpr float kMarginShare = 0.01F;
-constexpr std::size_t kEnoughToAlign = 1500;  // points, or up to twice as many
+constexpr std::size_t kEnoughToAlign = 700;  // points, or up to twice as many
 constexpr double kWideVoxels = 5.0;           // between points that belong together, in the first of two fits
 constexpr double kMaxCorrection = 2.5;        // metres
 constexpr std::array kOtherStarts = {-1.5, 1.5, -0.75, 0.75};  // metres along the way
@@ -176,7 +176,7 @@ Agreement agreement(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_
 }
 
 LocalFit fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b, double enough,
-                  const RegistrationConfig& config) {
+                  const RegistrationConfig& config, FitFrom from) {
   LocalFit best{T_a_b, {}};
   if (a.points().empty() || b.points().empty()) return best;
   RegistrationConfig narrow = config;
@@ -184,17 +184,20 @@ LocalFit fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
   RegistrationConfig wide = narrow;
   wide.refine_distance_voxels = kWideVoxels;
   const auto fit_from = [&](const Pose& start) {
-    Pose T = align_to_planes(a.points(), a.tree(), b.some(), start, wide);
-    T = align_to_planes(a.points(), a.tree(), b.some(), T, narrow);
+    const Pose T = align_to_planes(a.points(), a.tree(), b.some(), start, narrow);
     if (!((T.translation() - T_a_b.translation()).norm() < kMaxCorrection)) return;
     const Agreement found = agreement(a, b, T, config);
     if (found.largest_difference < best.agreement.largest_difference) best = {T, found};
   };
+  const auto found = [&](const Pose& guess) {
+    fit_from(align_to_planes(a.points(), a.tree(), b.some(), guess, wide));
+    return best.agreement.largest_difference <= enough;
+  };
   fit_from(T_a_b);
+  if (best.agreement.largest_difference <= enough || found(T_a_b) || from == FitFrom::guess) return best;
   for (const double ahead : kOtherStarts) {
-    if (best.agreement.largest_difference <= enough || best.agreement.largest_difference > kHopeless * enough)
-      break;
-    fit_from(T_a_b * Pose::translation_of(ahead, 0.0, 0.0));
+    if (best.agreement.largest_difference > kHopeless * enough) break;
+    if (found(T_a_b * Pose::translation_of(ahead, 0.0, 0.0))) break;
   }
   return best;
 }

@@ -65,10 +65,15 @@ struct LocalFit {
   Pose T_a_b;
   Agreement agreement;
 };
-/// The fit with the smallest difference that point-to-plane finds from the guess, and from others up to 1.5 m
-/// along the way of b (its x axis) when the first one differs by more than `enough` points. Farther than
-/// 2.5 m from the guess nothing is accepted: not comparable.
+/// From where a fit is tried.
+enum class FitFrom {
+  guess,
+  along_the_way,  ///< And from up to 1.5 m before and behind it, along the way of b (its x axis).
+};
+/// The fit with the smallest difference that point-to-plane finds; what differs by no more than `enough`
+/// points ends the search. The guess is taken for exact first, then for off by some voxels. Farther than 2.5
+/// m from it nothing is accepted: not comparable.
 [[nodiscard]] LocalFit fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b, double enough,
-                                const RegistrationConfig& config);
+                                const RegistrationConfig& config, FitFrom from = FitFrom::along_the_way);
 
 }  // namespace adit

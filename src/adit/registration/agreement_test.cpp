@@ -100,7 +100,7 @@ TEST(FitNear, LooksFartherAlongTheWayWhereTheGuessDoesNotFit) {
   const SeenSurface a = seen_at(with_block(), 0.0, 1);
   const SeenSurface b = seen_at(with_block(), 2.0, 2);
   const Pose guess = Pose::planar(3.8, 0.0, 0.0);
-  const LocalFit once = fit_near(a, b, guess, std::numeric_limits<double>::infinity(), {});
+  const LocalFit once = fit_near(a, b, guess, kNoise, {}, FitFrom::guess);
   const LocalFit anew = fit_near(a, b, guess, kNoise, {});
   EXPECT_GT(once.agreement.largest_difference, kNoise);
   EXPECT_LT(anew.agreement.largest_difference, kNoise);

@@ -17,12 +17,15 @@ namespace adit {
 struct OdometryNoise {
   double translation = 0.05;   ///< Sigma of each axis after one metre.
   double rotation_deg = 0.15;  ///< Sigma about each axis after one metre.
+  double guessed = 5.0;        ///< Times these where odometry had no prediction to rely on.
 };
 inline Fields fields_of(OdometryNoise& c) {
   return {
       {"translation", &c.translation, "m/sqrt(m)", 1e-4, 1.0, "odometry noise, translation after one metre"},
       {"rotation_deg", &c.rotation_deg, "deg/sqrt(m)", 1e-4, 10.0,
-       "odometry noise, rotation after one metre"}};
+       "odometry noise, rotation after one metre"},
+      {"guessed", &c.guessed, "", 1.0, 100.0,
+       "times that noise where scans come at no steady pace and without wheels"}};
 }
 
 /// Covariance of the relative pose over `distance_m` metres of odometry (right perturbation). Never below

@@ -42,8 +42,10 @@ RobotStep RobotSlam::process(const Scan& scan, const std::optional<WheelDelta>& 
   map_.num_degenerate += step.status == StepStatus::degenerate ? 1 : 0;
   map_.num_refused +=
       step.status == StepStatus::too_few_points || step.status == StepStatus::diverged ? 1 : 0;
+  is_guessed_ = is_guessed_ || step.is_guess;
   if (!keyframe_policy_.accepts(step)) return {step};
   add_keyframe(step);
+  is_guessed_ = false;
   return {step, map_.keyframes.back().id};
 }
 
@@ -65,6 +67,7 @@ void RobotSlam::add_keyframe(const OdometryStep& step) {
   if (!map_.keyframes.empty()) {
     const Pose T_before_now = map_.keyframes.back().T_odom_base.inverse() * keyframe.T_odom_base;
     covariance = odometry_covariance(config_.noise, T_before_now.translation().norm());
+    if (is_guessed_) covariance *= config_.noise.guessed * config_.noise.guessed;
   }
   map_.step_covariances.push_back(covariance);
   map_.keyframes.push_back(std::move(keyframe));

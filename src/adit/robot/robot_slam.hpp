@@ -44,6 +44,7 @@ class RobotSlam {
   RobotSlamConfig config_;
   Odometry odometry_;
   KeyframePolicy keyframe_policy_;
+  bool is_guessed_ = false;  ///< A step since the last keyframe was.
   RobotMap map_;
 };
 
