@@ -266,6 +266,16 @@ void keep_revisits(const FleetGraph& fleet, const LoopsOfPairs& of_pairs, FleetS
 
 std::string taken_back(const FleetGraph& fleet, const std::vector<Merge>& merges,
                        const Contradiction& contradiction) {
+  if (!contradiction.refuted.empty()) {
+    std::string pairs;
+    for (const auto& [a, b] : contradiction.refuted)
+      pairs +=
+          format("{}{}-{}", pairs.empty() ? "" : " and ", fleet.robots.at(a).name, fleet.robots.at(b).name);
+    return format(
+        "taken back: with other merges it would put {} where their own scans differ; a meeting with further "
+        "robots would decide",
+        pairs);
+  }
   std::string others;
   bool has_least_evidence = true;
   for (const std::size_t m : contradiction.others) {
@@ -278,6 +288,25 @@ std::string taken_back(const FleetGraph& fleet, const std::vector<Merge>& merges
       "with further robots would decide",
       others, contradiction.miss_m, contradiction.driven_m,
       has_least_evidence ? "has the least evidence of them" : "without it the others agree best");
+}
+
+/// What scans refuted about pairs of robots that did not merge.
+std::vector<Merge> refuted_hypotheses(const FleetGraph& fleet, const BackEndConfig& config) {
+  std::vector<Merge> out;
+  for (const auto& [pair, check] : fleet.checks) {
+    if (check.accepted || check.a == check.b) continue;
+    for (const MergeHypothesis& hypothesis : check.hypotheses) {
+      if (hypothesis.outcome != HypothesisOutcome::refuted) continue;
+      Merge merge{check.a, check.b, hypothesis.evidence, {}};
+      for (const auto& [a, b] : hypothesis.loops) {
+        const auto loop = fleet.loops.find({{check.a, a}, {check.b, b}});
+        if (loop != fleet.loops.end() && knows(fleet, loop->second.from) && knows(fleet, loop->second.to))
+          merge.loops.push_back({a, b, loop->second.T_from_to, loop_information(config)});
+      }
+      if (!merge.loops.empty()) out.push_back(std::move(merge));
+    }
+  }
+  return out;
 }
 
 /// Takes the loops of merges out that cycles of robots contradict.
@@ -299,7 +328,8 @@ void take_back(const FleetGraph& fleet, Chains& chains, const BackEndConfig& con
     pairs.push_back(&pair);
     for (const RobotId robot : {pair.a, pair.b}) of_robots.emplace(robot, chains.of(robot));
   }
-  for (const Contradiction& contradiction : contradictions(merges, of_robots)) {
+  for (const Contradiction& contradiction :
+       contradictions(merges, refuted_hypotheses(fleet, config), of_robots)) {
     PairOutcome& pair = *pairs[contradiction.merge];
     pair.refused_reason = taken_back(fleet, merges, contradiction);
     for (const std::size_t l : of_pairs.at({pair.a, pair.b})) solution.loops[l].in_clique = false;

@@ -197,10 +197,30 @@ class MergeGraph {
   }
   /// From each robot to the next, and from the last to the first.
   [[nodiscard]] std::vector<std::size_t> along(const Robots& cycle) const {
-    std::vector<std::size_t> out;
-    for (std::size_t i = 0; i < cycle.size(); ++i)
-      out.push_back(merge_.at(cycle[i]).at(cycle[(i + 1) % cycle.size()]));
+    std::vector<std::size_t> out = along_path(cycle);
+    out.push_back(merge_.at(cycle.back()).at(cycle.front()));
     return out;
+  }
+  /// From each robot to the next.
+  [[nodiscard]] std::vector<std::size_t> along_path(const Robots& path) const {
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i + 1 < path.size(); ++i) out.push_back(merge_.at(path[i]).at(path[i + 1]));
+    return out;
+  }
+  /// From a to b over other robots, the fewest, b first; empty where there is no way.
+  [[nodiscard]] Robots shortest_path(RobotId a, RobotId b) const {
+    if (!merge_.contains(a) || !merge_.contains(b)) return {};
+    std::map<RobotId, RobotId> towards_a{{a, a}};
+    Robots reached{a};
+    for (std::size_t i = 0; i < reached.size() && !towards_a.contains(b); ++i)  // grows on the way
+      for (const auto& [next, merge] : merge_.at(reached[i])) {
+        if (reached[i] == a && next == b) continue;
+        if (towards_a.emplace(next, reached[i]).second) reached.push_back(next);
+      }
+    if (!towards_a.contains(b)) return {};
+    Robots path{b};
+    while (path.back() != a) path.push_back(towards_a.at(path.back()));
+    return path;
   }
 
   /// All triangles, and of a merge in none the shortest cycle; each once, from its smallest robot on, the
@@ -232,21 +252,6 @@ class MergeGraph {
     if (cycle.back() < cycle[1]) std::reverse(cycle.begin() + 1, cycle.end());
     return cycle;
   }
-  /// From a to b over other robots, the fewest; empty where there is no way.
-  [[nodiscard]] Robots shortest_path(RobotId a, RobotId b) const {
-    std::map<RobotId, RobotId> towards_a{{a, a}};
-    Robots reached{a};
-    for (std::size_t i = 0; i < reached.size() && !towards_a.contains(b); ++i)  // grows on the way
-      for (const auto& [next, merge] : merge_.at(reached[i])) {
-        if (reached[i] == a && next == b) continue;
-        if (towards_a.emplace(next, reached[i]).second) reached.push_back(next);
-      }
-    if (!towards_a.contains(b)) return {};
-    Robots path{b};
-    while (path.back() != a) path.push_back(towards_a.at(path.back()));
-    return path;
-  }
-
   std::map<RobotId, std::map<RobotId, std::size_t>> merge_;
 };
 
@@ -289,10 +294,33 @@ std::size_t guilty_of(const std::vector<Robots>& cycles, const MergeGraph& graph
   return *std::ranges::min_element(suspects, {}, explains);
 }
 
+using RobotPair = std::pair<RobotId, RobotId>;
+
+/// Of each merge the pairs that it puts, together with others, where their scans refuted that they are.
+std::map<std::size_t, std::set<RobotPair>> refuting(const std::vector<Merge>& merges,
+                                                    const std::vector<Merge>& refuted,
+                                                    const MergeGraph& graph,
+                                                    const std::map<RobotId, OdometryChain>& chains,
+                                                    double scale) {
+  std::map<std::size_t, std::set<RobotPair>> against;
+  for (const Merge& hypothesis : refuted) {
+    const Robots path = graph.shortest_path(hypothesis.a, hypothesis.b);
+    if (path.empty()) continue;
+    const std::vector<std::size_t> merged = graph.along_path(path);
+    std::vector<const Merge*> legs;
+    for (const std::size_t m : merged) legs.push_back(&merges[m]);
+    legs.push_back(&hypothesis);  // from a, the last of the path, back to b
+    if (Cycle(path, legs, chains, scale).best().contradicts()) continue;
+    for (const std::size_t m : merged) against[m].insert({hypothesis.a, hypothesis.b});
+  }
+  return against;
+}
+
 }  // namespace
 
-std::vector<Contradiction> contradictions(const std::vector<Merge>& merges,
+std::vector<Contradiction> contradictions(const std::vector<Merge>& merges, const std::vector<Merge>& refuted,
                                           const std::map<RobotId, OdometryChain>& chains) {
+  constexpr std::size_t kNeeded = 2;
   std::vector<Contradiction> out;
   MergeGraph graph(merges);
   CycleTest test(merges, chains);
@@ -304,11 +332,21 @@ std::vector<Contradiction> contradictions(const std::vector<Merge>& merges,
     const Robots& clearest = *std::ranges::min_element(
         cycles, {}, [&](const Robots& robots) { return test.around(robots, graph).log_ratio; });
     const Round& round = test.around(clearest, graph);
-    out.push_back({guilty, graph.along(clearest), round.miss_m, round.driven_m});
+    out.push_back({guilty, graph.along(clearest), {}, round.miss_m, round.driven_m});
     std::erase(out.back().others, guilty);
     graph = graph.without(merges[guilty]);
   }
-  return out;
+  while (true) {
+    const auto against = refuting(merges, refuted, graph, chains, drift_scale(merges, chains));
+    const auto guilty = std::ranges::max_element(against, {}, [&](const auto& entry) {
+      return std::tuple(entry.second.size(), -merges[entry.first].evidence, entry.first);
+    });
+    if (guilty == against.end() || guilty->second.size() < kNeeded) return out;
+    Contradiction& contradiction = out.emplace_back();
+    contradiction.merge = guilty->first;
+    contradiction.refuted.assign(guilty->second.begin(), guilty->second.end());
+    graph = graph.without(merges[guilty->first]);
+  }
 }
 
 }  // namespace adit

@@ -26,21 +26,28 @@ struct Merge {
   std::vector<PcmLoop> loops;
 };
 
-/// A merge that is to be taken back, and the cycle that contradicts it most clearly.
+/// A merge that is to be taken back, and what contradicts it most clearly: a cycle of merges, or pairs of
+/// robots that other merges put, with it, where their own scans refuted that they are.
 struct Contradiction {
-  std::size_t merge = 0;            ///< Index,
-  std::vector<std::size_t> others;  ///< and those of the others around the cycle.
-  double miss_m = 0.0;              ///< How far from its beginning the cycle ends,
-  double driven_m = 0.0;            ///< after so much odometry.
+  std::size_t merge = 0;                             ///< Index,
+  std::vector<std::size_t> others;                   ///< and those of the others around the cycle,
+  std::vector<std::pair<RobotId, RobotId>> refuted;  ///< or the pairs.
+  double miss_m = 0.0;                               ///< How far from its beginning the cycle ends,
+  double driven_m = 0.0;                             ///< after so much odometry.
 };
 
 /// Until the merges that are left contradict one another nowhere, the one goes that leaves the fewest
 /// contradictions, and of several the one with the least evidence. Tested are all triangles, and of a merge
 /// that is part of none the shortest cycle; a merge in no cycle stays. Of the ways around a cycle that drive
 /// little the one that closes best counts, so that one bad loop condemns no merge.
-/// `merges`: at most one a pair of robots, each with loops whose information is regular; `chains`: of their
-/// robots.
+///
+/// `refuted` are hypotheses about pairs that did not merge, which their scans refuted. Merges that together
+/// say the same are contradicted, but not by a single one: a true hypothesis is refuted at about a hundred
+/// times the rate at which a wrong one is accepted, so that two pairs are needed. The merge that most of them
+/// speak against goes. `merges`: at most one a pair of robots; they and `refuted` with loops whose
+/// information is regular; `chains`: of their robots.
 [[nodiscard]] std::vector<Contradiction> contradictions(const std::vector<Merge>& merges,
+                                                        const std::vector<Merge>& refuted,
                                                         const std::map<RobotId, OdometryChain>& chains);
 
 }  // namespace adit

@@ -24,6 +24,7 @@ struct RandomFleet {
   std::vector<std::vector<Pose>> truth;
   std::map<RobotId, OdometryChain> chains;
   std::vector<Merge> merges;
+  std::vector<Merge> refuted;
 
   RandomFleet(std::uint64_t seed, int num_robots, double drift = 1.0) : rng(seed) {
     const Matrix6 covariance = odometry_covariance({}, 1.0);
@@ -56,10 +57,17 @@ struct RandomFleet {
     merges.push_back(std::move(merge));
   }
 
+  /// The same about a pair that did not merge.
+  void refute(Pair robots, const Pose& displaced = {}) {
+    merge(robots, -20.0, displaced);
+    refuted.push_back(std::move(merges.back()));
+    merges.pop_back();
+  }
+
   /// The pairs that are taken back.
   [[nodiscard]] std::vector<Pair> taken_back() const {
     std::vector<Pair> out;
-    for (const Contradiction& one : contradictions(merges, chains))
+    for (const Contradiction& one : contradictions(merges, refuted, chains))
       out.emplace_back(merges[one.merge].a.value, merges[one.merge].b.value);
     return out;
   }
@@ -98,7 +106,7 @@ TEST(MergeCycles, ASquareContradictsLikeATriangle) {
     fleet.merge({1, 2}, 25.0);
     fleet.merge({2, 3}, 10.0, elsewhere(fleet.rng));
     fleet.merge({0, 3}, 20.0);
-    const std::vector<Contradiction> found = contradictions(fleet.merges, fleet.chains);
+    const std::vector<Contradiction> found = contradictions(fleet.merges, {}, fleet.chains);
     ASSERT_EQ(found.size(), 1U) << "seed " << seed;
     EXPECT_EQ(found[0].merge, 2U);
     std::vector<std::size_t> others = found[0].others;
@@ -129,6 +137,34 @@ TEST(MergeCycles, AConsistentTriangleClearsTheEdgeThatItShares) {
     fleet.merge({2, 3}, 20.0);
     fleet.merge({0, 3}, 20.0);
     EXPECT_EQ(fleet.taken_back(), (std::vector<Pair>{{1, 2}})) << "seed " << seed;
+  }
+}
+
+// Two networks that look alike, two robots in each: the only merge between them closes no cycle, and three
+// other pairs have seen that it is none.
+TEST(MergeCycles, WhatOtherPairsRefutedTakesAWrongMergeBack) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    RandomFleet fleet(seed, 4);
+    const Pose copy = elsewhere(fleet.rng);
+    fleet.merge({0, 1}, 20.0);
+    fleet.merge({2, 3}, 20.0);
+    fleet.merge({0, 3}, 40.0, copy);
+    fleet.refute({0, 2}, copy);
+    EXPECT_TRUE(fleet.taken_back().empty()) << "one refutation may be an error, seed " << seed;
+    fleet.refute({1, 2}, copy);
+    fleet.refute({1, 3}, copy);
+    EXPECT_EQ(fleet.taken_back(), (std::vector<Pair>{{0, 3}})) << "seed " << seed;
+  }
+}
+
+TEST(MergeCycles, RefutedHypothesesThatNoMergesImplyTakeNothingBack) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    RandomFleet fleet(seed, 4);
+    fleet.merge({0, 1}, 20.0);
+    fleet.merge({2, 3}, 20.0);
+    fleet.merge({0, 3}, 10.0);
+    for (const Pair& pair : {Pair{0, 2}, Pair{1, 2}, Pair{1, 3}}) fleet.refute(pair, elsewhere(fleet.rng));
+    EXPECT_TRUE(fleet.taken_back().empty()) << "seed " << seed;
   }
 }
 
