@@ -18,8 +18,7 @@ adit::Result<adit::Recording> input(int argc, char** argv) {
 }
 
 adit::Result<adit::Trajectory> run_odometry(const adit::Recording& recording) {
-  adit::OdometryConfig config;            // every field has a default; docs/configuration.md lists them
-  config.kinematic_icp.voxel_size = 0.5;  // metres: tunnels are narrow
+  adit::OdometryConfig config;  // every field has a default; docs/configuration.md lists them
   if (recording.wheel.empty()) config.method = "kiss-icp";
   adit::Odometry odometry(config, recording.T_base_lidar);
   adit::Trajectory trajectory;

@@ -39,7 +39,6 @@ int main(int argc, char** argv) {
   const auto recording = input(argc, argv);
   if (!recording) return failed(recording.error());
   adit::RobotSlamConfig config;
-  config.odometry.kinematic_icp.voxel_size = 0.5;  // metres: tunnels are narrow
   if (recording->wheel.empty()) config.odometry.method = "kiss-icp";
   const auto map = adit::map_recording(*recording, adit::RobotId{0}, config);
   if (!map) return failed(map.error());

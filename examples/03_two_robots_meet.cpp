@@ -30,7 +30,6 @@ adit::Result<Maps> map_each(const std::vector<adit::Recording>& recordings) {
   Maps maps;
   for (const adit::Recording& recording : recordings) {
     adit::RobotSlamConfig config;
-    config.odometry.kinematic_icp.voxel_size = 0.5;  // metres: tunnels are narrow
     if (recording.wheel.empty()) config.odometry.method = "kiss-icp";
     const adit::RobotId id{static_cast<std::uint8_t>(maps.size())};
     auto map = adit::map_recording(recording, id, config);

@@ -39,10 +39,7 @@ std::string as_text(const test::Joint& joint, const std::filesystem::path& folde
 TEST(EndToEnd, TwoRobotsMergeByCorrectLoopsIntoAnAccurateMap) {
   const std::vector<Recording> recordings = two_robots();
   ASSERT_EQ(recordings.size(), 2U);
-  RobotSlamConfig config;
-  config.odometry.kinematic_icp.voxel_size =
-      0.5;  // with the default of 1 m the odometry slips by 2 m at the start
-  const test::Joint joint = test::map_and_meet(recordings, config);
+  const test::Joint joint = test::map_and_meet(recordings, RobotSlamConfig());
   ASSERT_EQ(joint.solution.components.size(), 1U) << joint.solution.pairs.at(0).refused_reason;
   const LoopCounts loops = test::loops_in_use(joint, recordings);
   EXPECT_GE(loops.total, 5);
@@ -60,7 +57,7 @@ TEST(EndToEnd, TwoRobotsMergeByCorrectLoopsIntoAnAccurateMap) {
   const test::TemporaryFolder folder;
   const int threads_before = num_threads();
   set_num_threads(threads_before == 1 ? 2 : 1);
-  const test::Joint again = test::map_and_meet(recordings, config);
+  const test::Joint again = test::map_and_meet(recordings, RobotSlamConfig());
   set_num_threads(threads_before);
   EXPECT_EQ(as_text(joint, folder.path()), as_text(again, folder.path()));
 }
@@ -68,13 +65,11 @@ TEST(EndToEnd, TwoRobotsMergeByCorrectLoopsIntoAnAccurateMap) {
 TEST(EndToEnd, AdaptiveRobotsMergeByEvidenceAndSayIt) {
   const std::vector<Recording> recordings = two_robots();
   ASSERT_EQ(recordings.size(), 2U);
-  RobotSlamConfig config;
-  config.odometry.kinematic_icp.voxel_size = 0.5;
   AgentConfig loops;
   loops.adaptive.on = true;
   BackEndConfig back_end;
   back_end.checks_needed = true;
-  const test::Joint joint = test::map_and_meet(recordings, config, loops, back_end);
+  const test::Joint joint = test::map_and_meet(recordings, RobotSlamConfig(), loops, back_end);
   ASSERT_EQ(joint.solution.components.size(), 1U) << joint.solution.pairs.at(0).refused_reason;
   EXPECT_EQ(test::loops_in_use(joint, recordings).wrong(), 0);
   const MergeCheck& check = joint.fleet.checks.begin()->second;

@@ -76,8 +76,8 @@ void expect_sound(const RobotMap& map, const Recording& recording) {
   }
 }
 
-TEST(RobotSlam, MapsARoomWithEitherOdometry) {
-  for (const char* method : {"kiss-icp", "kinematic-icp"}) {
+TEST(RobotSlam, MapsARoomWithEachOdometry) {
+  for (const char* method : {"kiss-icp", "kinematic-icp", "plane-icp"}) {
     const Recording recording = room_recording(true);
     const Result<RobotMap> map = map_recording(recording, {7}, config_of(method));
     ASSERT_TRUE(map.has_value()) << map.error().message;
@@ -96,6 +96,30 @@ TEST(RobotSlam, KeyframeCloudsLieInTheBaseFrame) {
     for (const Eigen::Vector3f& p : keyframe.cloud->points) lowest = std::min(lowest, p.z());
     EXPECT_NEAR(lowest, -1.0F, 0.15F);  // the room's floor, in a frame whose origin drives 1 m above it
   }
+}
+
+TEST(RobotSlam, SeveralConfigurationsReadTheRecordingOnce) {
+  const Recording recording = room_recording(true);
+  const Result<std::vector<RobotMap>> maps =
+      map_recording(recording, {7}, std::vector{config_of("kinematic-icp"), config_of("plane-icp")});
+  ASSERT_TRUE(maps.has_value()) << maps.error().message;
+  ASSERT_EQ(maps->size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const RobotMap alone =
+        map_recording(recording, {7}, config_of(i == 0 ? "kinematic-icp" : "plane-icp")).value();
+    ASSERT_EQ((*maps)[i].odometry.size(), alone.odometry.size());
+    EXPECT_EQ((*maps)[i].odometry.back().T_world_body.matrix(), alone.odometry.back().T_world_body.matrix());
+  }
+}
+
+TEST(RobotSlam, StepsThatWereGuessedAreNoisier) {
+  Recording recording = room_recording(true);
+  RobotSlamConfig config = config_of("kiss-icp");
+  const RobotMap steady = map_recording(recording, {7}, config).value();
+  config.odometry.kiss_icp.irregular_steps = "on";
+  const RobotMap guessed = map_recording(recording, {7}, config).value();
+  ASSERT_GT(guessed.keyframes.size(), 1U);
+  EXPECT_NEAR(guessed.step_covariances[1](0, 0) / steady.step_covariances[1](0, 0), 25.0, 1.0);
 }
 
 TEST(RobotSlam, KinematicIcpWithoutWheelsIsRefusedWithTheRemedy) {
