@@ -50,7 +50,7 @@ TEST(EndToEnd, TwoRobotsMergeByCorrectLoopsIntoAnAccurateMap) {
   ASSERT_TRUE(errors.has_value()) << errors.error().message;
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_GT(path_length(estimates[i]), 50.0);
-    EXPECT_LT((*errors)[i].max_m, 0.01 * path_length(estimates[i])) << recordings[i].name;
+    EXPECT_LT((*errors)[i].max_m, 0.0025 * path_length(estimates[i])) << recordings[i].name;
   }
 
   // The same bytes with another number of threads.
@@ -79,7 +79,7 @@ TEST(EndToEnd, AdaptiveRobotsMergeByEvidenceAndSayIt) {
   const auto errors = joint_ate(estimates, std::vector{recordings[0].truth, recordings[1].truth});
   ASSERT_TRUE(errors.has_value()) << errors.error().message;
   for (std::size_t i = 0; i < 2; ++i)
-    EXPECT_LT((*errors)[i].max_m, 0.01 * path_length(estimates[i])) << recordings[i].name;
+    EXPECT_LT((*errors)[i].max_m, 0.0025 * path_length(estimates[i])) << recordings[i].name;
 }
 
 TEST(EndToEnd, TheProgramMapsAFolderOfScansIntoASession) {

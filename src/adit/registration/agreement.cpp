@@ -20,7 +20,7 @@ constexpr int kRows = 60;
 // A point is before or behind a surface when it is by more than this many voxels and this share of the range.
 constexpr float kMarginVoxels = 1.0F;
 constexpr float kMarginShare = 0.01F;
-constexpr std::size_t kEnoughToAlign = 700;  // points, or up to twice as many
+constexpr std::size_t kEnoughToAlign = 1500;  // points, or up to twice as many
 constexpr double kWideVoxels = 5.0;           // between points that belong together, in the first of two fits
 constexpr double kMaxCorrection = 2.5;        // metres
 constexpr std::array kOtherStarts = {-1.5, 1.5, -0.75, 0.75};  // metres along the way
