@@ -9,7 +9,6 @@
 #include <tuple>
 
 #include "adit/core/parallel.hpp"
-#include "adit/fleet/revisits.hpp"
 #include "adit/geometry/voxel_grid.hpp"
 
 namespace adit {
@@ -69,24 +68,6 @@ std::vector<Message> with(std::vector<Message> replies, std::vector<Message> mor
 }
 
 }  // namespace
-
-Fields fields_of(AdaptiveConfig& c) {
-  Fields fields = {
-      {"on", &c.on, "", 0, 0,
-       "choose the candidates that stand out from the robot's own map, and test merges"},
-      {"candidates", &c.candidates, "", 1, 1e6, "candidates that are registered with each peer"},
-      {"stand_out", &c.stand_out, "", 0, 0,
-       "rank candidates by their distance over that to the most similar other place of one's "
-       "own; otherwise by their distance"},
-      {"lane_m", &c.lane_m, "m", 0.0, 100.0,
-       "between the lanes from which a keyframe is described for the search"},
-      {"lanes", &c.lanes, "", 0, 100, "such lanes on each side of the one that was driven"},
-      {"revisits", &c.revisits, "", 0, 0, "look for loops within the robot's own map"},
-      {"revisit_candidates", &c.revisit_candidates, "", 1, 1e6, "candidates that are registered within it"}};
-  append(fields, "registration", fields_of(c.registration));
-  append(fields, "merge_check", fields_of(c.merge_check));
-  return fields;
-}
 
 Fields fields_of(AgentConfig& c) {
   Fields fields = {{"max_candidates", &c.max_candidates, "", 0, 1e9,
@@ -300,19 +281,6 @@ std::vector<LoopCandidate> Agent::best_candidates(RobotId peer_id) const {
   return found;
 }
 
-std::vector<ScanContext> Agent::from_other_lanes(std::uint32_t k) const {
-  std::vector<ScanContext> contexts;
-  PointCloud cloud = *map_->keyframes[k].cloud;
-  for (int lane = -config_.adaptive.lanes; lane <= config_.adaptive.lanes; ++lane) {
-    if (lane == 0) continue;
-    const auto aside = static_cast<float>(lane * config_.adaptive.lane_m);
-    for (std::size_t i = 0; i < cloud.points.size(); ++i)
-      cloud.points[i].y() = map_->keyframes[k].cloud->points[i].y() - aside;
-    contexts.push_back(describe(cloud, config_.adaptive.context));
-  }
-  return contexts;
-}
-
 std::size_t Agent::num_tried() const {
   const auto own = registered_.find(map_->id);
   std::size_t num = own == registered_.end() ? 0 : own->second.size();
@@ -432,181 +400,6 @@ void Agent::register_clouds_of(RobotId from, const Clouds& clouds) {
     const Ends ends{loop.from, loop.to};
     if (known_.loops.try_emplace(ends, std::move(loop)).second) registered.push_back(ends);
   }
-}
-
-OdometryChain Agent::own_chain() const {
-  return chain_of(known_.robots.at(map_->id), config_.adaptive.merge_check.odometry_slack);
-}
-
-const OtherPlaces& Agent::other_places() {
-  if (!other_places_) other_places_ = std::make_unique<OtherPlaces>(map_, own_chain(), config_.place);
-  return *other_places_;
-}
-
-Discernment& Agent::discernment() {
-  if (!discernment_)
-    discernment_ = std::make_unique<Discernment>(map_, own_chain(), other_places(), *features_,
-                                                 config_.registration_in_use(),
-                                                 config_.adaptive.merge_check.discernment);
-  return *discernment_;
-}
-
-void Agent::find_revisits() {
-  if (!config_.adaptive.on || !config_.adaptive.revisits || std::exchange(looked_for_revisits_, true)) return;
-  const OdometryChain chain = own_chain();
-  const std::vector<PcmLoop> loops = register_own(own_candidates(chain), chain);
-  if (loops.empty()) return;
-  std::vector<double> known_before;
-  for (const PcmLoop& loop : loops) known_before.push_back(odometry_evidence(chain, loop));
-  MergeTest test(chain, chain, loops, discernment().chance_to_go_on(), config_.adaptive.merge_check,
-                 known_before);
-  for (auto asked = test.next(kCloudsPerMessage); !asked.empty(); asked = test.next(kCloudsPerMessage))
-    test.add(compare_own(asked));
-  decide(test.verdict(map_->id, map_->id));
-}
-
-std::vector<LoopCandidate> Agent::own_candidates(const OdometryChain& chain) {
-  const std::vector<double> way = way_along(chain);
-  std::vector<std::optional<LoopCandidate>> best(chain.size());
-  parallel_for_each(best.size(), [&](std::size_t i) {
-    const auto k = static_cast<std::uint32_t>(i);
-    std::vector<std::uint32_t> later = possible_revisits(chain, way, k);
-    std::erase_if(later, [&](std::uint32_t other) { return !map_->searchable[other]; });
-    if (later.empty() || !map_->searchable[k]) return;
-    std::vector<ScanContext> contexts = from_other_lanes(k);
-    contexts.push_back(map_->places[k]);
-    for (const std::uint32_t other : later)
-      for (const ScanContext& context : contexts) {
-        const ContextMatch match = compare(context, map_->places[other]);
-        if (!best[i] || match.distance < best[i]->distance)
-          best[i] = LoopCandidate{{map_->id, k}, {map_->id, other}, match.yaw, match.distance};
-      }
-  });
-  std::vector<LoopCandidate> found;
-  for (const std::optional<LoopCandidate>& candidate : best)
-    if (candidate) found.push_back(*candidate);
-  return found.empty() ? found : standing_out(std::move(found), config_.adaptive.revisit_candidates);
-}
-
-std::vector<PcmLoop> Agent::register_own(const std::vector<LoopCandidate>& candidates,
-                                         const OdometryChain& chain) {
-  std::vector<std::uint32_t> used;
-  for (const LoopCandidate& candidate : candidates)
-    used.insert(used.end(), {candidate.query.index, candidate.match.index});
-  features_->prepare(used);
-  std::vector<LoopClosure> found(candidates.size());
-  parallel_for_each(found.size(), [&](std::size_t i) {
-    found[i] = verify(candidates[i], features_->at(candidates[i].match.index));
-  });
-  std::vector<PcmLoop> accepted;
-  for (LoopClosure& loop : found) {
-    const PcmLoop measured{loop.from.index, loop.to.index, loop.T_from_to, loop_information({})};
-    if (loop.verdict == LoopVerdict::accepted && !fits_odometry(chain, measured)) {
-      loop.verdict = LoopVerdict::rejected;
-      loop.reason = "the robot's own odometry excludes it";
-    }
-    if (loop.verdict == LoopVerdict::accepted) accepted.push_back(measured);
-    registered_[map_->id].emplace_back(loop.from, loop.to);
-    known_.loops[{loop.from, loop.to}] = std::move(loop);
-  }
-  return accepted;
-}
-
-std::vector<CheckedPlace> Agent::compare_own(const std::vector<PlannedCheck>& asked) {
-  std::vector<std::uint32_t> earlier;
-  std::vector<std::uint32_t> both;
-  for (const PlannedCheck& check : asked) {
-    earlier.push_back(check.own);
-    both.insert(both.end(), {check.own, check.theirs});
-  }
-  const std::vector<bool> distinctive = discernment().distinctive(earlier);
-  SurfaceStore& surfaces = discernment().surfaces();
-  surfaces.prepare(both);
-  std::vector<CheckedPlace> places(asked.size());
-  parallel_for_each(asked.size(), [&](std::size_t i) {
-    const auto& [own, theirs, T_own_theirs] = asked[i];
-    const LocalFit fit = fit_near(surfaces.at(own), surfaces.at(theirs), T_own_theirs, discernment().limit(),
-                                  config_.registration_in_use());
-    places[i] = {fit.agreement.largest_difference / discernment().limit(), distinctive[i]};
-  });
-  return places;
-}
-
-bool Agent::begin_test(RobotId peer_id) {
-  const auto graph = known_.robots.find(peer_id);
-  const std::size_t num_theirs = graph == known_.robots.end() ? 0 : graph->second.nodes.size();
-  std::vector<PcmLoop> loops;
-  for (const auto& [ends, loop] : known_.loops) {
-    if (ends.first.robot != map_->id || ends.second.robot != peer_id || loop.verdict != LoopVerdict::accepted)
-      continue;
-    if (ends.second.index >= num_theirs) return false;
-    loops.push_back({ends.first.index, ends.second.index, loop.T_from_to, loop_information({})});
-  }
-  const double slack = config_.adaptive.merge_check.odometry_slack;
-  peers_[peer_id].test.emplace(own_chain(),
-                               num_theirs == 0 ? OdometryChain({}, {}) : chain_of(graph->second, slack),
-                               loops, discernment().chance_to_go_on(), config_.adaptive.merge_check);
-  return true;
-}
-
-bool Agent::compare_clouds_of(RobotId from, const Clouds& clouds) {
-  MergeTest& test = *peers_[from].test;
-  const std::vector<PlannedCheck> asked = test.next(kCloudsPerMessage);
-  std::map<std::uint32_t, const Clouds::Cloud*> came;
-  for (const Clouds::Cloud& cloud : clouds.clouds) came[cloud.index] = &cloud;
-  // The test wants all of them, in its order; a part, or something else, is no use.
-  if (!std::ranges::all_of(asked, [&](const PlannedCheck& check) { return came.contains(check.theirs); }))
-    return false;
-  std::vector<std::uint32_t> own;
-  for (const PlannedCheck& check : asked) own.push_back(check.own);
-  const std::vector<bool> distinctive = discernment().distinctive(own);
-  SurfaceStore& surfaces = discernment().surfaces();
-  surfaces.prepare(own);
-  std::vector<CheckedPlace> places(asked.size());
-  parallel_for_each(asked.size(), [&](std::size_t i) {
-    const PlannedCheck& check = asked[i];
-    PointCloud cloud;
-    cloud.points = came.at(check.theirs)->points;
-    const SeenSurface theirs(compute_surface(cloud, config_.registration_in_use()),
-                             came.at(check.theirs)->viewpoint.cast<double>());
-    const LocalFit fit = fit_near(surfaces.at(check.own), theirs, check.T_own_theirs, discernment().limit(),
-                                  config_.registration_in_use());
-    places[i] = {fit.agreement.largest_difference / discernment().limit(), distinctive[i]};
-  });
-  test.add(places);
-  return true;
-}
-
-Agent::Replies Agent::conclude_test(RobotId peer_id) {
-  decide(peers_.at(peer_id).test->verdict(map_->id, peer_id));
-  return checks_from(peer_id, map_->id, decided_.at(map_->id).size() - 1);
-}
-
-void Agent::decide(MergeCheck check) {
-  known_.checks[{check.a, check.b}] = check;
-  decided_[map_->id].push_back(std::move(check));
-}
-
-std::vector<LoopCandidate> Agent::standing_out(std::vector<LoopCandidate> found, int max_candidates) {
-  if (own_likeness_.empty()) own_likeness_ = other_places().likeness();
-  const auto ratio = [&](const LoopCandidate& c) {
-    return config_.adaptive.stand_out ? c.distance / std::max(own_likeness_[c.query.index], 1e-6)
-                                      : c.distance;
-  };
-  std::ranges::sort(found, {},
-                    [&](const LoopCandidate& c) { return std::tuple(ratio(c), c.query, c.match); });
-  constexpr std::uint32_t kNear = 6;  // keyframes
-  constexpr std::ptrdiff_t kOfAPlace = 3;
-  std::vector<LoopCandidate> chosen;
-  for (const LoopCandidate& candidate : found) {
-    if (chosen.size() == static_cast<std::size_t>(max_candidates)) break;
-    const auto near = std::ranges::count_if(chosen, [&](const LoopCandidate& c) {
-      const std::uint32_t i = c.query.index, k = candidate.query.index;
-      return (i < k ? k - i : i - k) < kNear;
-    });
-    if (near < kOfAPlace) chosen.push_back(candidate);
-  }
-  return chosen;
 }
 
 Agent::Replies Agent::on(RobotId /*from*/, const MergeChecks& part) {

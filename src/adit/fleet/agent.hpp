@@ -30,6 +30,7 @@ struct AdaptiveConfig {
   MergeCheckConfig merge_check;
   ScanContextConfig context;  ///< With which the keyframes were described; no setting of its own.
 };
+Fields fields_of(AdaptiveConfig& config);
 
 struct AgentConfig {
   PlaceIndexConfig place;
