@@ -109,6 +109,10 @@ const Case kinematic_fine(info("kinematic_0.5", "Kinematic-ICP, voxels of 0.5 m,
 const Side kinematic_fine_adit("odometry/kinematic_0.5", "adit",
                                drive("kinematic-icp", 0.5, kScansOfFineMap, 1));
 
+const Case plane(info("plane_0.5", "plane-icp beside Kinematic-ICP with voxels of 1 m, one thread",
+                      "kinematic-icp", 2.0, kScans));
+const Side plane_adit("odometry/plane_0.5", "adit", drive("plane-icp", 0.5, kScans, 1));
+
 const Case threads(info("kiss_1.0_2threads", "KISS-ICP, voxels of 1 m, two threads", "one-thread", 1.6,
                         kScans));
 const Side threads_adit("odometry/kiss_1.0_2threads", "adit", drive("kiss-icp", 1.0, kScans, 2));
