@@ -248,7 +248,7 @@ class MergeGraph {
     merge_[b][a] = merge;
   }
   static Robots in_order(Robots cycle) {
-    std::ranges::rotate(cycle, std::ranges::min_element(cycle));
+    std::rotate(cycle.begin(), std::ranges::min_element(cycle), cycle.end());
     if (cycle.back() < cycle[1]) std::reverse(cycle.begin() + 1, cycle.end());
     return cycle;
   }

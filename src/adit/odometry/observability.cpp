@@ -80,8 +80,9 @@ PlaneRow plane_row(const Vector3& point, const MapPlane& plane, const Matrix3& R
 Observability observability(std::span<const Eigen::Vector3f> source, const LocalMap& map,
                             const Pose& T_map_base, double max_distance, double degeneracy_threshold) {
   // The samples speak for as many correspondences as the stride left out.
+  const std::size_t stride = source.size() / kMaxSamples + 1;
   return observability(plane_rows(source, map, T_map_base, static_cast<float>(max_distance)), source,
-                       static_cast<double>(source.size() / kMaxSamples + 1), degeneracy_threshold);
+                       static_cast<double>(stride), degeneracy_threshold);
 }
 
 Observability observability(const std::vector<PlaneRow>& rows, std::span<const Eigen::Vector3f> source,
