@@ -6,6 +6,13 @@
 
 namespace adit {
 
+std::string OdometryResult::title() const {
+  if (method == "kiss_icp") return "KISS-ICP";
+  if (method == "kinematic_icp") return "Kinematic-ICP";
+  if (method == "plane_icp") return "plane-icp";
+  return method;
+}
+
 std::optional<double> MergedRobot::ate_max_over_path_pct() const {
   if (!ate || path_length_m <= 0.0) return std::nullopt;
   return 100.0 * ate->max_m / path_length_m;

@@ -22,6 +22,9 @@ struct OdometryResult {
   std::string method;            ///< "kiss_icp", "kinematic_icp", "plane_icp".
   std::optional<AteResult> ate;  ///< After the robot's own alignment; none where there is no truth.
   std::optional<double> ms_per_scan_median;
+
+  /// As tables and figures call the method: "KISS-ICP"; the method itself where it has no other name.
+  [[nodiscard]] std::string title() const;
 };
 
 struct RobotResult {

@@ -162,13 +162,6 @@ Row max_ate_cells(const PairResult* run) {
   return {max_ate_cell(run->robots[0], run->merged), max_ate_cell(run->robots[1], run->merged)};
 }
 
-std::string method_title(const std::string& method) {
-  if (method == "kiss_icp") return "KISS-ICP";
-  if (method == "kinematic_icp") return "Kinematic-ICP";
-  if (method == "plane_icp") return "plane-icp";
-  return method;
-}
-
 Row odometry_cells(const OdometryResult& odometry, double path_length_m) {
   const std::optional<AteResult>& ate = odometry.ate;
   const auto metres = [&](double AteResult::*value) {
@@ -302,7 +295,7 @@ Table odometry_table(const StudyResult& study) {
   table.header = {"Robot", "Method", "Max (m)", "RMSE (m)", "Median (m)", "Max / path (%)", "ms / scan"};
   for (const RobotResult& robot : study.robots) {
     for (const OdometryResult& odometry : robot.odometry) {
-      Row row = {short_name(robot.name), method_title(odometry.method)};
+      Row row = {short_name(robot.name), odometry.title()};
       add_cells(row, odometry_cells(odometry, robot.path_length_m));
       table.rows.push_back(std::move(row));
     }

@@ -59,7 +59,9 @@ std::string reason_of(const LoopOutcome& outcome, const MergeCheck* check,
   if (outcome.in_use())
     return hypothesis ? "in use: " + finding(*check, *hypothesis)
                       : std::string("in use: agrees with the odometries and the other loops in use");
-  if (outcome.in_clique && pair != nullptr && !pair->merged)
+  // Of a merge that passed its test and was taken back, no loop is in the clique.
+  const bool passed = hypothesis && check->hypotheses[*hypothesis].outcome == HypothesisOutcome::accepted;
+  if ((outcome.in_clique || passed) && pair != nullptr && !pair->merged)
     return "maps not joined: " + pair->refused_reason;
   if (outcome.in_clique)
     return "switched off by GNC: errs by more than noise from what odometry and the other loops say";

@@ -88,6 +88,14 @@ TEST(LoopAccount, ARefusedMergeSaysWhatItLacks) {
                 "hypothesis 2 rivals hypothesis 1 from 21 m away");
 }
 
+TEST(LoopAccount, ALoopOfAMergeThatWasTakenBackSaysSo) {
+  const FleetGraph accepted = tested(HypothesisOutcome::accepted);
+  const FleetSolution taken_back = pair_with(1, "taken back: misses by 34 m");
+  expect_reason(account_of(outcome_of(0, 0, false, 0.0), accepted, taken_back),
+                "maps not joined: taken back: misses by 34 m");
+  expect_reason(account_of(outcome_of(3, 3, false, 0.0), accepted, taken_back), "scans differ at 7 of 20");
+}
+
 TEST(LoopAccount, WithoutATestPcmAndTooFewLoopsDecide) {
   const LoopAccount dropped = account_of(outcome_of(0, 0, false, 0.0), {}, pair_with(6, ""));
   EXPECT_EQ(dropped.merge_check, "none");

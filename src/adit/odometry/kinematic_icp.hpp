@@ -2,33 +2,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
-
 #include "adit/core/config.hpp"
 #include "adit/core/records.hpp"
 #include "adit/odometry/adaptive_threshold.hpp"
-#include "adit/odometry/local_map.hpp"
-#include "adit/odometry/scan_to_map.hpp"
+#include "adit/odometry/wheel_guided.hpp"
 
 namespace adit {
 
-struct KinematicIcpConfig : ScanToMapConfig {
-  double stationary_motion = 1e-3;
-
+struct KinematicIcpConfig : WheelGuidedConfig {
   KinematicIcpConfig() {
     max_iterations = 10;
     convergence = 1e-3;
     max_correction = 1.0;
   }
 };
-
-inline Fields fields_of(KinematicIcpConfig& c) {
-  Fields fields = fields_of(static_cast<ScanToMapConfig&>(c));
-  fields.push_back(
-      {"stationary_motion", &c.stationary_motion, "", 0.0, 1.0,
-       "norm of the wheel motion [m; rad] since the last registered scan up to which none is registered"});
-  return fields;
-}
 
 /// Wheel odometry corrected by LiDAR in the two motions that a non-holonomic vehicle has: T. Guadagnino, B.
 /// Mersch, I. Vizzo, S. Gupta, M.V.R. Malladi, L. Lobefaro, G. Doisy, C. Stachniss, "Kinematic-ICP: Enhancing
@@ -41,28 +28,20 @@ inline Fields fields_of(KinematicIcpConfig& c) {
 /// out of the map.
 class KinematicIcp {
  public:
-  KinematicIcp(const KinematicIcpConfig& config, const Pose& T_base_lidar);
+  KinematicIcp(const KinematicIcpConfig& config, const Pose& T_base_lidar)
+      : config_(config), drive_(config, T_base_lidar) {}
 
-  /// `wheel` is the motion of the base since the last scan; of the first scan it is ignored. Its duration
-  /// must be positive where the scan has per-point times.
+  /// As WheelGuided's, these three.
   OdometryStep register_scan(const Scan& scan, const WheelDelta& wheel);
-  /// The last scan, deskewed and range-cropped at full density, in the base frame at its stamp.
-  [[nodiscard]] PointCloud cloud_of_last_scan() const { return cloud_; }
-  [[nodiscard]] const LocalMap& map() const { return map_; }
+  [[nodiscard]] PointCloud cloud_of_last_scan() const { return drive_.cloud_of_last_scan(); }
+  [[nodiscard]] const LocalMap& map() const { return drive_.map(); }
 
  private:
-  [[nodiscard]] OdometryStep moving(const Pose& T_prediction);
   [[nodiscard]] OdometryStep registered(const ThinnedScan& scan, const Pose& T_prediction);
 
   KinematicIcpConfig config_;
-  Pose T_base_lidar_;
-  LocalMap map_;
+  WheelGuided drive_;
   DeviationStatistics deviations_;
-  Pose T_odom_base_;
-  std::optional<OdometryStep> last_registered_;  ///< Of the last moving scan, if that entered the map.
-  bool started_ = false;
-  PointCloud cloud_;
-  VoxelThinner thinner_;
 };
 
 }  // namespace adit

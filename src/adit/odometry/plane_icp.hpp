@@ -2,17 +2,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
-
 #include "adit/core/config.hpp"
 #include "adit/core/records.hpp"
-#include "adit/odometry/local_map.hpp"
 #include "adit/odometry/scan_to_planes.hpp"
+#include "adit/odometry/wheel_guided.hpp"
 
 namespace adit {
 
-struct PlaneIcpConfig : ScanToMapConfig {
-  double stationary_motion = 1e-3;
+struct PlaneIcpConfig : WheelGuidedConfig {
   double sigma = 0.05;
   WheelNoise wheels;
 
@@ -36,27 +33,21 @@ Fields fields_of(PlaneIcpConfig& config);
 /// `too_few_points` and `diverged` steps are the wheels' word and stay out of the map.
 class PlaneIcp {
  public:
-  PlaneIcp(const PlaneIcpConfig& config, const Pose& T_base_lidar);
+  PlaneIcp(const PlaneIcpConfig& config, const Pose& T_base_lidar)
+      : config_(config), drive_(config, T_base_lidar) {}
 
-  /// `wheel` is the motion of the base since the last scan; of the first scan it is ignored. Its duration
-  /// must be positive where the scan has per-point times.
+  /// As WheelGuided's, these three.
   OdometryStep register_scan(const Scan& scan, const WheelDelta& wheel);
-  /// The last scan, deskewed and range-cropped at full density, in the base frame at its stamp.
-  [[nodiscard]] PointCloud cloud_of_last_scan() const { return cloud_; }
-  [[nodiscard]] const LocalMap& map() const { return map_; }
+  [[nodiscard]] PointCloud cloud_of_last_scan() const { return drive_.cloud_of_last_scan(); }
+  [[nodiscard]] const LocalMap& map() const { return drive_.map(); }
 
  private:
-  [[nodiscard]] OdometryStep moving(const Pose& T_prediction, const Pose& T_last_now);
+  [[nodiscard]] OdometryStep registered(const ThinnedScan& scan, const Pose& T_prediction,
+                                        const Pose& T_last_now);
 
   PlaneIcpConfig config_;
-  Pose T_base_lidar_;
-  LocalMap map_;
-  Pose T_odom_base_;
-  std::optional<OdometryStep> last_registered_;  ///< Of the last moving scan, if that entered the map.
-  double usual_share_ = 0.0;                     ///< Of a scan's points near a plane of the map.
-  bool started_ = false;
-  PointCloud cloud_;
-  VoxelThinner thinner_;
+  WheelGuided drive_;
+  double usual_share_ = 0.0;  ///< Of a scan's points near a plane of the map.
 };
 
 }  // namespace adit

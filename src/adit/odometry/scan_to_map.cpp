@@ -239,21 +239,6 @@ OdometryStep step_of(const Alignment& alignment, std::span<const Eigen::Vector3f
   return step;
 }
 
-bool is_resting(const std::optional<OdometryStep>& last_registered, const Pose& T_prediction,
-                double stationary_motion) {
-  return last_registered &&
-         (last_registered->T_odom_base.inverse() * T_prediction).log().norm() <= stationary_motion;
-}
-
-OdometryStep resting(const OdometryStep& last_registered, const Pose& T_prediction) {
-  OdometryStep step = last_registered;
-  step.T_odom_base = T_prediction;
-  if (step.status == StepStatus::no_map) step.status = StepStatus::ok;
-  step.num_correspondences = 0;
-  step.iterations = 0;
-  return step;
-}
-
 void update_map(LocalMap& map, const ThinnedScan& scan, const OdometryStep& step,
                 const ScanToMapConfig& config) {
   if (enters_map(step.status)) map.add(scan.map_points, step.T_odom_base);

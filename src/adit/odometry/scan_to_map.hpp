@@ -4,7 +4,6 @@
 /// the judgement on how well the scene fixes the pose.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -113,13 +112,6 @@ struct ThinnedScan {
 /// The step of an aligned scan: diagnosis and information added to a registered pose.
 [[nodiscard]] OdometryStep step_of(const Alignment& alignment, std::span<const Eigen::Vector3f> source,
                                    const LocalMap& map, double max_distance, const ScanToMapConfig& config);
-
-/// Whether the robot has moved by no more than `stationary_motion` (norm [m; rad]) since the scan that was
-/// registered last: such a scan is not registered.
-[[nodiscard]] bool is_resting(const std::optional<OdometryStep>& last_registered, const Pose& T_prediction,
-                              double stationary_motion);
-/// The step of a robot at rest: the wheels' word.
-[[nodiscard]] OdometryStep resting(const OdometryStep& last_registered, const Pose& T_prediction);
 
 /// Whether the scan of such a step may enter the map: it was registered, or it starts the map.
 [[nodiscard]] inline bool enters_map(StepStatus status) {

@@ -64,7 +64,7 @@ NormalEquations<6> linearize_planes(const std::vector<PlaneRow>& rows, double si
   return out;
 }
 
-// Gauss-Newton with these planes from `pose` on.
+// Gauss-Newton with these planes, from `out.T_map_base` on.
 void refine(std::span<const Eigen::Vector3f> source, const Planes& planes, const Pose& T_prediction,
             const Matrix6& information, double sigma, const ScanToMapConfig& config, PlaneAlignment& out) {
   for (int i = 0; i < config.max_iterations; ++i) {

@@ -47,10 +47,7 @@ Figure odometry_figure(const StudyResult& study) {
     for (const OdometryResult& odometry : robot.odometry) {
       if (std::find(methods.begin(), methods.end(), odometry.method) != methods.end()) continue;
       methods.push_back(odometry.method);
-      titles.push_back(odometry.method == "kiss_icp"        ? "KISS-ICP"
-                       : odometry.method == "kinematic_icp" ? "Kinematic-ICP"
-                       : odometry.method == "plane_icp"     ? "plane-icp"
-                                                            : odometry.method);
+      titles.push_back(odometry.title());
     }
   }
   std::vector<BoxGroup> groups;
