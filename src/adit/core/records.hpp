@@ -120,6 +120,9 @@ struct LoopClosure {
       0.0;  ///< Smallest eigenvalue of the normalised translational information, 0 (open) to 1/3.
   LoopVerdict verdict = LoopVerdict::rejected;
   std::string reason;  ///< One sentence: why.
+
+  /// Along a smooth tube: it says nothing of where along it.
+  [[nodiscard]] bool is_free_to_slide() const { return weak_axis < kWeakAxis; }
 };
 
 /// The same measurement with its ends exchanged: T_to_from, with the information carried over by the adjoint.

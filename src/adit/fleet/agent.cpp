@@ -218,11 +218,12 @@ Agent::Replies Agent::on(RobotId from, const GraphPart& part) {
   for (std::size_t i = has - part.first_index; i < part.nodes.size(); ++i) {
     graph.nodes.push_back(part.nodes[i]);
   }
-  // A test that waited for this part begins.
   const auto peer = peers_.find(from);
-  const bool waited = config_.adaptive.on && from == part.owner && peer != peers_.end() && searches(from) &&
-                      peer->second.was_tried && !peer->second.test;
-  return waited && begin_test(from) ? go_on_testing(from) : Replies{};
+  if (!config_.adaptive.on || from != part.owner || peer == peers_.end() || !searches(from)) return {};
+  // A search or a test that waited for this part begins.
+  if (peer->second.was_tried && !peer->second.test)
+    return begin_test(from) ? go_on_testing(from) : Replies{};
+  return search(from);
 }
 
 Agent::Replies Agent::on(RobotId from, const Places& part) {
@@ -236,6 +237,7 @@ Agent::Replies Agent::on(RobotId from, const Places& part) {
     if (robot == from) continue;
     other.num_places -= static_cast<std::uint32_t>(other.places.size());
     other.places = {};
+    other.has_all_places = false;
   }
   Peer& peer = peers_[from];
   if (part.first > peer.num_places) return {};
@@ -243,9 +245,16 @@ Agent::Replies Agent::on(RobotId from, const Places& part) {
     peer.places.push_back(part.places[i]);
     ++peer.num_places;
   }
-  if (!part.last) return {};
-  find_candidates(from);
-  return cloud_request(from);
+  peer.has_all_places |= part.last;
+  return search(from);
+}
+
+Agent::Replies Agent::search(RobotId peer_id) {
+  Peer& peer = peers_.at(peer_id);
+  if (!peer.has_all_places || !has_way_of(peer_id)) return {};
+  peer.has_all_places = false;
+  find_candidates(peer_id);
+  return cloud_request(peer_id);
 }
 
 std::vector<LoopCandidate> Agent::best_candidates(RobotId peer_id) const {
@@ -258,24 +267,26 @@ std::vector<LoopCandidate> Agent::best_candidates(RobotId peer_id) const {
   }
   std::vector<std::uint32_t> queries = searchable_indices(*map_);
   if (num_tried() >= static_cast<std::size_t>(config_.max_candidates)) queries = thinned(queries);
-  std::vector<std::optional<LoopCandidate>> best(queries.size());
+  std::vector<std::map<KeyframeId, LoopCandidate>> best(queries.size());
   parallel_for_each(
       queries.size(),
       [&](std::size_t i) {
         const KeyframeId query{map_->id, queries[i]};
-        best[i] = index.best_match(query, map_->places[query.index], peer_id);
-        if (!config_.adaptive.on) return;
-        for (const ScanContext& context : from_other_lanes(query.index)) {
+        const auto look = [&](const ScanContext& context) {
           const auto match = index.best_match(query, context, peer_id);
-          if (match && (!best[i] || match->distance < best[i]->distance)) best[i] = match;
-        }
+          if (!match) return;
+          LoopCandidate& known = best[i].try_emplace(match->match, *match).first->second;
+          if (match->distance < known.distance) known = *match;
+        };
+        look(map_->places[query.index]);
+        if (!config_.adaptive.on) return;
+        for (const ScanContext& context : from_other_lanes(query.index)) look(context);
       },
       16);
   std::vector<LoopCandidate> found;
-  for (const std::optional<LoopCandidate>& candidate : best) {
-    if (candidate && !known_.loops.contains({candidate->query, candidate->match}))
-      found.push_back(*candidate);
-  }
+  for (const auto& of_query : best)
+    for (const auto& [match, candidate] : of_query)
+      if (!known_.loops.contains({candidate.query, match})) found.push_back(candidate);
   std::ranges::sort(found, {},
                     [](const LoopCandidate& c) { return std::tuple(c.distance, c.query, c.match); });
   return found;
@@ -292,7 +303,7 @@ std::size_t Agent::num_tried() const {
 
 void Agent::find_candidates(RobotId peer_id) {
   std::vector<LoopCandidate> found = best_candidates(peer_id);
-  if (config_.adaptive.on) found = standing_out(std::move(found), config_.adaptive.candidates);
+  if (config_.adaptive.on) found = promising(peer_id, std::move(found));
   Peer& peer = peers_[peer_id];
   peer.places = {};
   const auto in_all = static_cast<std::size_t>(config_.max_candidates);

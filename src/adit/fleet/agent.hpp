@@ -16,11 +16,13 @@
 
 namespace adit {
 
-/// Of an agent that chooses candidates by how much they stand out and tests merges by evidence: in place of
-/// the thresholds of the paper's pipeline.
+/// Of an agent that chooses candidates which agree along the way or stand out, and tests merges by evidence: in
+/// place of the thresholds of the paper's pipeline.
 struct AdaptiveConfig {
   bool on = false;
   int candidates = 64;
+  int segments = 10;
+  int of_a_segment = 4;
   bool stand_out = true;
   double lane_m = 1.0;
   int lanes = 2;
@@ -89,6 +91,7 @@ class Agent {
   struct Peer {
     std::uint32_t num_places = 0;       ///< Received so far.
     std::vector<Places::Place> places;  ///< Those of them that have not been searched.
+    bool has_all_places = false;        ///< None of them is still to come.
     std::map<std::uint32_t, std::vector<LoopCandidate>>
         waiting;                    ///< By the peer's keyframe whose cloud is awaited.
     bool was_tried = false;         ///< All loops have been.
@@ -111,7 +114,13 @@ class Agent {
   [[nodiscard]] Replies loop_news(RobotId peer, const Hello& theirs) const;
   /// What `author` registered, from number `first` on.
   [[nodiscard]] Replies loops_from(RobotId peer, RobotId author, std::size_t first) const;
+  /// When all places of the peer have come, and the way on which they lie.
+  Replies search(RobotId peer_id);
+  [[nodiscard]] bool has_way_of(RobotId peer_id) const;
+  /// The most similar place of the peer to each of its own, and if adaptive to how that looks from each lane.
   [[nodiscard]] std::vector<LoopCandidate> best_candidates(RobotId peer_id) const;
+  /// Those that agree along the way, then those that stand out.
+  [[nodiscard]] std::vector<LoopCandidate> promising(RobotId peer_id, std::vector<LoopCandidate> found);
   /// Those that stand out most from what the robot's own map has that looks like them; spread over its way.
   [[nodiscard]] std::vector<LoopCandidate> standing_out(std::vector<LoopCandidate> found, int max_candidates);
   [[nodiscard]] std::vector<LoopCandidate> own_candidates(const OdometryChain& chain);

@@ -3,20 +3,27 @@
 /// What an adaptive agent does beyond the paper's: candidates that stand out, loops within its own map, and
 /// merges that are tested.
 #include <algorithm>
+#include <iterator>
+#include <set>
+#include <span>
 #include <tuple>
 #include <utility>
 
 #include "adit/core/parallel.hpp"
 #include "adit/fleet/agent.hpp"
 #include "adit/fleet/revisits.hpp"
+#include "adit/fleet/segments.hpp"
 
 namespace adit {
 
 Fields fields_of(AdaptiveConfig& c) {
   Fields fields = {
       {"on", &c.on, "", 0, 0,
-       "choose the candidates that stand out from the robot's own map, and test merges"},
+       "choose the candidates that agree along the way or stand out, and test merges"},
       {"candidates", &c.candidates, "", 1, 1e6, "candidates that are registered with each peer"},
+      {"segments", &c.segments, "", 0, 1e6,
+       "stretches along which candidates agree, whose best ones are registered first"},
+      {"of_a_segment", &c.of_a_segment, "", 1, 1e6, "candidates that are registered of each of them"},
       {"stand_out", &c.stand_out, "", 0, 0,
        "rank candidates by their distance over that to the most similar other place of one's "
        "own; otherwise by their distance"},
@@ -149,6 +156,7 @@ bool Agent::begin_test(RobotId peer_id) {
     if (ends.first.robot != map_->id || ends.second.robot != peer_id || loop.verdict != LoopVerdict::accepted)
       continue;
     if (ends.second.index >= num_theirs) return false;
+    if (loop.is_free_to_slide()) continue;
     loops.push_back({ends.first.index, ends.second.index, loop.T_from_to, loop_information({})});
   }
   const double slack = config_.adaptive.merge_check.odometry_slack;
@@ -196,6 +204,34 @@ void Agent::decide(MergeCheck check) {
   decided_[map_->id].push_back(std::move(check));
 }
 
+bool Agent::has_way_of(RobotId peer_id) const {
+  const auto graph = known_.robots.find(peer_id);
+  const std::size_t num = graph == known_.robots.end() ? 0 : graph->second.nodes.size();
+  return !config_.adaptive.on || std::ranges::all_of(peers_.at(peer_id).places, [&](const auto& place) {
+    return place.index < num;
+  });
+}
+
+std::vector<LoopCandidate> Agent::promising(RobotId peer_id, std::vector<LoopCandidate> found) {
+  const auto most = static_cast<std::size_t>(config_.adaptive.candidates);
+  std::vector<LoopCandidate> chosen;
+  if (!found.empty()) {
+    const auto of_each = static_cast<std::size_t>(config_.adaptive.of_a_segment);
+    for (const Segment& segment :
+         agreeing_segments(own_chain(), chain_of(known_.robots.at(peer_id)), found,
+                           static_cast<std::size_t>(config_.adaptive.segments)))
+      std::ranges::copy(std::span(segment.candidates).first(std::min(of_each, segment.candidates.size())),
+                        std::back_inserter(chosen));
+  }
+  std::set<Ends> taken;
+  for (const LoopCandidate& candidate : chosen) taken.emplace(candidate.query, candidate.match);
+  std::erase_if(found, [&](const LoopCandidate& c) { return taken.contains({c.query, c.match}); });
+  chosen.resize(std::min(chosen.size(), most));
+  std::ranges::move(standing_out(std::move(found), static_cast<int>(most - chosen.size())),
+                    std::back_inserter(chosen));
+  return chosen;
+}
+
 std::vector<LoopCandidate> Agent::standing_out(std::vector<LoopCandidate> found, int max_candidates) {
   if (own_likeness_.empty()) own_likeness_ = other_places().likeness();
   const auto ratio = [&](const LoopCandidate& c) {
@@ -207,8 +243,10 @@ std::vector<LoopCandidate> Agent::standing_out(std::vector<LoopCandidate> found,
   constexpr std::uint32_t kNear = 6;  // keyframes
   constexpr std::ptrdiff_t kOfAPlace = 3;
   std::vector<LoopCandidate> chosen;
+  std::set<KeyframeId> queries;
   for (const LoopCandidate& candidate : found) {
     if (chosen.size() == static_cast<std::size_t>(max_candidates)) break;
+    if (!queries.insert(candidate.query).second) continue;  // from another lane
     const auto near = std::ranges::count_if(chosen, [&](const LoopCandidate& c) {
       const std::uint32_t i = c.query.index, k = candidate.query.index;
       return (i < k ? k - i : i - k) < kNear;
