@@ -32,10 +32,8 @@ struct Run {
 };
 
 Result<Run> run(const Recording& recording, const OdometryConfig& config) {
-  if (config.needs_wheels() && recording.wheel.empty()) {
-    return fail(recording.name + ": " + config.method +
-                " needs wheel odometry and the recording has none; use --method kiss-icp");
-  }
+  const Result<> wheels = check_wheels(recording, config, "--method kiss-icp");
+  if (!wheels) return tl::unexpected(wheels.error());
   Odometry odometry(config, recording.T_base_lidar);
   Progress progress("scans", recording.num_scans());
   Run out;

@@ -44,13 +44,6 @@ void append_decision(std::vector<std::string>& row, const std::optional<LoopDeci
   row.push_back(format("{:.2f}", decision->time_s));
 }
 
-std::vector<ColumnGroup> groups_after(std::size_t columns, std::size_t columns_each) {
-  std::vector<ColumnGroup> groups = {{"", columns}};
-  for (const LoopMethod method : kLoopMethods)
-    groups.push_back({std::string(to_string(method)), columns_each});
-  return groups;
-}
-
 struct Sum {
   int graphs = 0;
   int num_true = 0;
@@ -77,17 +70,24 @@ std::map<std::pair<std::string, int>, Sum> sums_of(const std::vector<FalseLoopRu
   return sums;
 }
 
+/// No rows yet; they begin with the columns `first` and go on with those `of_each` method.
+Table side_by_side(std::string title, std::string note, std::vector<std::string> first,
+                   const std::vector<std::string>& of_each) {
+  Table table{std::move(title), std::move(note), {{"", first.size()}}, std::move(first), {}};
+  for (const LoopMethod method : kLoopMethods) {
+    table.groups.push_back({std::string(to_string(method)), of_each.size()});
+    table.header.insert(table.header.end(), of_each.begin(), of_each.end());
+  }
+  return table;
+}
+
 Table summary_table(const std::vector<FalseLoopRun>& runs) {
-  Table table{
+  Table table = side_by_side(
       "False loops, in short",
       "Loops of all graphs together that every method has an answer for. P: precision, true loops among "
       "those kept; R: recall, true loops that are kept; both per cent. Clean: graphs of which no false "
       "loop was kept.",
-      groups_after(5, 3),
-      {"Injection", "False (%)", "Graphs", "True loops", "False loops"},
-      {}};
-  for (std::size_t m = 0; m < kLoopMethods.size(); ++m)
-    table.header.insert(table.header.end(), {"P", "R", "Clean"});
+      {"Injection", "False (%)", "Graphs", "True loops", "False loops"}, {"P", "R", "Clean"});
   for (const auto& [key, sum] : sums_of(runs)) {
     std::vector<std::string> row = {key.first, format("{}", key.second), format("{}", sum.graphs),
                                     format("{}", sum.num_true), format("{}", sum.num_false)};
@@ -101,16 +101,12 @@ Table summary_table(const std::vector<FalseLoopRun>& runs) {
 }
 
 Table graph_table(const std::vector<FalseLoopRun>& runs) {
-  Table table{
+  Table table = side_by_side(
       "False loops, each graph",
       "P and R as above; off: the largest distance in metres of a position from the optimum of the true "
       "loops, or the pieces that the kept loops leave where those are more than the true loops leave; CPU: "
       "processor time in seconds. † The clique search stopped at its budget.",
-      groups_after(5, 4),
-      {"Graph", "Injection", "False (%)", "True loops", "False loops"},
-      {}};
-  for (std::size_t m = 0; m < kLoopMethods.size(); ++m)
-    table.header.insert(table.header.end(), {"P", "R", "off", "CPU"});
+      {"Graph", "Injection", "False (%)", "True loops", "False loops"}, {"P", "R", "off", "CPU"});
   for (const FalseLoopRun& run : runs) {
     std::vector<std::string> row = {run.graph, run.injection, format("{}", run.share_pct),
                                     format("{}", run.num_true), format("{}", run.num_false)};

@@ -116,7 +116,7 @@ std::vector<PcmLoop> Agent::register_own(const std::vector<LoopCandidate>& candi
   });
   std::vector<PcmLoop> accepted;
   for (LoopClosure& loop : found) {
-    const PcmLoop measured{loop.from.index, loop.to.index, loop.T_from_to, loop_information({})};
+    const PcmLoop measured = pcm_loop_of(loop, {});
     if (loop.verdict == LoopVerdict::accepted && !fits_odometry(chain, measured)) {
       loop.verdict = LoopVerdict::rejected;
       loop.reason = "the robot's own odometry excludes it";
@@ -157,7 +157,7 @@ bool Agent::begin_test(RobotId peer_id) {
       continue;
     if (ends.second.index >= num_theirs) return false;
     if (loop.is_free_to_slide()) continue;
-    loops.push_back({ends.first.index, ends.second.index, loop.T_from_to, loop_information({})});
+    loops.push_back(pcm_loop_of(loop, {}));
   }
   const double slack = config_.adaptive.merge_check.odometry_slack;
   peers_[peer_id].test.emplace(own_chain(),

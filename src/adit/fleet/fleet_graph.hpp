@@ -86,6 +86,8 @@ struct FleetSolution {
 [[nodiscard]] OdometryChain chain_of(const RobotGraph& graph, double slack = 1.0);
 /// The fixed information of a loop, from those sigmas.
 [[nodiscard]] Matrix6 loop_information(const BackEndConfig& config);
+/// The loop with that information.
+[[nodiscard]] PcmLoop pcm_loop_of(const LoopClosure& loop, const BackEndConfig& config);
 
 /// Where the odometry frame of robot b lies in that of robot a, by the average over loops from a to b (at
 /// least one): chordal mean of the rotations, mean of the positions that they give to b's keyframes.

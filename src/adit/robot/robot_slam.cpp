@@ -73,6 +73,13 @@ void RobotSlam::add_keyframe(const OdometryStep& step) {
   map_.keyframes.push_back(std::move(keyframe));
 }
 
+Result<> check_wheels(const Recording& recording, const OdometryConfig& config,
+                      std::string_view without_wheels) {
+  if (!config.needs_wheels() || !recording.wheel.empty()) return {};
+  return fail(format("{}: {} needs wheel odometry and the recording has none; use {}", recording.name,
+                     config.method, without_wheels));
+}
+
 Result<std::optional<WheelDelta>> wheel_before(const Recording& recording, std::size_t index) {
   if (recording.wheel.empty() || index == 0) return std::optional<WheelDelta>{};
   return wheel_delta(recording.wheel, recording.scan_stamps[index - 1], recording.scan_stamps[index])
@@ -91,12 +98,8 @@ Result<std::vector<RobotMap>> map_recording(const Recording& recording, RobotId 
                                             const ScanObserver& observer) {
   std::vector<RobotSlam> robots;
   for (const RobotSlamConfig& config : configs) {
-    if (config.odometry.needs_wheels() && recording.wheel.empty()) {
-      return fail(
-          format("{}: {} needs wheel odometry and the recording has none; use "
-                 "--set robot.odometry.method=kiss-icp",
-                 recording.name, config.odometry.method));
-    }
+    const Result<> wheels = check_wheels(recording, config.odometry, "--set robot.odometry.method=kiss-icp");
+    if (!wheels) return tl::unexpected(wheels.error());
     robots.emplace_back(id, recording.name, config, recording.T_base_lidar);
   }
   for (std::size_t i = 0; i < recording.num_scans(); ++i) {

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <string_view>
 
 #include "adit/keyframes/keyframe_policy.hpp"
 #include "adit/odometry/odometry.hpp"
@@ -51,6 +52,11 @@ class RobotSlam {
 /// The wheel motion from scan `index` - 1 to `index`; none for the first scan and for recordings without
 /// wheels.
 [[nodiscard]] Result<std::optional<WheelDelta>> wheel_before(const Recording& recording, std::size_t index);
+
+/// Fails where the odometry needs wheels and the recording has none; `without_wheels` is the option of the
+/// command that chooses one without.
+[[nodiscard]] Result<> check_wheels(const Recording& recording, const OdometryConfig& config,
+                                    std::string_view without_wheels);
 
 /// Called after each scan with the number done; returns false to stop early.
 using ScanObserver = std::function<bool(std::size_t num_done)>;

@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <deque>
+
+#include "adit/core/parallel.hpp"
+#include "adit/fleet/agent.hpp"
+#include "support/two_robots.hpp"
+
+namespace adit {
+namespace {
+
+using test::street;
+using test::TwoRobots;
+
+AgentConfig adaptive() {
+  AgentConfig config;
+  config.adaptive.on = true;
+  config.adaptive.registration.voxel_size = 0.6;
+  config.adaptive.merge_check.error_rate = 0.3;  // a street of 25 m is short
+  config.adaptive.merge_check.spacing_m = 2.0;
+  config.adaptive.merge_check.discernment.samples = 8;
+  config.adaptive.context = {.max_radius_m = 25.0};
+  return config;
+}
+
+BackEndConfig with_checks() {
+  BackEndConfig config;
+  config.checks_needed = true;
+  return config;
+}
+
+TEST(AdaptiveAgent, MergesRobotsThatShareAStreetAndBothKnowWhy) {
+  TwoRobots fleet(3, adaptive());
+  fleet.meet();
+  const FleetSolution first = fleet.agents[0].solve(with_checks());
+  const FleetSolution second = fleet.agents[1].solve(with_checks());
+  ASSERT_TRUE(first.pairs[0].merged) << first.pairs[0].refused_reason;
+  const MergeCheck& check = fleet.agents[1].known().checks.at({{0}, {1}});
+  EXPECT_TRUE(check.accepted);
+  EXPECT_GE(check.evidence, check.needed);
+  EXPECT_EQ(check.loops.size(), first.pairs[0].clique);
+  const Pose T_true = fleet.truth_0.front().inverse();
+  for (std::size_t k = 0; k < fleet.truth_1.size(); ++k) {
+    EXPECT_LT(
+        ((T_true * fleet.truth_1[k]).translation() - first.T_world_keyframe.at({1})[k].translation()).norm(),
+        1.5);  // as above; the loops that one hypothesis explains are fewer
+    EXPECT_EQ(first.T_world_keyframe.at({1})[k].matrix(), second.T_world_keyframe.at({1})[k].matrix());
+  }
+}
+
+TEST(AdaptiveAgent, KeepsRobotsOfTwoStreetsApartWithAReason) {
+  TwoRobots fleet(3, adaptive());
+  const test::BoxWorld elsewhere(77);
+  const auto map = std::make_shared<const RobotMap>(test::drive(elsewhere, {1}, fleet.truth_1, -0.002));
+  fleet.agents[1] =
+      Agent(map, std::make_shared<FeatureStore>(map, adaptive().registration_in_use()), adaptive());
+  fleet.meet();
+  const FleetSolution solution = fleet.agents[0].solve(with_checks());
+  EXPECT_FALSE(solution.pairs[0].merged);
+  EXPECT_FALSE(solution.pairs[0].refused_reason.empty());
+  EXPECT_EQ(solution.components.size(), 2U);
+}
+
+/// A robot that drives up the street and back again, on the other lane.
+struct ThereAndBack {
+  std::vector<Pose> truth = street(0.0, 50.0, -0.5);
+  std::shared_ptr<const RobotMap> map;
+
+  explicit ThereAndBack(double yaw_drift = 0.003) {
+    for (const Pose& pose : street(50.0, 0.0, 0.5)) truth.push_back(pose);
+    map = std::make_shared<const RobotMap>(test::drive(test::BoxWorld(3), {0}, truth, yaw_drift));
+  }
+  [[nodiscard]] Agent agent(const AgentConfig& config = adaptive()) const {
+    return {map, std::make_shared<FeatureStore>(map, config.registration_in_use()), config};
+  }
+  [[nodiscard]] double largest_error(const FleetSolution& solution) const {
+    double worst = 0.0;
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      const Vector3 expected = (truth.front().inverse() * truth[k]).translation();
+      worst = std::max(worst, (solution.T_world_keyframe.at({0})[k].translation() - expected).norm());
+    }
+    return worst;
+  }
+};
+
+TEST(AdaptiveAgent, FindsThatItCameBackAndMapsBetterAlone) {
+  const ThereAndBack robot;
+  Agent agent = robot.agent();
+  const double before = robot.largest_error(agent.solve(with_checks()));
+  agent.find_revisits();
+  const FleetSolution solution = agent.solve(with_checks());
+  const MergeCheck& check = agent.known().checks.at({{0}, {0}});
+  ASSERT_TRUE(check.accepted) << check.reason;
+  EXPECT_LT(robot.largest_error(solution), 0.5 * before);
+  EXPECT_TRUE(solution.pairs.empty());
+  int in_use = 0;
+  for (const LoopOutcome& outcome : solution.loops) {
+    if (!outcome.in_use()) continue;
+    ++in_use;
+    EXPECT_LT(outcome.loop.from, outcome.loop.to);
+    const Pose T_true = robot.truth[outcome.loop.from.index].inverse() * robot.truth[outcome.loop.to.index];
+    EXPECT_LT((T_true.inverse() * outcome.loop.T_from_to).translation().norm(), 0.5);
+  }
+  EXPECT_GE(in_use, 2);
+
+  agent.find_revisits();  // again: nothing new
+  EXPECT_EQ(agent.known().checks.size(), 1U);
+  EXPECT_LE(agent.known().loops.size(), static_cast<std::size_t>(adaptive().adaptive.revisit_candidates));
+}
+
+TEST(AdaptiveAgent, FindsNoRevisitWhereItNeverCameBackOrMayNotLook) {
+  TwoRobots fleet(3, adaptive());
+  fleet.agents[0].find_revisits();
+  EXPECT_TRUE(fleet.agents[0].known().loops.empty());
+  EXPECT_TRUE(fleet.agents[0].known().checks.empty());
+  AgentConfig config = adaptive();
+  config.adaptive.revisits = false;
+  Agent off = ThereAndBack().agent(config);
+  off.find_revisits();
+  EXPECT_TRUE(off.known().loops.empty());
+}
+
+TEST(AdaptiveAgent, APeerLearnsOfRevisitsAndComputesTheSame) {
+  const ThereAndBack robot;
+  TwoRobots fleet(3, adaptive());
+  fleet.agents[0] = robot.agent();
+  fleet.agents[0].find_revisits();
+  fleet.meet();
+  ASSERT_TRUE(fleet.agents[1].known().checks.contains({{0}, {0}}));
+  const FleetSolution first = fleet.agents[0].solve(with_checks());
+  const FleetSolution second = fleet.agents[1].solve(with_checks());
+  ASSERT_EQ(first.pairs.size(), 1U);
+  const auto within_one = [](const LoopOutcome& loop) {
+    return loop.in_use() && loop.loop.from.robot == loop.loop.to.robot;
+  };
+  EXPECT_GT(std::ranges::count_if(second.loops, within_one), 0);
+  for (const auto& [id, poses] : first.T_world_keyframe)
+    for (std::size_t k = 0; k < poses.size(); ++k)
+      EXPECT_EQ(poses[k].matrix(), second.T_world_keyframe.at(id)[k].matrix());
+}
+
+TEST(AdaptiveAgent, RepeatedMessagesAndThreadsChangeNothing) {
+  set_num_threads(1);
+  TwoRobots once(3, adaptive());
+  once.meet();
+  set_num_threads(2);
+  TwoRobots twice(3, adaptive());
+  twice.meet(2);
+  twice.meet();
+  const auto& a = once.agents[1].known();
+  const auto& b = twice.agents[1].known();
+  EXPECT_EQ(a.loops.size(), b.loops.size());
+  ASSERT_EQ(a.checks.size(), 1U);
+  ASSERT_EQ(b.checks.size(), 1U);
+  EXPECT_EQ(a.checks.begin()->second.evidence, b.checks.begin()->second.evidence);
+  EXPECT_EQ(a.checks.begin()->second.reason, b.checks.begin()->second.reason);
+}
+
+TEST(AdaptiveAgent, ATestWaitsForAGraphThatWasLost) {
+  TwoRobots fleet(3, adaptive());
+  std::deque<Message> queue;
+  const auto meet = [&](bool lose_graphs) {
+    for (const Message& message : fleet.agents[0].meet({1})) queue.push_back(message);
+    for (int budget = 10000; !queue.empty() && budget > 0; --budget) {
+      const Message message = queue.front();
+      queue.pop_front();
+      if (lose_graphs && std::holds_alternative<GraphPart>(message.body)) continue;
+      for (const Message& reply : fleet.agents[message.to.value].on(message)) queue.push_back(reply);
+    }
+  };
+  meet(true);
+  EXPECT_GT(fleet.agents[0].known().loops.size(), 0U);
+  EXPECT_TRUE(fleet.agents[0].known().checks.empty());
+  meet(false);
+  ASSERT_EQ(fleet.agents[1].known().checks.size(), 1U);
+  EXPECT_TRUE(fleet.agents[0].known().checks.begin()->second.accepted);
+}
+
+TEST(AdaptiveAgent, DecisionsOfOthersThatMakeNoSenseAreLeftOut) {
+  TwoRobots fleet(3, adaptive());
+  fleet.meet();
+  const auto before = fleet.agents[0].known().checks;
+  MergeCheck forged = before.begin()->second;
+  forged.accepted = false;
+  // Of the receiver's own decisions; by an author who is not of the pair; after a gap.
+  EXPECT_TRUE(fleet.agents[0].on({{1}, {0}, MergeChecks{{0}, 0, {forged}}}).empty());
+  EXPECT_TRUE(fleet.agents[0].on({{1}, {0}, MergeChecks{{2}, 0, {forged}}}).empty());
+  forged.a = {2};
+  forged.b = {3};
+  EXPECT_TRUE(fleet.agents[0].on({{1}, {0}, MergeChecks{{2}, 5, {forged}}}).empty());
+  EXPECT_EQ(fleet.agents[0].known().checks.size(), before.size());
+  EXPECT_TRUE(fleet.agents[0].known().checks.begin()->second.accepted);
+}
+
+}  // namespace
+}  // namespace adit
