@@ -267,28 +267,37 @@ std::vector<LoopCandidate> Agent::best_candidates(RobotId peer_id) const {
   }
   std::vector<std::uint32_t> queries = searchable_indices(*map_);
   if (num_tried() >= static_cast<std::size_t>(config_.max_candidates)) queries = thinned(queries);
-  std::vector<std::map<KeyframeId, LoopCandidate>> best(queries.size());
+  std::vector<std::vector<LoopCandidate>> best(queries.size());
   parallel_for_each(
       queries.size(),
       [&](std::size_t i) {
-        const KeyframeId query{map_->id, queries[i]};
-        const auto look = [&](const ScanContext& context) {
-          const auto match = index.best_match(query, context, peer_id);
-          if (!match) return;
-          LoopCandidate& known = best[i].try_emplace(match->match, *match).first->second;
-          if (match->distance < known.distance) known = *match;
-        };
-        look(map_->places[query.index]);
-        if (!config_.adaptive.on) return;
-        for (const ScanContext& context : from_other_lanes(query.index)) look(context);
+        best[i] = most_similar(queries[i], [&](const ScanContext& context) {
+          return index.best_match({map_->id, queries[i]}, context, peer_id);
+        });
       },
       16);
   std::vector<LoopCandidate> found;
-  for (const auto& of_query : best)
-    for (const auto& [match, candidate] : of_query)
-      if (!known_.loops.contains({candidate.query, match})) found.push_back(candidate);
+  for (const std::vector<LoopCandidate>& of_query : best)
+    for (const LoopCandidate& candidate : of_query)
+      if (!known_.loops.contains({candidate.query, candidate.match})) found.push_back(candidate);
   std::ranges::sort(found, {},
                     [](const LoopCandidate& c) { return std::tuple(c.distance, c.query, c.match); });
+  return found;
+}
+
+std::vector<LoopCandidate> Agent::most_similar(std::uint32_t k, const FindSimilar& find) const {
+  std::map<KeyframeId, LoopCandidate> nearest;
+  const auto look = [&](const ScanContext& context) {
+    const std::optional<LoopCandidate> match = find(context);
+    if (!match) return;
+    LoopCandidate& known = nearest.try_emplace(match->match, *match).first->second;
+    if (match->distance < known.distance) known = *match;
+  };
+  look(map_->places[k]);
+  if (config_.adaptive.on)
+    for (const ScanContext& context : from_other_lanes(k)) look(context);
+  std::vector<LoopCandidate> found;
+  for (const auto& [match, candidate] : nearest) found.push_back(candidate);
   return found;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -139,10 +140,15 @@ class Agent {
   Replies conclude_test(RobotId peer_id);
   void decide(MergeCheck check);
   [[nodiscard]] const OtherPlaces& other_places();
+  /// Places of its own map and others that look like them, all along the way.
+  [[nodiscard]] std::vector<LoopCandidate> own_look_alikes();
   [[nodiscard]] Discernment& discernment();
   [[nodiscard]] OdometryChain own_chain() const;
   [[nodiscard]] Replies checks_from(RobotId peer, RobotId author, std::size_t first) const;
   void find_candidates(RobotId peer_id);
+  /// What `find` names for keyframe k, and if adaptive for what it looks like from each lane; each place once.
+  using FindSimilar = std::function<std::optional<LoopCandidate>(const ScanContext&)>;
+  [[nodiscard]] std::vector<LoopCandidate> most_similar(std::uint32_t k, const FindSimilar& find) const;
   /// What keyframe k would have looked like to a robot that drove beside this one.
   [[nodiscard]] std::vector<ScanContext> from_other_lanes(std::uint32_t k) const;
   [[nodiscard]] std::size_t num_tried() const;

@@ -59,9 +59,24 @@ const OtherPlaces& Agent::other_places() {
   return *other_places_;
 }
 
+std::vector<LoopCandidate> Agent::own_look_alikes() {
+  constexpr std::uint32_t kEvery = 3;  // keyframes: several still fall into a bin of a segment
+  const OtherPlaces& others = other_places();
+  std::vector<std::vector<LoopCandidate>> similar((map_->keyframes.size() + kEvery - 1) / kEvery);
+  parallel_for_each(similar.size(), [&](std::size_t i) {
+    const auto k = static_cast<std::uint32_t>(kEvery * i);
+    similar[i] = most_similar(k, [&](const ScanContext& context) { return others.most_similar(k, context); });
+  });
+  std::vector<LoopCandidate> found;
+  for (const std::vector<LoopCandidate>& of_one : similar)
+    for (const LoopCandidate& candidate : of_one)
+      if (candidate.query < candidate.match) found.push_back(candidate);  // each pair once
+  return found;
+}
+
 Discernment& Agent::discernment() {
   if (!discernment_)
-    discernment_ = std::make_unique<Discernment>(map_, own_chain(), other_places(), *features_,
+    discernment_ = std::make_unique<Discernment>(map_, own_chain(), own_look_alikes(), *features_,
                                                  config_.registration_in_use(),
                                                  config_.adaptive.merge_check.discernment);
   return *discernment_;
@@ -74,7 +89,7 @@ void Agent::find_revisits() {
   if (loops.empty()) return;
   std::vector<double> known_before;
   for (const PcmLoop& loop : loops) known_before.push_back(odometry_evidence(chain, loop));
-  MergeTest test(chain, chain, loops, discernment().chance_to_go_on(), config_.adaptive.merge_check,
+  MergeTest test(chain, chain, loops, discernment().look_alikes(), config_.adaptive.merge_check,
                  known_before);
   for (auto asked = test.next(kCloudsPerMessage); !asked.empty(); asked = test.next(kCloudsPerMessage))
     test.add(compare_own(asked));
@@ -152,17 +167,24 @@ bool Agent::begin_test(RobotId peer_id) {
   const auto graph = known_.robots.find(peer_id);
   const std::size_t num_theirs = graph == known_.robots.end() ? 0 : graph->second.nodes.size();
   std::vector<PcmLoop> loops;
+  std::vector<std::uint32_t> queries;
   for (const auto& [ends, loop] : known_.loops) {
     if (ends.first.robot != map_->id || ends.second.robot != peer_id || loop.verdict != LoopVerdict::accepted)
       continue;
     if (ends.second.index >= num_theirs) return false;
     if (loop.is_free_to_slide()) continue;
     loops.push_back(pcm_loop_of(loop, {}));
+    queries.push_back(ends.first.index);
   }
+  // A loop where a displacement would not show does not say where along the way it stands.
+  const std::vector<bool> tells = discernment().distinctive(queries);
+  std::vector<PcmLoop> telling;
+  for (std::size_t l = 0; l < loops.size(); ++l)
+    if (tells[l]) telling.push_back(loops[l]);
   const double slack = config_.adaptive.merge_check.odometry_slack;
   peers_[peer_id].test.emplace(own_chain(),
                                num_theirs == 0 ? OdometryChain({}, {}) : chain_of(graph->second, slack),
-                               loops, discernment().chance_to_go_on(), config_.adaptive.merge_check);
+                               telling, discernment().look_alikes(), config_.adaptive.merge_check);
   return true;
 }
 

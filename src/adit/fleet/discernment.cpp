@@ -3,8 +3,12 @@
 #include "adit/fleet/discernment.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <iterator>
+#include <span>
 
+#include "adit/fleet/segments.hpp"
 #include "adit/registration/registration.hpp"
 
 namespace adit {
@@ -13,9 +17,11 @@ namespace {
 constexpr double kOtherPlace = 15.0;  // metres between two places of one map that share little
 constexpr std::size_t kMatches = 32;  // among which the nearest other place is looked for
 constexpr double kUsual = 0.9;        // share of the pairs of one place whose difference is usual
-constexpr double kFollowed = 30.0;    // metres, each way, along a look-alike
+constexpr double kFollowed = 60.0;    // metres, each way, along a look-alike
+constexpr std::size_t kTried = 4;     // candidates of a stretch, until one can be followed
 // What is believed before anything is measured, worth as many steps: look-alikes go on half the time.
-constexpr double kPriorSteps = 32.0;
+constexpr double kPriorChance = 0.5;
+constexpr double kPriorSteps = 8.0;
 
 std::vector<std::uint32_t> evenly(std::size_t n, std::size_t samples) {
   std::vector<std::uint32_t> out;
@@ -55,8 +61,8 @@ OtherPlaces::OtherPlaces(std::shared_ptr<const RobotMap> map, const OdometryChai
   for (std::uint32_t k = 0; k < map_->places.size(); ++k) index_.add({map_->id, k}, map_->places[k]);
 }
 
-std::optional<LoopCandidate> OtherPlaces::most_similar(std::uint32_t k) const {
-  for (const LoopCandidate& match : index_.best_matches({map_->id, k}, map_->places[k], map_->id, kMatches))
+std::optional<LoopCandidate> OtherPlaces::most_similar(std::uint32_t k, const ScanContext& context) const {
+  for (const LoopCandidate& match : index_.best_matches({map_->id, k}, context, map_->id, kMatches))
     if (is_elsewhere(k, match.match.index)) return match;
   return {};
 }
@@ -85,11 +91,30 @@ struct Discernment::Walk {
   Pose T_a_b;
   double way = 0.0;  // the next step, metres from a, negative against the drive
   double direction;  // 1 or -1
+  std::size_t num_passed = 0;
   bool is_over = false;
 };
 
+void LookAlikes::add(std::size_t passed, bool went_on) {
+  Phase& phase = phases_[std::min<std::size_t>(std::bit_width(passed + 1), phases_.size()) - 1];
+  ++phase.num_steps;
+  if (!went_on) ++phase.num_ended;
+}
+
+double LookAlikes::chance_to_go_on(std::size_t passed) const {
+  const std::size_t num_phases = std::min<std::size_t>(std::bit_width(passed + 1), phases_.size());
+  double chance = kPriorChance;
+  for (std::size_t p = 0; p < num_phases; ++p) {
+    const auto steps = static_cast<double>(phases_[p].num_steps);
+    const auto went_on = steps - static_cast<double>(phases_[p].num_ended);
+    const double measured = (went_on + chance * kPriorSteps) / (steps + kPriorSteps);
+    chance = p == 0 ? measured : std::max(chance, measured);
+  }
+  return chance;
+}
+
 Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryChain chain,
-                         const OtherPlaces& others, FeatureStore& features,
+                         const std::vector<LoopCandidate>& similar, FeatureStore& features,
                          const RegistrationConfig& registration, const DiscernmentConfig& config)
     : registration_(registration),
       config_(config),
@@ -97,12 +122,7 @@ Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryCha
       way_(way_along(chain_)),
       surfaces_(map, registration) {
   limit_ = config_.allowance * usual_difference();
-  follow(look_alikes(others, features));
-}
-
-double Discernment::chance_to_go_on() const {
-  return (static_cast<double>(num_went_on_) + 0.5 * kPriorSteps) /
-         (static_cast<double>(num_steps_) + kPriorSteps);
+  follow(walks_from(similar, features));
 }
 
 std::vector<Agreement> Discernment::fits(const std::vector<Fit>& asked, double enough, FitFrom from) {
@@ -133,25 +153,35 @@ double Discernment::usual_difference() {
   return differences[static_cast<std::size_t>(usual)];
 }
 
-std::vector<Discernment::Walk> Discernment::look_alikes(const OtherPlaces& others, FeatureStore& features) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  std::vector<std::uint32_t> used;
-  for (const std::uint32_t k : evenly(way_.size(), static_cast<std::size_t>(config_.samples))) {
-    const auto match = others.most_similar(k);
-    if (!match) continue;
-    pairs.emplace_back(k, match->match.index);
-    used.insert(used.end(), {k, match->match.index});
+std::vector<Discernment::Walk> Discernment::walks_from(const std::vector<LoopCandidate>& similar,
+                                                       FeatureStore& features) const {
+  std::vector<LoopCandidate> tried;
+  std::vector<std::size_t> ends;  // of each stretch, in `tried`
+  for (const Segment& segment :
+       agreeing_segments(chain_, chain_, similar, static_cast<std::size_t>(config_.look_alikes))) {
+    const std::size_t num = std::min(kTried, segment.candidates.size());
+    std::ranges::copy(std::span(segment.candidates).first(num), std::back_inserter(tried));
+    ends.push_back(tried.size());
   }
+  std::vector<std::uint32_t> used;
+  for (const LoopCandidate& c : tried) used.insert(used.end(), {c.query.index, c.match.index});
   features.prepare(used);
-  std::vector<Registration> found(pairs.size());
-  parallel_for_each(pairs.size(), [&](std::size_t i) {
-    found[i] = register_features(features.at(pairs[i].first), features.at(pairs[i].second), registration_);
+  std::vector<Registration> found(tried.size());
+  parallel_for_each(tried.size(), [&](std::size_t i) {
+    found[i] = register_features(features.at(tried[i].query.index), features.at(tried[i].match.index),
+                                 registration_);
   });
   std::vector<Walk> walks;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (found[i].verdict != LoopVerdict::accepted) continue;
-    for (const double direction : {1.0, -1.0})
-      walks.push_back({pairs[i].first, pairs[i].second, *found[i].T_a_b, 0.0, direction});
+  std::size_t i = 0;
+  for (const std::size_t end : ends) {
+    const auto can_be_followed = [](const Registration& r) {
+      return r.verdict == LoopVerdict::accepted && r.weak_axis >= kWeakAxis;
+    };
+    while (i < end && !can_be_followed(found[i])) ++i;
+    if (i < end)
+      for (const double direction : {1.0, -1.0})
+        walks.push_back({tried[i].query.index, tried[i].match.index, *found[i].T_a_b, 0.0, direction});
+    i = end;
   }
   return walks;
 }
@@ -179,8 +209,8 @@ void Discernment::follow(std::vector<Walk> walks) {
     const std::vector<Agreement> found = fits(next, limit_, FitFrom::along_the_way);
     for (std::size_t w = 0; w < walks.size(); ++w) {
       walks[w].is_over = differ(found[w]);
-      if (walks[w].is_over || tells[w]) ++num_steps_;
-      if (!walks[w].is_over && tells[w]) ++num_went_on_;
+      if (walks[w].is_over || tells[w]) look_alikes_.add(walks[w].num_passed, !walks[w].is_over);
+      if (tells[w]) ++walks[w].num_passed;
     }
     std::erase_if(walks, [](const Walk& walk) { return walk.is_over; });
   }

@@ -21,12 +21,16 @@ namespace adit {
 
 struct DiscernmentConfig {
   int samples = 32;
+  int look_alikes = 16;
   double spacing_m = 3.0;
   double displacement_m = 5.0;
   double allowance = 1.5;
 };
 inline Fields fields_of(DiscernmentConfig& c) {
-  return {{"samples", &c.samples, "", 4, 10000, "places of its own map on which a robot measures"},
+  return {{"samples", &c.samples, "", 4, 10000,
+           "places of its own map on which a robot measures how much scans of one place differ"},
+          {"look_alikes", &c.look_alikes, "", 0, 10000,
+           "stretches of its own map that look most like others of it, on which it measures how long they agree"},
           {"spacing_m", &c.spacing_m, "m", 0.1, 1000.0, "way between two places where maps are compared"},
           {"displacement_m", &c.displacement_m, "m", 0.5, 1000.0,
            "a place is distinctive when scans this much farther along the way differ"},
@@ -44,7 +48,11 @@ class OtherPlaces {
  public:
   OtherPlaces(std::shared_ptr<const RobotMap> map, const OdometryChain& chain, PlaceIndexConfig config);
   /// The most similar one.
-  [[nodiscard]] std::optional<LoopCandidate> most_similar(std::uint32_t k) const;
+  [[nodiscard]] std::optional<LoopCandidate> most_similar(std::uint32_t k) const {
+    return most_similar(k, map_->places[k]);
+  }
+  /// With another context than its own, as from another lane.
+  [[nodiscard]] std::optional<LoopCandidate> most_similar(std::uint32_t k, const ScanContext& context) const;
   /// Of each keyframe the descriptor distance of the most similar other place; 1 where there is none.
   [[nodiscard]] std::vector<double> likeness() const;
 
@@ -57,21 +65,40 @@ class OtherPlaces {
   PlaceIndex index_;
 };
 
+/// How long tunnels agree that only look alike. The longer they have agreed, the likelier they go on: chance
+/// resemblance ends soon, tunnels that were built alike do not. So the chance is a hazard rate that never
+/// rises, of phases that double in length (Grenander, "On the theory of mortality measurement", 1956, with the
+/// pooling of neighbours replaced by a prior from the phase before).
+class LookAlikes {
+ public:
+  /// One that has agreed at `passed` distinctive places so far agreed at the next one, or differed.
+  void add(std::size_t passed, bool went_on);
+  /// That one which has agreed at `passed` distinctive places also agrees at the next one.
+  [[nodiscard]] double chance_to_go_on(std::size_t passed) const;
+
+ private:
+  struct Phase {
+    std::size_t num_steps = 0;
+    std::size_t num_ended = 0;
+  };
+  std::array<Phase, 8> phases_;  ///< After 0, 1, 3, 7, 15, ... agreements.
+};
+
 /// Measured when it is made; some seconds of processor time.
 class Discernment {
  public:
-  Discernment(const std::shared_ptr<const RobotMap>& map, OdometryChain chain, const OtherPlaces& others,
-              FeatureStore& features, const RegistrationConfig& registration,
-              const DiscernmentConfig& config);
+  /// `similar`: places of the map and others of it that look like them, for keyframes all along the way.
+  Discernment(const std::shared_ptr<const RobotMap>& map, OdometryChain chain,
+              const std::vector<LoopCandidate>& similar, FeatureStore& features,
+              const RegistrationConfig& registration, const DiscernmentConfig& config);
 
   /// A difference beyond this does not occur between scans of one place.
   [[nodiscard]] double limit() const { return limit_; }
   [[nodiscard]] bool differ(const Agreement& agreement) const {
     return !(agreement.largest_difference <= limit_);
   }
-  /// Where two places of the map only look alike and agree at one distinctive place, the chance that they
-  /// also agree at the next.
-  [[nodiscard]] double chance_to_go_on() const;
+  /// What became of places of the map that only look alike, followed along the way.
+  [[nodiscard]] const LookAlikes& look_alikes() const { return look_alikes_; }
   /// Of each of `indices`: whether a displacement along the way would show there.
   [[nodiscard]] std::vector<bool> distinctive(const std::vector<std::uint32_t>& indices);
   [[nodiscard]] SurfaceStore& surfaces() { return surfaces_; }
@@ -85,7 +112,8 @@ class Discernment {
   struct Walk;
   [[nodiscard]] std::vector<Agreement> fits(const std::vector<Fit>& asked, double enough, FitFrom from);
   [[nodiscard]] double usual_difference();
-  [[nodiscard]] std::vector<Walk> look_alikes(const OtherPlaces& others, FeatureStore& features);
+  [[nodiscard]] std::vector<Walk> walks_from(const std::vector<LoopCandidate>& similar,
+                                             FeatureStore& features) const;
   void follow(std::vector<Walk> walks);
 
   static constexpr std::array<double, 3> kDistances = {0.5, 1.0, 2.0};  ///< Metres.
@@ -95,8 +123,7 @@ class Discernment {
   std::vector<double> way_;
   SurfaceStore surfaces_;
   double limit_ = 0.0;
-  std::size_t num_steps_ = 0;    ///< From one distinctive place to the next along look-alikes,
-  std::size_t num_went_on_ = 0;  ///< and of these, those that ended in agreement.
+  LookAlikes look_alikes_;
   std::map<std::uint32_t, bool> distinctive_;
 };
 

@@ -136,9 +136,9 @@ std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryCh
 }
 
 MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
-                     double chance_to_go_on, const MergeCheckConfig& config,
+                     const LookAlikes& look_alikes, const MergeCheckConfig& config,
                      const std::vector<double>& known_before)
-    : loops_(loops), chance_to_go_on_(chance_to_go_on), config_(config) {
+    : loops_(loops), look_alikes_(look_alikes), config_(config) {
   std::vector<std::size_t> rest(loops.size());
   for (std::size_t l = 0; l < rest.size(); ++l) rest[l] = l;
   while (!rest.empty() && hypotheses_.size() < static_cast<std::size_t>(config.max_hypotheses)) {
@@ -158,24 +158,38 @@ MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, cons
     }
     hypotheses_.push_back(std::move(hypothesis));
   }
+  num_alignments_ = hypotheses_.size() + rest.size();
 }
 
 double MergeTest::needed() const { return std::log(1.0 / config_.error_rate); }
 
-double MergeTest::evidence_of_agreement() const {
-  return std::log(kTrueCheck / std::min(chance_to_go_on_, kTrueCheck));
+double MergeTest::chance_to_go_on(std::size_t passed) const {
+  return std::min(look_alikes_.chance_to_go_on(passed), kTrueCheck);
 }
 
 double MergeTest::evidence(const Hypothesis& hypothesis) const {
-  double sum =
-      hypothesis.known_before - std::log(static_cast<double>(loops_.size() - hypothesis.loops.size() + 1));
-  for (const CheckedPlace& place : hypothesis.checked) {
-    if (place.differs())
-      sum += std::log((1.0 - kTrueCheck) / (1.0 - std::min(chance_to_go_on_, kTrueCheck)));
-    else if (place.is_distinctive || !config_.distinctive_only)
-      sum += evidence_of_agreement();
+  std::vector<std::size_t> along_the_way(hypothesis.checked.size());
+  for (std::size_t i = 0; i < along_the_way.size(); ++i) along_the_way[i] = i;
+  std::ranges::sort(along_the_way, {}, [&](std::size_t i) { return hypothesis.plan[i].own; });
+  double sum = hypothesis.known_before -
+               std::log(static_cast<double>(num_alignments_));
+  std::size_t passed = 0;  // since places differed
+  for (const std::size_t i : along_the_way) {
+    const CheckedPlace& place = hypothesis.checked[i];
+    const double goes_on = chance_to_go_on(passed);
+    if (place.differs()) {
+      sum += std::log((1.0 - kTrueCheck) / (1.0 - goes_on));
+      passed = 0;
+    } else if (place.is_distinctive || !config_.distinctive_only) {
+      sum += evidence_of_agreement(passed);
+      ++passed;
+    }
   }
   return sum;
+}
+
+double MergeTest::evidence_of_agreement(std::size_t passed) const {
+  return std::log(kTrueCheck / chance_to_go_on(passed));
 }
 
 bool MergeTest::is_refuted(const Hypothesis& h) const {
@@ -196,7 +210,7 @@ std::optional<std::size_t> MergeTest::to_go_on_with() const {
     if (is_finished(h) || is_refuted(h)) continue;
     if (h.checked.empty()) return i;
     const double at_most =
-        evidence(h) + static_cast<double>(h.plan.size() - h.checked.size()) * evidence_of_agreement();
+        evidence(h) + static_cast<double>(h.plan.size() - h.checked.size()) * evidence_of_agreement(0);
     if (at_most < best_finished - needed()) continue;  // it cannot become a rival any more
     if (!found || evidence(h) > evidence(hypotheses_[*found])) found = i;
   }
@@ -237,7 +251,7 @@ std::vector<std::size_t> MergeTest::best_first() const {
 
 std::string MergeTest::what_is_missing(const Hypothesis& h, std::size_t num_distinctive) const {
   constexpr double kFarthest = 1000.0;  // metres that it makes sense to ask for
-  const double num_places = std::ceil((needed() - evidence(h)) / evidence_of_agreement());
+  const double num_places = std::ceil((needed() - evidence(h)) / evidence_of_agreement(num_distinctive));
   const double share = static_cast<double>(num_distinctive) / static_cast<double>(h.checked.size());
   const double metres = 10.0 * std::ceil(num_places * config_.spacing_m / share / 10.0);
   if (!(metres <= kFarthest))

@@ -65,7 +65,7 @@ class MergeTest {
   /// `loops`: all that registration accepted, with those that say something else. `known_before`: evidence
   /// for each that does not come from comparing scans; of a hypothesis the least of its loops' counts.
   MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
-            double chance_to_go_on, const MergeCheckConfig& config,
+            const LookAlikes& look_alikes, const MergeCheckConfig& config,
             const std::vector<double>& known_before = {});
 
   /// The next comparisons, at most `num`, each with another keyframe of theirs; none when the test is over.
@@ -93,11 +93,14 @@ class MergeTest {
   [[nodiscard]] std::string what_is_missing(const Hypothesis& hypothesis, std::size_t num_distinctive) const;
   [[nodiscard]] MergeHypothesis described(std::size_t hypothesis, std::size_t best) const;
   [[nodiscard]] double needed() const;
-  [[nodiscard]] double evidence_of_agreement() const;
+  /// At one more distinctive place after `passed` of them.
+  [[nodiscard]] double evidence_of_agreement(std::size_t passed) const;
+  [[nodiscard]] double chance_to_go_on(std::size_t passed) const;
 
   std::vector<PcmLoop> loops_;
   std::vector<Hypothesis> hypotheses_;
-  double chance_to_go_on_;
+  std::size_t num_alignments_ = 0;  ///< That loops speak for, those beyond max_hypotheses one a loop.
+  LookAlikes look_alikes_;
   MergeCheckConfig config_;
 };
 
