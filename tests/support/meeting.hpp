@@ -44,18 +44,35 @@ inline Joint map_and_meet(const std::vector<Recording>& recordings, const RobotS
 }
 
 /// The loops in use, judged by the true poses.
-inline LoopCounts loops_in_use(const Joint& joint, const std::vector<Recording>& recordings) {
-  LoopCounts counts;
+/// The true T_from_to of a loop.
+inline Pose true_loop(const LoopClosure& loop, const Joint& joint, const std::vector<Recording>& recordings) {
   const auto truth_of = [&](KeyframeId id) {
     const Keyframe& keyframe = joint.maps[id.robot.value]->keyframes[id.index];
     return pose_at(recordings[id.robot.value].truth, keyframe.stamp).value();
   };
-  for (const LoopOutcome& outcome : joint.solution.loops) {
-    if (outcome.in_use()) {
-      counts.add(classify(outcome.loop, truth_of(outcome.loop.from), truth_of(outcome.loop.to)));
-    }
-  }
+  return truth_of(loop.from).inverse() * truth_of(loop.to);
+}
+
+inline LoopCounts loops_in_use(const Joint& joint, const std::vector<Recording>& recordings) {
+  LoopCounts counts;
+  for (const LoopOutcome& outcome : joint.solution.loops)
+    if (outcome.in_use())
+      counts.add(classify(outcome.loop, Pose(), true_loop(outcome.loop, joint, recordings)));
   return counts;
+}
+
+/// Loops in use between keyframes more than 10 m apart, which count as a wrong place, with their true
+/// T_from_to.
+inline std::vector<std::pair<LoopClosure, Pose>> far_loops_in_use(const Joint& joint,
+                                                                  const std::vector<Recording>& recordings) {
+  std::vector<std::pair<LoopClosure, Pose>> far;
+  for (const LoopOutcome& outcome : joint.solution.loops) {
+    if (!outcome.in_use()) continue;
+    const Pose T_true = true_loop(outcome.loop, joint, recordings);
+    if (classify(outcome.loop, Pose(), T_true) == LoopClass::wrong_place)
+      far.emplace_back(outcome.loop, T_true);
+  }
+  return far;
 }
 
 inline std::vector<Trajectory> joint_trajectories(const Joint& joint) {

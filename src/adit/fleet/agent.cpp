@@ -220,10 +220,7 @@ Agent::Replies Agent::on(RobotId from, const GraphPart& part) {
   }
   const auto peer = peers_.find(from);
   if (!config_.adaptive.on || from != part.owner || peer == peers_.end() || !searches(from)) return {};
-  // A search or a test that waited for this part begins.
-  if (peer->second.was_tried && !peer->second.test)
-    return begin_test(from) ? go_on_testing(from) : Replies{};
-  return search(from);
+  return search(from);  // which may have waited for this part
 }
 
 Agent::Replies Agent::on(RobotId from, const Places& part) {
@@ -378,8 +375,7 @@ Agent::Replies Agent::on(RobotId from, const Clouds& clouds) {
     register_clouds_of(from, clouds);
     replies = loops_from(from, map_->id, before);
     if (!config_.adaptive.on || !peer.waiting.empty()) return with(std::move(replies), cloud_request(from));
-    peer.was_tried = true;
-    if (!begin_test(from)) return replies;
+    begin_test(from);
   } else if (peer.test && !peer.test->next(kCloudsPerMessage).empty()) {
     if (!compare_clouds_of(from, clouds)) return {};
   } else {

@@ -17,8 +17,8 @@
 
 namespace adit {
 
-/// Of an agent that chooses candidates which agree along the way or stand out, and tests merges by evidence: in
-/// place of the thresholds of the paper's pipeline.
+/// Of an agent that chooses candidates which agree along the way or stand out, and tests merges by evidence:
+/// in place of the thresholds of the paper's pipeline.
 struct AdaptiveConfig {
   bool on = false;
   int candidates = 64;
@@ -95,7 +95,6 @@ class Agent {
     bool has_all_places = false;        ///< None of them is still to come.
     std::map<std::uint32_t, std::vector<LoopCandidate>>
         waiting;                    ///< By the peer's keyframe whose cloud is awaited.
-    bool was_tried = false;         ///< All loops have been.
     std::optional<MergeTest> test;  ///< When all loops have been tried; it asks for clouds itself.
   };
 
@@ -127,12 +126,14 @@ class Agent {
   [[nodiscard]] std::vector<LoopCandidate> own_candidates(const OdometryChain& chain);
   /// Those that registration and odometry accept.
   std::vector<PcmLoop> register_own(const std::vector<LoopCandidate>& candidates, const OdometryChain& chain);
+  /// Those that start where a displacement along the way would show: others do not say where along it they
+  /// are.
+  [[nodiscard]] std::vector<PcmLoop> telling(const std::vector<PcmLoop>& loops);
   /// Of comparisons within the own map.
   [[nodiscard]] std::vector<CheckedPlace> compare_own(const std::vector<PlannedCheck>& asked);
   void register_clouds_of(RobotId from, const Clouds& clouds);
-  /// The test of the maps, when all loops with the peer have been tried; false while parts of its graph that
-  /// they need are still on their way.
-  bool begin_test(RobotId peer_id);
+  /// The test of the maps, when all loops with the peer have been tried.
+  void begin_test(RobotId peer_id);
   /// What the test asks for next, or its verdict.
   Replies go_on_testing(RobotId peer_id);
   /// Whether they were what the test had asked for.
@@ -143,10 +144,13 @@ class Agent {
   /// Places of its own map and others that look like them, all along the way.
   [[nodiscard]] std::vector<LoopCandidate> own_look_alikes();
   [[nodiscard]] Discernment& discernment();
-  [[nodiscard]] OdometryChain own_chain() const;
+  [[nodiscard]] OdometryChain own_chain() const { return chain_by(map_->id); }
+  /// The way of a robot by its own odometry, as far as it is known.
+  [[nodiscard]] OdometryChain chain_by(RobotId robot) const;
   [[nodiscard]] Replies checks_from(RobotId peer, RobotId author, std::size_t first) const;
   void find_candidates(RobotId peer_id);
-  /// What `find` names for keyframe k, and if adaptive for what it looks like from each lane; each place once.
+  /// What `find` names for keyframe k, and if adaptive for what it looks like from each lane; each place
+  /// once.
   using FindSimilar = std::function<std::optional<LoopCandidate>(const ScanContext&)>;
   [[nodiscard]] std::vector<LoopCandidate> most_similar(std::uint32_t k, const FindSimilar& find) const;
   /// What keyframe k would have looked like to a robot that drove beside this one.

@@ -18,8 +18,7 @@ namespace adit {
 
 Fields fields_of(AdaptiveConfig& c) {
   Fields fields = {
-      {"on", &c.on, "", 0, 0,
-       "choose the candidates that agree along the way or stand out, and test merges"},
+      {"on", &c.on, "", 0, 0, "choose the candidates that agree along the way or stand out, and test merges"},
       {"candidates", &c.candidates, "", 1, 1e6, "candidates that are registered with each peer"},
       {"segments", &c.segments, "", 0, 1e6,
        "stretches along which candidates agree, whose best ones are registered first"},
@@ -50,8 +49,8 @@ std::vector<ScanContext> Agent::from_other_lanes(std::uint32_t k) const {
   return contexts;
 }
 
-OdometryChain Agent::own_chain() const {
-  return chain_of(known_.robots.at(map_->id), config_.adaptive.merge_check.odometry_slack);
+OdometryChain Agent::chain_by(RobotId robot) const {
+  return chain_of(known_.robots.at(robot), config_.adaptive.merge_check.odometry_slack);
 }
 
 const OtherPlaces& Agent::other_places() {
@@ -136,11 +135,21 @@ std::vector<PcmLoop> Agent::register_own(const std::vector<LoopCandidate>& candi
       loop.verdict = LoopVerdict::rejected;
       loop.reason = "the robot's own odometry excludes it";
     }
-    if (loop.verdict == LoopVerdict::accepted) accepted.push_back(measured);
+    if (loop.verdict == LoopVerdict::accepted && !loop.is_free_to_slide()) accepted.push_back(measured);
     registered_[map_->id].emplace_back(loop.from, loop.to);
     known_.loops[{loop.from, loop.to}] = std::move(loop);
   }
-  return accepted;
+  return telling(accepted);
+}
+
+std::vector<PcmLoop> Agent::telling(const std::vector<PcmLoop>& loops) {
+  std::vector<std::uint32_t> own;
+  for (const PcmLoop& loop : loops) own.push_back(static_cast<std::uint32_t>(loop.a));
+  const std::vector<bool> tells = discernment().distinctive(own);
+  std::vector<PcmLoop> out;
+  for (std::size_t l = 0; l < loops.size(); ++l)
+    if (tells[l]) out.push_back(loops[l]);
+  return out;
 }
 
 std::vector<CheckedPlace> Agent::compare_own(const std::vector<PlannedCheck>& asked) {
@@ -163,29 +172,14 @@ std::vector<CheckedPlace> Agent::compare_own(const std::vector<PlannedCheck>& as
   return places;
 }
 
-bool Agent::begin_test(RobotId peer_id) {
-  const auto graph = known_.robots.find(peer_id);
-  const std::size_t num_theirs = graph == known_.robots.end() ? 0 : graph->second.nodes.size();
+void Agent::begin_test(RobotId peer_id) {
   std::vector<PcmLoop> loops;
-  std::vector<std::uint32_t> queries;
-  for (const auto& [ends, loop] : known_.loops) {
-    if (ends.first.robot != map_->id || ends.second.robot != peer_id || loop.verdict != LoopVerdict::accepted)
-      continue;
-    if (ends.second.index >= num_theirs) return false;
-    if (loop.is_free_to_slide()) continue;
-    loops.push_back(pcm_loop_of(loop, {}));
-    queries.push_back(ends.first.index);
-  }
-  // A loop where a displacement would not show does not say where along the way it stands.
-  const std::vector<bool> tells = discernment().distinctive(queries);
-  std::vector<PcmLoop> telling;
-  for (std::size_t l = 0; l < loops.size(); ++l)
-    if (tells[l]) telling.push_back(loops[l]);
-  const double slack = config_.adaptive.merge_check.odometry_slack;
-  peers_[peer_id].test.emplace(own_chain(),
-                               num_theirs == 0 ? OdometryChain({}, {}) : chain_of(graph->second, slack),
-                               telling, discernment().look_alikes(), config_.adaptive.merge_check);
-  return true;
+  for (const auto& [ends, loop] : known_.loops)
+    if (ends.first.robot == map_->id && ends.second.robot == peer_id &&
+        loop.verdict == LoopVerdict::accepted && !loop.is_free_to_slide())
+      loops.push_back(pcm_loop_of(loop, {}));
+  peers_[peer_id].test.emplace(own_chain(), chain_by(peer_id), telling(loops), discernment().look_alikes(),
+                               config_.adaptive.merge_check);
 }
 
 bool Agent::compare_clouds_of(RobotId from, const Clouds& clouds) {
@@ -229,9 +223,8 @@ void Agent::decide(MergeCheck check) {
 bool Agent::has_way_of(RobotId peer_id) const {
   const auto graph = known_.robots.find(peer_id);
   const std::size_t num = graph == known_.robots.end() ? 0 : graph->second.nodes.size();
-  return !config_.adaptive.on || std::ranges::all_of(peers_.at(peer_id).places, [&](const auto& place) {
-    return place.index < num;
-  });
+  return !config_.adaptive.on ||
+         std::ranges::all_of(peers_.at(peer_id).places, [&](const auto& place) { return place.index < num; });
 }
 
 std::vector<LoopCandidate> Agent::promising(RobotId peer_id, std::vector<LoopCandidate> found) {
@@ -239,9 +232,8 @@ std::vector<LoopCandidate> Agent::promising(RobotId peer_id, std::vector<LoopCan
   std::vector<LoopCandidate> chosen;
   if (!found.empty()) {
     const auto of_each = static_cast<std::size_t>(config_.adaptive.of_a_segment);
-    for (const Segment& segment :
-         agreeing_segments(own_chain(), chain_of(known_.robots.at(peer_id)), found,
-                           static_cast<std::size_t>(config_.adaptive.segments)))
+    for (const Segment& segment : agreeing_segments(own_chain(), chain_of(known_.robots.at(peer_id)), found,
+                                                    static_cast<std::size_t>(config_.adaptive.segments)))
       std::ranges::copy(std::span(segment.candidates).first(std::min(of_each, segment.candidates.size())),
                         std::back_inserter(chosen));
   }

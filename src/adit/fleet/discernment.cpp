@@ -8,6 +8,7 @@
 #include <iterator>
 #include <span>
 
+#include "adit/fleet/revisits.hpp"
 #include "adit/fleet/segments.hpp"
 #include "adit/registration/registration.hpp"
 
@@ -174,10 +175,12 @@ std::vector<Discernment::Walk> Discernment::walks_from(const std::vector<LoopCan
   std::vector<Walk> walks;
   std::size_t i = 0;
   for (const std::size_t end : ends) {
-    const auto can_be_followed = [](const Registration& r) {
-      return r.verdict == LoopVerdict::accepted && r.weak_axis >= kWeakAxis;
+    // What odometry does not exclude is no look-alike: scans from afar that see the same walls.
+    const auto can_be_followed = [&](std::size_t t) {
+      return found[t].verdict == LoopVerdict::accepted && found[t].weak_axis >= kWeakAxis &&
+             !fits_odometry(chain_, {tried[t].query.index, tried[t].match.index, *found[t].T_a_b});
     };
-    while (i < end && !can_be_followed(found[i])) ++i;
+    while (i < end && !can_be_followed(i)) ++i;
     if (i < end)
       for (const double direction : {1.0, -1.0})
         walks.push_back({tried[i].query.index, tried[i].match.index, *found[i].T_a_b, 0.0, direction});

@@ -27,15 +27,16 @@ struct DiscernmentConfig {
   double allowance = 1.5;
 };
 inline Fields fields_of(DiscernmentConfig& c) {
-  return {{"samples", &c.samples, "", 4, 10000,
-           "places of its own map on which a robot measures how much scans of one place differ"},
-          {"look_alikes", &c.look_alikes, "", 0, 10000,
-           "stretches of its own map that look most like others of it, on which it measures how long they agree"},
-          {"spacing_m", &c.spacing_m, "m", 0.1, 1000.0, "way between two places where maps are compared"},
-          {"displacement_m", &c.displacement_m, "m", 0.5, 1000.0,
-           "a place is distinctive when scans this much farther along the way differ"},
-          {"allowance", &c.allowance, "", 1.0, 100.0,
-           "scans differ beyond this times what nine of ten pairs of scans of one place do"}};
+  return {
+      {"samples", &c.samples, "", 4, 10000,
+       "places of its own map on which a robot measures how much scans of one place differ"},
+      {"look_alikes", &c.look_alikes, "", 0, 10000,
+       "stretches of its own map that look most like others of it, on which it measures how long they agree"},
+      {"spacing_m", &c.spacing_m, "m", 0.1, 1000.0, "way between two places where maps are compared"},
+      {"displacement_m", &c.displacement_m, "m", 0.5, 1000.0,
+       "a place is distinctive when scans this much farther along the way differ"},
+      {"allowance", &c.allowance, "", 1.0, 100.0,
+       "scans differ beyond this times what nine of ten pairs of scans of one place do"}};
 }
 
 /// Way driven up to each keyframe, metres.
@@ -67,8 +68,8 @@ class OtherPlaces {
 
 /// How long tunnels agree that only look alike. The longer they have agreed, the likelier they go on: chance
 /// resemblance ends soon, tunnels that were built alike do not. So the chance is a hazard rate that never
-/// rises, of phases that double in length (Grenander, "On the theory of mortality measurement", 1956, with the
-/// pooling of neighbours replaced by a prior from the phase before).
+/// rises, of phases that double in length (Grenander, "On the theory of mortality measurement", 1956, with
+/// the pooling of neighbours replaced by a prior from the phase before).
 class LookAlikes {
  public:
   /// One that has agreed at `passed` distinctive places so far agreed at the next one, or differed.

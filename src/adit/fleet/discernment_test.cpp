@@ -46,10 +46,17 @@ OdometryChain chain_of(const RobotMap& map) {
   return {poses, {map.step_covariances.begin() + 1, map.step_covariances.end()}};
 }
 
+std::vector<LoopCandidate> similar_places(const std::shared_ptr<const RobotMap>& map) {
+  const OtherPlaces others(map, chain_of(*map), {});
+  std::vector<LoopCandidate> found;
+  for (std::uint32_t k = 0; k < map->keyframes.size(); ++k)
+    if (const auto match = others.most_similar(k); match && k < match->match.index) found.push_back(*match);
+  return found;
+}
+
 struct Measured {
   explicit Measured(const std::shared_ptr<const RobotMap>& map)
-      : features(map, {}),
-        discernment(map, chain_of(*map), OtherPlaces(map, chain_of(*map), {}), features, {}, {}) {}
+      : features(map, {}), discernment(map, chain_of(*map), similar_places(map), features, {}, {}) {}
   FeatureStore features;
   Discernment discernment;
 };
@@ -100,10 +107,35 @@ TEST(Discernment, BlocksThatRepeatGoOnLongerThanBlocksThatDoNot) {
     const double side = rng.uniform() < 0.5 ? -4.0 : 1.5;
     irregular.push_back({{at, side, -2.0}, {at + rng.uniform(0.8, 3.0), side + 2.5, rng.uniform(-1.0, 2.0)}});
   }
-  const double with_tiles = Measured(in_a_tube(repeating)).discernment.chance_to_go_on();
-  const double without = Measured(in_a_tube(irregular)).discernment.chance_to_go_on();
-  EXPECT_GT(with_tiles, 0.7);
-  EXPECT_LT(without, 0.6);
+  const LookAlikes with_tiles = Measured(in_a_tube(repeating)).discernment.look_alikes();
+  const LookAlikes without = Measured(in_a_tube(irregular)).discernment.look_alikes();
+  for (const std::size_t passed : {0U, 1U, 5U, 40U}) {
+    EXPECT_GT(with_tiles.chance_to_go_on(passed), 0.7);
+    EXPECT_LT(without.chance_to_go_on(passed), 0.6);
+  }
+}
+
+TEST(LookAlikes, GoOnHalfTheTimeUntilSomethingIsKnown) {
+  for (const std::size_t passed : {0U, 1U, 2U, 100U}) EXPECT_EQ(LookAlikes().chance_to_go_on(passed), 0.5);
+}
+
+TEST(LookAlikes, ThatHaveGoneOnForLongAreTrustedToGoOn) {
+  LookAlikes seen;
+  for (int i = 0; i < 80; ++i) seen.add(0, i < 8);   // nine of ten end at once,
+  for (int i = 0; i < 80; ++i) seen.add(7, i < 76);  // and those that passed seven go on
+  EXPECT_LT(seen.chance_to_go_on(0), 0.2);
+  EXPECT_LT(seen.chance_to_go_on(6), 0.2);
+  EXPECT_GT(seen.chance_to_go_on(7), 0.8);
+  EXPECT_EQ(seen.chance_to_go_on(14), seen.chance_to_go_on(7));  // one phase
+  EXPECT_EQ(seen.chance_to_go_on(1000), seen.chance_to_go_on(7));
+}
+
+TEST(LookAlikes, TheChanceNeverFallsWithTheWayThatTheyHaveGone) {
+  LookAlikes seen;
+  for (int i = 0; i < 80; ++i) seen.add(0, i < 72);
+  for (int i = 0; i < 80; ++i) seen.add(3, false);  // a mere chance of this map
+  EXPECT_GT(seen.chance_to_go_on(0), 0.8);
+  EXPECT_EQ(seen.chance_to_go_on(3), seen.chance_to_go_on(0));
 }
 
 TEST(OtherPlaces, NamesThePlaceThatLooksAlikeAndNoneNearBy) {

@@ -40,9 +40,18 @@ PcmLoop loop_at(std::size_t a, double off_m = 0.0) {
 
 const std::vector<PcmLoop> kTrueLoops = {loop_at(80), loop_at(90), loop_at(100)};
 
+// That go on with this chance, however long they have.
+LookAlikes look_alikes(double chance_to_go_on) {
+  constexpr int kSteps = 100'000;  // the prior of one half no longer shows
+  LookAlikes out;
+  if (chance_to_go_on != 0.5)
+    for (int i = 0; i < kSteps; ++i) out.add(0, i < chance_to_go_on * kSteps);
+  return out;
+}
+
 MergeTest a_test(const std::vector<PcmLoop>& loops, double chance_to_go_on = 0.5,
                  const MergeCheckConfig& config = {}) {
-  return {along_x(kNum), along_x(kNum), loops, chance_to_go_on, config};
+  return {along_x(kNum), along_x(kNum), loops, look_alikes(chance_to_go_on), config};
 }
 
 // Answers all that the test asks for.

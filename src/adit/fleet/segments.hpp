@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Places recognised along the way. One keyframe of a tunnel looks like hundreds of others; that keyframe after
-/// keyframe looks like the one that another robot's odometry leads to, over tens of metres, happens elsewhere
-/// less often. Sequences do the same for images in SeqSLAM (Milford and Wyeth, "SeqSLAM: Visual route-based
-/// navigation for sunny summer days and stormy winter nights", ICRA 2012), at one speed and in one direction;
-/// here odometry gives both, so that robots may drive to and fro.
+/// Places recognised along the way. One keyframe of a tunnel looks like hundreds of others; that keyframe
+/// after keyframe looks like the one that another robot's odometry leads to, over tens of metres, happens
+/// elsewhere less often. Sequences do the same for images in SeqSLAM (Milford and Wyeth, "SeqSLAM: Visual
+/// route-based navigation for sunny summer days and stormy winter nights", ICRA 2012), at one speed and in
+/// one direction; here odometry gives both, so that robots may drive to and fro.
 #pragma once
 
 #include <vector>
@@ -25,6 +25,7 @@ struct Segment {
 /// At most `num` segments of all `found`, those with the largest support first; each candidate belongs to the
 /// first one that it agrees with. `own` and `theirs` have the poses of all queries and matches.
 [[nodiscard]] std::vector<Segment> agreeing_segments(const OdometryChain& own, const OdometryChain& theirs,
-                                                     const std::vector<LoopCandidate>& found, std::size_t num);
+                                                     const std::vector<LoopCandidate>& found,
+                                                     std::size_t num);
 
 }  // namespace adit
