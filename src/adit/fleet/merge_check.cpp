@@ -93,6 +93,7 @@ Fields fields_of(MergeCheckConfig& c) {
       {"max_checks", &c.max_checks, "", 1, 10000, "places that are compared at most, of one hypothesis"},
       {"max_hypotheses", &c.max_hypotheses, "", 1, 1000,
        "sets of consistent loops that are tested, the largest ones"},
+      {"min_loops", &c.min_loops, "", 1, 1000, "loops that have to agree in a hypothesis that joins maps"},
       {"odometry_slack", &c.odometry_slack, "", 1.0, 100.0,
        "loops make one hypothesis if they agree within this many times the noise of odometry"},
       {"distinctive_only", &c.distinctive_only, "", 0, 0,
@@ -277,6 +278,9 @@ std::string MergeTest::reason(std::size_t which, std::optional<std::size_t> riva
     return format("evidence {:.1f} of {:.1f}: {} of {} places agree, {} of them distinctive; {}", evidence(h),
                   needed(), h.checked.size() - differing, h.checked.size(), distinctive,
                   what_is_missing(h, distinctive));
+  if (std::ssize(h.loops) < config_.min_loops)
+    return format("{} loops agree, {} are needed; drive the same stretch on", h.loops.size(),
+                  config_.min_loops);
   if (rival)
     return format(
         "two hypotheses {:.0f} m apart along the tunnel have similar support, evidence {:.1f} and "
@@ -320,7 +324,8 @@ MergeCheck MergeTest::verdict(RobotId a, RobotId b) const {
   MergeHypothesis& best = out.hypotheses.front();
   const bool has_rival = out.hypotheses.size() > 1 && out.hypotheses[1].outcome == HypothesisOutcome::rival;
   out.accepted = best.outcome != HypothesisOutcome::refuted && !has_rival &&
-                 is_finished(hypotheses_[order.front()]) && best.evidence >= out.needed;
+                 std::ssize(best.loops) >= config_.min_loops && is_finished(hypotheses_[order.front()]) &&
+                 best.evidence >= out.needed;
   if (out.accepted) best.outcome = HypothesisOutcome::accepted;
   if (has_rival && best.evidence >= out.needed) best.outcome = HypothesisOutcome::rival;
   out.evidence = best.evidence;

@@ -10,7 +10,7 @@
 ///
 /// The decision is Wald's sequential probability ratio test ("Sequential tests of statistical hypotheses",
 /// 1945) in two directions. Against chance: the logarithms of likelihood ratios add up over the places that
-/// are distinctive, less that of the number of loops that say something else, and have to reach
+/// are distinctive, less that of the number of alignments that loops speak for, and have to reach
 /// log(1 / error_rate). Against copies: scans that differ may not be more than true places would leave. And
 /// against every other hypothesis: it must stay behind by as much.
 #pragma once
@@ -33,6 +33,7 @@ struct MergeCheckConfig {
   double spacing_m = 3.0;
   int max_checks = 200;
   int max_hypotheses = 6;
+  int min_loops = 3;
   double odometry_slack = 1.0;
   bool distinctive_only = true;
   DiscernmentConfig discernment;
