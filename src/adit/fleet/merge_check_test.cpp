@@ -110,6 +110,38 @@ TEST(PlanChecks, WithinOneMapAKeyframeIsNotComparedWithItselfOrItsNeighbours) {
   }
 }
 
+TEST(MergeTest, TwoLoopsAreTooFewWhateverThePlacesSay) {
+  const std::vector<PcmLoop> two = {loop_at(80), loop_at(100)};
+  MergeTest test = a_test(two);
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+  EXPECT_FALSE(check.accepted);
+  EXPECT_GT(check.evidence, check.needed);
+  EXPECT_NE(check.reason.find("2 loops agree, 3 are needed"), std::string::npos) << check.reason;
+  MergeCheckConfig config;
+  config.min_loops = 2;
+  MergeTest other = a_test(two, 0.5, config);
+  EXPECT_TRUE(run(other, [](const PlannedCheck&) { return kAgrees; }).accepted);
+}
+
+TEST(MergeTest, AfterAPlaceThatDiffersTheCountStartsAnew) {
+  LookAlikes rarely_begin;  // and go on once they have
+  for (int i = 0; i < 1000; ++i) rarely_begin.add(0, i < 100);
+  for (int i = 0; i < 1000; ++i) rarely_begin.add(1, i < 950);
+  const auto evidence = [&](std::uint32_t differs_at) {
+    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, rarely_begin, {});
+    return run(test,
+               [&](const PlannedCheck& check) { return check.own / 6 == differs_at ? kDiffers : kAgrees; })
+        .evidence;
+  };
+  const double never = evidence(1000);
+  const double in_the_middle = evidence(15);
+  // A second beginning is worth more than going on, less than the difference costs or more: by the numbers.
+  const double begins = std::log(0.97 / rarely_begin.chance_to_go_on(0));
+  const double goes_on = std::log(0.97 / rarely_begin.chance_to_go_on(1));
+  const double differs = std::log(0.03 / (1.0 - rarely_begin.chance_to_go_on(1)));
+  EXPECT_NEAR(in_the_middle - never, differs - goes_on + begins - goes_on, 0.05);
+}
+
 TEST(MergeTest, PlacesThatAgreeJoinTheMaps) {
   MergeTest test = a_test(kTrueLoops);
   const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
