@@ -9,7 +9,7 @@ namespace {
 
 LoopFate fate_of(const LoopOutcome& outcome) {
   if (outcome.in_use()) return LoopFate::in_use;
-  return outcome.loop.weak_axis < kWeakAxis ? LoopFate::weak : LoopFate::refused;
+  return outcome.loop.is_free_to_slide() ? LoopFate::weak : LoopFate::refused;
 }
 
 std::vector<Vector3> odometry_of(const RobotGraph& robot, const Pose& T_frame_odom) {
@@ -53,7 +53,7 @@ LoopMap loop_map(const FleetGraph& fleet, const FleetSolution& solution) {
     const auto& [from, to] = std::pair(outcome.loop.from, outcome.loop.to);
     map.loops.push_back(
         {{place.at(from.robot), from.index}, {place.at(to.robot), to.index}, fate_of(outcome)});
-    map.num_weak_in_use += outcome.in_use() && outcome.loop.weak_axis < kWeakAxis ? 1 : 0;
+    map.num_weak_in_use += outcome.in_use() && outcome.loop.is_free_to_slide() ? 1 : 0;
   }
   map.num_unregistered = static_cast<int>(std::ranges::count_if(
       fleet.loops, [](const auto& candidate) { return candidate.second.verdict != LoopVerdict::accepted; }));

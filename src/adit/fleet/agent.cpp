@@ -282,22 +282,6 @@ std::vector<LoopCandidate> Agent::best_candidates(RobotId peer_id) const {
   return found;
 }
 
-std::vector<LoopCandidate> Agent::most_similar(std::uint32_t k, const FindSimilar& find) const {
-  std::map<KeyframeId, LoopCandidate> nearest;
-  const auto look = [&](const ScanContext& context) {
-    const std::optional<LoopCandidate> match = find(context);
-    if (!match) return;
-    LoopCandidate& known = nearest.try_emplace(match->match, *match).first->second;
-    if (match->distance < known.distance) known = *match;
-  };
-  look(map_->places[k]);
-  if (config_.adaptive.on)
-    for (const ScanContext& context : from_other_lanes(k)) look(context);
-  std::vector<LoopCandidate> found;
-  for (const auto& [match, candidate] : nearest) found.push_back(candidate);
-  return found;
-}
-
 std::size_t Agent::num_tried() const {
   const auto own = registered_.find(map_->id);
   std::size_t num = own == registered_.end() ? 0 : own->second.size();

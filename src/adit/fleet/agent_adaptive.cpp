@@ -49,6 +49,22 @@ std::vector<ScanContext> Agent::from_other_lanes(std::uint32_t k) const {
   return contexts;
 }
 
+std::vector<LoopCandidate> Agent::most_similar(std::uint32_t k, const FindSimilar& find) const {
+  std::map<KeyframeId, LoopCandidate> nearest;
+  const auto look = [&](const ScanContext& context) {
+    const std::optional<LoopCandidate> match = find(context);
+    if (!match) return;
+    LoopCandidate& known = nearest.try_emplace(match->match, *match).first->second;
+    if (match->distance < known.distance) known = *match;
+  };
+  look(map_->places[k]);
+  if (config_.adaptive.on)
+    for (const ScanContext& context : from_other_lanes(k)) look(context);
+  std::vector<LoopCandidate> found;
+  for (const auto& [match, candidate] : nearest) found.push_back(candidate);
+  return found;
+}
+
 OdometryChain Agent::chain_by(RobotId robot) const {
   return chain_of(known_.robots.at(robot), config_.adaptive.merge_check.odometry_slack);
 }
@@ -152,6 +168,14 @@ std::vector<PcmLoop> Agent::telling(const std::vector<PcmLoop>& loops) {
   return out;
 }
 
+double Agent::difference(const PlannedCheck& check, const SeenSurface& theirs) const {
+  const double limit = discernment_->limit();
+  return fit_near(discernment_->surfaces().at(check.own), theirs, check.T_own_theirs, limit,
+                  config_.registration_in_use())
+             .agreement.largest_difference /
+         limit;
+}
+
 std::vector<CheckedPlace> Agent::compare_own(const std::vector<PlannedCheck>& asked) {
   std::vector<std::uint32_t> earlier;
   std::vector<std::uint32_t> both;
@@ -164,10 +188,7 @@ std::vector<CheckedPlace> Agent::compare_own(const std::vector<PlannedCheck>& as
   surfaces.prepare(both);
   std::vector<CheckedPlace> places(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
-    const auto& [own, theirs, T_own_theirs] = asked[i];
-    const LocalFit fit = fit_near(surfaces.at(own), surfaces.at(theirs), T_own_theirs, discernment().limit(),
-                                  config_.registration_in_use());
-    places[i] = {fit.agreement.largest_difference / discernment().limit(), distinctive[i]};
+    places[i] = {difference(asked[i], surfaces.at(asked[i].theirs)), distinctive[i]};
   });
   return places;
 }
@@ -202,9 +223,7 @@ bool Agent::compare_clouds_of(RobotId from, const Clouds& clouds) {
     cloud.points = came.at(check.theirs)->points;
     const SeenSurface theirs(compute_surface(cloud, config_.registration_in_use()),
                              came.at(check.theirs)->viewpoint.cast<double>());
-    const LocalFit fit = fit_near(surfaces.at(check.own), theirs, check.T_own_theirs, discernment().limit(),
-                                  config_.registration_in_use());
-    places[i] = {fit.agreement.largest_difference / discernment().limit(), distinctive[i]};
+    places[i] = {difference(check, theirs), distinctive[i]};
   });
   test.add(places);
   return true;
@@ -232,7 +251,7 @@ std::vector<LoopCandidate> Agent::promising(RobotId peer_id, std::vector<LoopCan
   std::vector<LoopCandidate> chosen;
   if (!found.empty()) {
     const auto of_each = static_cast<std::size_t>(config_.adaptive.of_a_segment);
-    for (const Segment& segment : agreeing_segments(own_chain(), chain_of(known_.robots.at(peer_id)), found,
+    for (const Segment& segment : agreeing_segments(own_chain(), chain_by(peer_id), found,
                                                     static_cast<std::size_t>(config_.adaptive.segments)))
       std::ranges::copy(std::span(segment.candidates).first(std::min(of_each, segment.candidates.size())),
                         std::back_inserter(chosen));

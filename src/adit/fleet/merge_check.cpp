@@ -171,7 +171,7 @@ double MergeTest::chance_to_go_on(std::size_t passed) const {
 double MergeTest::evidence(const Hypothesis& hypothesis) const {
   std::vector<std::size_t> along_the_way(hypothesis.checked.size());
   for (std::size_t i = 0; i < along_the_way.size(); ++i) along_the_way[i] = i;
-  std::ranges::sort(along_the_way, {}, [&](std::size_t i) { return hypothesis.plan[i].own; });
+  std::ranges::stable_sort(along_the_way, {}, [&](std::size_t i) { return hypothesis.plan[i].own; });
   double sum = hypothesis.known_before - std::log(static_cast<double>(num_alignments_));
   std::size_t passed = 0;  // since places differed
   for (const std::size_t i : along_the_way) {

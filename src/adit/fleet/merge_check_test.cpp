@@ -135,7 +135,7 @@ TEST(MergeTest, AfterAPlaceThatDiffersTheCountStartsAnew) {
   };
   const double never = evidence(1000);
   const double in_the_middle = evidence(15);
-  // A second beginning is worth more than going on, less than the difference costs or more: by the numbers.
+  // One place differs instead of going on, and the next one begins anew.
   const double begins = std::log(0.97 / rarely_begin.chance_to_go_on(0));
   const double goes_on = std::log(0.97 / rarely_begin.chance_to_go_on(1));
   const double differs = std::log(0.03 / (1.0 - rarely_begin.chance_to_go_on(1)));
