@@ -129,8 +129,9 @@ class Agent {
   /// Those that start where a displacement along the way would show: others do not say where along it they
   /// are.
   [[nodiscard]] std::vector<PcmLoop> telling(const std::vector<PcmLoop>& loops);
-  /// As CheckedPlace's, with the peer's or a later surface of its own; the own surface has been prepared.
-  [[nodiscard]] double difference(const PlannedCheck& check, const SeenSurface& theirs) const;
+  /// With the peer's or a later surface of its own; the own surface has been prepared.
+  [[nodiscard]] CheckedPlace compared(const PlannedCheck& check, const SeenSurface& theirs,
+                                      bool is_distinctive) const;
   /// Of comparisons within the own map.
   [[nodiscard]] std::vector<CheckedPlace> compare_own(const std::vector<PlannedCheck>& asked);
   void register_clouds_of(RobotId from, const Clouds& clouds);

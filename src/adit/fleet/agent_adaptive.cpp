@@ -168,12 +168,15 @@ std::vector<PcmLoop> Agent::telling(const std::vector<PcmLoop>& loops) {
   return out;
 }
 
-double Agent::difference(const PlannedCheck& check, const SeenSurface& theirs) const {
+CheckedPlace Agent::compared(const PlannedCheck& check, const SeenSurface& theirs,
+                             bool is_distinctive) const {
   const double limit = discernment_->limit();
-  return fit_near(discernment_->surfaces().at(check.own), theirs, check.T_own_theirs, limit,
-                  config_.registration_in_use())
-             .agreement.largest_difference /
-         limit;
+  const SeenSurface& own = discernment_->surfaces().at(check.own);
+  const LocalFit fit = fit_near(own, theirs, check.T_own_theirs, limit, config_.registration_in_use());
+  CheckedPlace place{fit.agreement.largest_difference / limit, is_distinctive};
+  if (!place.differs())
+    place.offsets = patch_offsets(own, theirs, fit.T_a_b, map_->keyframes[check.own].T_odom_base);
+  return place;
 }
 
 std::vector<CheckedPlace> Agent::compare_own(const std::vector<PlannedCheck>& asked) {
@@ -188,7 +191,7 @@ std::vector<CheckedPlace> Agent::compare_own(const std::vector<PlannedCheck>& as
   surfaces.prepare(both);
   std::vector<CheckedPlace> places(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
-    places[i] = {difference(asked[i], surfaces.at(asked[i].theirs)), distinctive[i]};
+    places[i] = compared(asked[i], surfaces.at(asked[i].theirs), distinctive[i]);
   });
   return places;
 }
@@ -223,7 +226,7 @@ bool Agent::compare_clouds_of(RobotId from, const Clouds& clouds) {
     cloud.points = came.at(check.theirs)->points;
     const SeenSurface theirs(compute_surface(cloud, config_.registration_in_use()),
                              came.at(check.theirs)->viewpoint.cast<double>());
-    places[i] = {difference(check, theirs), distinctive[i]};
+    places[i] = compared(check, theirs, distinctive[i]);
   });
   test.add(places);
   return true;

@@ -97,7 +97,9 @@ Fields fields_of(MergeCheckConfig& c) {
       {"odometry_slack", &c.odometry_slack, "", 1.0, 100.0,
        "loops make one hypothesis if they agree within this many times the noise of odometry"},
       {"distinctive_only", &c.distinctive_only, "", 0, 0,
-       "agreement counts only where a displacement along the way would show"}};
+       "agreement counts only where a displacement along the way would show"},
+      {"relief", &c.relief, "", 0, 0,
+       "walls that stand off one another alike in all scans are not the same walls"}};
   append(fields, "discernment", fields_of(c.discernment));
   return fields;
 }
@@ -192,10 +194,15 @@ double MergeTest::evidence_of_agreement(std::size_t passed) const {
   return std::log(kTrueCheck / chance_to_go_on(passed));
 }
 
+bool MergeTest::has_other_walls(const Hypothesis& h) const {
+  return config_.relief && h.offsets.are_of_other_walls(config_.refusal_rate);
+}
+
 bool MergeTest::is_refuted(const Hypothesis& h) const {
   const std::size_t num = h.checked.size();
   return at_least(num_differing(h.checked), num, 1.0 - kTrueCheck) < config_.refusal_rate ||
-         at_least(num_differing(h.checked, kGross), num, kTrueGross) < config_.refusal_rate;
+         at_least(num_differing(h.checked, kGross), num, kTrueGross) < config_.refusal_rate ||
+         has_other_walls(h);
 }
 
 bool MergeTest::is_finished(const Hypothesis& h) const { return h.checked.size() == h.plan.size(); }
@@ -231,7 +238,11 @@ void MergeTest::add(const std::vector<CheckedPlace>& places) {
   const auto which = to_go_on_with();
   ADIT_CHECK(which && hypotheses_[*which].checked.size() + places.size() <= hypotheses_[*which].plan.size(),
              "only what was asked for is added");
-  std::ranges::copy(places, std::back_inserter(hypotheses_[*which].checked));
+  Hypothesis& h = hypotheses_[*which];
+  for (const CheckedPlace& place : places) {
+    h.offsets.add(place.offsets);
+    h.checked.push_back({place.difference, place.is_distinctive});
+  }
 }
 
 double MergeTest::apart_m(std::size_t one, std::size_t other) const {
@@ -264,6 +275,13 @@ std::string MergeTest::reason(std::size_t which, std::optional<std::size_t> riva
   const std::size_t differing = num_differing(h.checked);
   const auto distinctive = static_cast<std::size_t>(std::ranges::count_if(
       h.checked, [](const CheckedPlace& place) { return place.is_distinctive && !place.differs(); }));
+  if (has_other_walls(h))
+    return format(
+        "walls stand off one another on the same side in scan after scan in {:.0f} % of {} patches, of which "
+        "noise leaves half: other tunnels, built alike; drive on until one passes where the other has truly "
+        "been",
+        100.0 * static_cast<double>(h.offsets.num_standing()) / static_cast<double>(h.offsets.num_patches()),
+        h.offsets.num_patches());
   if (is_refuted(h))
     return format(
         "scans differ at {} of {} places along the stretch that {} loops lay over one another: "

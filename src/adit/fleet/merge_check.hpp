@@ -24,6 +24,7 @@
 #include "adit/fleet/discernment.hpp"
 #include "adit/fleet/protocol.hpp"
 #include "adit/posegraph/pcm.hpp"
+#include "adit/registration/relief.hpp"
 
 namespace adit {
 
@@ -36,6 +37,7 @@ struct MergeCheckConfig {
   int min_loops = 3;
   double odometry_slack = 1.0;
   bool distinctive_only = true;
+  bool relief = true;
   DiscernmentConfig discernment;
 };
 Fields fields_of(MergeCheckConfig& config);
@@ -57,6 +59,7 @@ struct PlannedCheck {
 struct CheckedPlace {
   double difference = 0.0;      ///< Over the limit of Discernment: above 1 the scans cannot be of one place.
   bool is_distinctive = false;  ///< A displacement along the way would have shown.
+  std::vector<PatchOffset> offsets = {};  ///< Where it does not differ: of their walls from the own.
   [[nodiscard]] bool differs() const { return !(difference <= 1.0); }
 };
 
@@ -81,10 +84,12 @@ class MergeTest {
     std::vector<std::size_t> loops;
     std::vector<PlannedCheck> plan;
     std::vector<CheckedPlace> checked;
+    StandingOffsets offsets;
     std::vector<double> apart_m;  ///< From each hypothesis before this one: where theirs would stand.
     double known_before = 0.0;
   };
   [[nodiscard]] double evidence(const Hypothesis& hypothesis) const;
+  [[nodiscard]] bool has_other_walls(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool is_refuted(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool is_finished(const Hypothesis& hypothesis) const;
   [[nodiscard]] std::optional<std::size_t> to_go_on_with() const;
