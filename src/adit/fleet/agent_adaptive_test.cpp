@@ -22,6 +22,8 @@ AgentConfig adaptive() {
   config.adaptive.merge_check.error_rate = 0.3;  // a street of 25 m is short
   config.adaptive.merge_check.spacing_m = 2.0;
   config.adaptive.merge_check.discernment.samples = 8;
+  // The boxes are transparent: faces mix within a voxel, and the surface hangs on the grid.
+  config.adaptive.merge_check.relief = false;
   config.adaptive.context = {.max_radius_m = 25.0};
   return config;
 }

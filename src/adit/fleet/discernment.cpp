@@ -92,6 +92,7 @@ struct Discernment::Walk {
   Pose T_a_b;
   double way = 0.0;  // the next step, metres from a, negative against the drive
   double direction;  // 1 or -1
+  std::size_t look_alike;
   std::size_t num_passed = 0;
   bool is_over = false;
 };
@@ -123,17 +124,18 @@ Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryCha
       way_(way_along(chain_)),
       surfaces_(map, registration) {
   limit_ = config_.allowance * usual_difference();
+  compare_own_walls();
   follow(walks_from(similar, features));
 }
 
-std::vector<Agreement> Discernment::fits(const std::vector<Fit>& asked, double enough, FitFrom from) {
+std::vector<LocalFit> Discernment::fits(const std::vector<Fit>& asked, double enough, FitFrom from) {
   std::vector<std::uint32_t> used;
   for (const Fit& fit : asked) used.insert(used.end(), {fit.a, fit.b});
   surfaces_.prepare(used);
-  std::vector<Agreement> out(asked.size());
+  std::vector<LocalFit> out(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
     const auto& [a, b, T_a_b] = asked[i];
-    out[i] = fit_near(surfaces_.at(a), surfaces_.at(b), T_a_b, enough, registration_, from).agreement;
+    out[i] = fit_near(surfaces_.at(a), surfaces_.at(b), T_a_b, enough, registration_, from);
   });
   return out;
 }
@@ -145,13 +147,37 @@ double Discernment::usual_difference() {
       if (const auto next = keyframe_at(way_, way_[k] + distance))
         pairs.push_back({k, *next, chain_.between(k, *next)});
   std::vector<double> differences;
-  for (const Agreement& one : fits(pairs, std::numeric_limits<double>::infinity(), FitFrom::guess))
-    if (one.is_comparable()) differences.push_back(one.largest_difference);
+  for (const LocalFit& fit : fits(pairs, std::numeric_limits<double>::infinity(), FitFrom::guess))
+    if (fit.agreement.is_comparable()) differences.push_back(fit.agreement.largest_difference);
   // A map that is too short to measure on allows nothing.
   if (differences.empty()) return 0.0;
   const auto usual = std::lround(kUsual * static_cast<double>(differences.size() - 1));
   std::ranges::nth_element(differences, differences.begin() + usual);
   return differences[static_cast<std::size_t>(usual)];
+}
+
+// At each place twice, as maps are compared: by scans that are part of one comparison only, and from places
+// so far apart that the beams fall elsewhere.
+void Discernment::compare_own_walls() {
+  constexpr double kApart =
+      1.5;  // metres between two scans that are compared, and from there to the next two
+  std::vector<Fit> pairs;
+  for (const std::uint32_t k : evenly(way_.size(), static_cast<std::size_t>(config_.samples))) {
+    std::optional<std::uint32_t> a = k;
+    for (int pair = 0; pair < 2 && a; ++pair) {
+      const auto b = keyframe_at(way_, way_[*a] + kApart);
+      if (!b) break;
+      pairs.push_back({*a, *b, chain_.between(*a, *b)});
+      a = keyframe_at(way_, way_[*b] + kApart);
+    }
+  }
+  const std::vector<LocalFit> found = fits(pairs, limit_, FitFrom::guess);
+  StandingOffsets offsets;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (!differ(found[i].agreement))
+      offsets.add(patch_offsets(surfaces_.at(pairs[i].a), surfaces_.at(pairs[i].b), found[i].T_a_b,
+                                chain_.pose(pairs[i].a)));
+  standing_shares_.add_same(offsets);
 }
 
 std::vector<Discernment::Walk> Discernment::walks_from(const std::vector<LoopCandidate>& similar,
@@ -181,15 +207,18 @@ std::vector<Discernment::Walk> Discernment::walks_from(const std::vector<LoopCan
              !fits_odometry(chain_, {tried[t].query.index, tried[t].match.index, *found[t].T_a_b});
     };
     while (i < end && !can_be_followed(i)) ++i;
+    const std::size_t num_look_alikes = walks.size() / 2;
     if (i < end)
       for (const double direction : {1.0, -1.0})
-        walks.push_back({tried[i].query.index, tried[i].match.index, *found[i].T_a_b, 0.0, direction});
+        walks.push_back(
+            {tried[i].query.index, tried[i].match.index, *found[i].T_a_b, 0.0, direction, num_look_alikes});
     i = end;
   }
   return walks;
 }
 
 void Discernment::follow(std::vector<Walk> walks) {
+  std::vector<StandingOffsets> offsets(walks.size());  // of each look-alike
   while (!walks.empty()) {
     std::vector<Fit> next;
     std::vector<std::uint32_t> places;
@@ -209,14 +238,18 @@ void Discernment::follow(std::vector<Walk> walks) {
     }
     std::erase_if(walks, [](const Walk& walk) { return walk.is_over; });
     const std::vector<bool> tells = distinctive(places);
-    const std::vector<Agreement> found = fits(next, limit_, FitFrom::along_the_way);
+    const std::vector<LocalFit> found = fits(next, limit_, FitFrom::along_the_way);
     for (std::size_t w = 0; w < walks.size(); ++w) {
-      walks[w].is_over = differ(found[w]);
+      walks[w].is_over = differ(found[w].agreement);
+      if (!walks[w].is_over)
+        offsets[walks[w].look_alike].add(patch_offsets(surfaces_.at(next[w].a), surfaces_.at(next[w].b),
+                                                       found[w].T_a_b, chain_.pose(next[w].a)));
       if (walks[w].is_over || tells[w]) look_alikes_.add(walks[w].num_passed, !walks[w].is_over);
       if (tells[w]) ++walks[w].num_passed;
     }
     std::erase_if(walks, [](const Walk& walk) { return walk.is_over; });
   }
+  for (const StandingOffsets& of_one : offsets) standing_shares_.add_other(of_one);
 }
 
 std::vector<bool> Discernment::distinctive(const std::vector<std::uint32_t>& indices) {
@@ -226,11 +259,11 @@ std::vector<bool> Discernment::distinctive(const std::vector<std::uint32_t>& ind
     for (const double by : {-config_.displacement_m, config_.displacement_m})
       if (const auto other = keyframe_at(way_, way_[k] + by)) displaced.push_back({k, *other, Pose()});
   }
-  const std::vector<Agreement> found = fits(displaced, limit_, FitFrom::guess);
+  const std::vector<LocalFit> found = fits(displaced, limit_, FitFrom::guess);
   // Both ways: an end of a niche may show one way and not the other.
   for (const Fit& fit : displaced) distinctive_[fit.a] = true;
   for (std::size_t i = 0; i < displaced.size(); ++i)
-    if (!differ(found[i])) distinctive_[displaced[i].a] = false;
+    if (!differ(found[i].agreement)) distinctive_[displaced[i].a] = false;
   std::vector<bool> out;
   for (const std::uint32_t k : indices) out.push_back(distinctive_.at(k));
   return out;

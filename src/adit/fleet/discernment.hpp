@@ -16,6 +16,7 @@
 #include "adit/place/place_index.hpp"
 #include "adit/posegraph/pcm.hpp"
 #include "adit/registration/registration_config.hpp"
+#include "adit/registration/relief.hpp"
 
 namespace adit {
 
@@ -100,6 +101,8 @@ class Discernment {
   }
   /// What became of places of the map that only look alike, followed along the way.
   [[nodiscard]] const LookAlikes& look_alikes() const { return look_alikes_; }
+  /// Of its own walls seen twice, and of those that only look alike.
+  [[nodiscard]] const StandingShares& standing_shares() const { return standing_shares_; }
   /// Of each of `indices`: whether a displacement along the way would show there.
   [[nodiscard]] std::vector<bool> distinctive(const std::vector<std::uint32_t>& indices);
   [[nodiscard]] SurfaceStore& surfaces() { return surfaces_; }
@@ -111,8 +114,9 @@ class Discernment {
     Pose T_a_b;
   };
   struct Walk;
-  [[nodiscard]] std::vector<Agreement> fits(const std::vector<Fit>& asked, double enough, FitFrom from);
+  [[nodiscard]] std::vector<LocalFit> fits(const std::vector<Fit>& asked, double enough, FitFrom from);
   [[nodiscard]] double usual_difference();
+  void compare_own_walls();
   [[nodiscard]] std::vector<Walk> walks_from(const std::vector<LoopCandidate>& similar,
                                              FeatureStore& features) const;
   void follow(std::vector<Walk> walks);
@@ -125,6 +129,7 @@ class Discernment {
   SurfaceStore surfaces_;
   double limit_ = 0.0;
   LookAlikes look_alikes_;
+  StandingShares standing_shares_;
   std::map<std::uint32_t, bool> distinctive_;
 };
 

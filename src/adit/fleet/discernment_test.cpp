@@ -107,12 +107,16 @@ TEST(Discernment, BlocksThatRepeatGoOnLongerThanBlocksThatDoNot) {
     const double side = rng.uniform() < 0.5 ? -4.0 : 1.5;
     irregular.push_back({{at, side, -2.0}, {at + rng.uniform(0.8, 3.0), side + 2.5, rng.uniform(-1.0, 2.0)}});
   }
-  const LookAlikes with_tiles = Measured(in_a_tube(repeating)).discernment.look_alikes();
+  const Measured tiles(in_a_tube(repeating));
+  const LookAlikes with_tiles = tiles.discernment.look_alikes();
   const LookAlikes without = Measured(in_a_tube(irregular)).discernment.look_alikes();
   for (const std::size_t passed : {0U, 1U, 5U, 40U}) {
     EXPECT_GT(with_tiles.chance_to_go_on(passed), 0.7);
     EXPECT_LT(without.chance_to_go_on(passed), 0.6);
   }
+  // All of them were cast in one mould: their walls say nothing.
+  const StandingShares walls = tiles.discernment.standing_shares();
+  EXPECT_LE(walls.other(), walls.same());
 }
 
 TEST(LookAlikes, GoOnHalfTheTimeUntilSomethingIsKnown) {

@@ -139,9 +139,9 @@ std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryCh
 }
 
 MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
-                     const LookAlikes& look_alikes, const MergeCheckConfig& config,
-                     const std::vector<double>& known_before)
-    : loops_(loops), look_alikes_(look_alikes), config_(config) {
+                     const LookAlikes& look_alikes, const StandingShares& shares,
+                     const MergeCheckConfig& config, const std::vector<double>& known_before)
+    : loops_(loops), look_alikes_(look_alikes), standing_shares_(shares), config_(config) {
   std::vector<std::size_t> rest(loops.size());
   for (std::size_t l = 0; l < rest.size(); ++l) rest[l] = l;
   while (!rest.empty() && hypotheses_.size() < static_cast<std::size_t>(config.max_hypotheses)) {
@@ -171,6 +171,11 @@ double MergeTest::chance_to_go_on(std::size_t passed) const {
 }
 
 double MergeTest::evidence(const Hypothesis& hypothesis) const {
+  const double of_walls = config_.relief ? hypothesis.offsets.evidence(standing_shares_) : 0.0;
+  return evidence_along_the_way(hypothesis) + of_walls;
+}
+
+double MergeTest::evidence_along_the_way(const Hypothesis& hypothesis) const {
   std::vector<std::size_t> along_the_way(hypothesis.checked.size());
   for (std::size_t i = 0; i < along_the_way.size(); ++i) along_the_way[i] = i;
   std::ranges::stable_sort(along_the_way, {}, [&](std::size_t i) { return hypothesis.plan[i].own; });
@@ -195,7 +200,7 @@ double MergeTest::evidence_of_agreement(std::size_t passed) const {
 }
 
 bool MergeTest::has_other_walls(const Hypothesis& h) const {
-  return config_.relief && h.offsets.are_of_other_walls(config_.refusal_rate);
+  return config_.relief && h.offsets.are_of_other_walls(standing_shares_, config_.refusal_rate);
 }
 
 bool MergeTest::is_refuted(const Hypothesis& h) const {
@@ -210,14 +215,14 @@ bool MergeTest::is_finished(const Hypothesis& h) const { return h.checked.size()
 std::optional<std::size_t> MergeTest::to_go_on_with() const {
   double best_finished = -std::numeric_limits<double>::infinity();
   for (const Hypothesis& h : hypotheses_)
-    if (is_finished(h) && !is_refuted(h)) best_finished = std::max(best_finished, evidence(h));
+    if (is_finished(h) && !is_refuted(h)) best_finished = std::max(best_finished, evidence_along_the_way(h));
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
     const Hypothesis& h = hypotheses_[i];
     if (is_finished(h) || is_refuted(h)) continue;
     if (h.checked.empty()) return i;
-    const double at_most =
-        evidence(h) + static_cast<double>(h.plan.size() - h.checked.size()) * evidence_of_agreement(0);
+    const double at_most = evidence_along_the_way(h) +
+                           static_cast<double>(h.plan.size() - h.checked.size()) * evidence_of_agreement(0);
     if (at_most < best_finished - needed()) continue;  // it cannot become a rival any more
     if (!found || evidence(h) > evidence(hypotheses_[*found])) found = i;
   }

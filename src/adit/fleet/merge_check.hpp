@@ -69,7 +69,7 @@ class MergeTest {
   /// `loops`: all that registration accepted, with those that say something else. `known_before`: evidence
   /// for each that does not come from comparing scans; of a hypothesis the least of its loops' counts.
   MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
-            const LookAlikes& look_alikes, const MergeCheckConfig& config,
+            const LookAlikes& look_alikes, const StandingShares& shares, const MergeCheckConfig& config,
             const std::vector<double>& known_before = {});
 
   /// The next comparisons, at most `num`, each with another keyframe of theirs; none when the test is over.
@@ -89,6 +89,7 @@ class MergeTest {
     double known_before = 0.0;
   };
   [[nodiscard]] double evidence(const Hypothesis& hypothesis) const;
+  [[nodiscard]] double evidence_along_the_way(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool has_other_walls(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool is_refuted(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool is_finished(const Hypothesis& hypothesis) const;
@@ -107,6 +108,7 @@ class MergeTest {
   std::vector<Hypothesis> hypotheses_;
   std::size_t num_alignments_ = 0;  ///< That loops speak for, those beyond max_hypotheses one a loop.
   LookAlikes look_alikes_;
+  StandingShares standing_shares_;
   MergeCheckConfig config_;
 };
 

@@ -51,7 +51,7 @@ LookAlikes look_alikes(double chance_to_go_on) {
 
 MergeTest a_test(const std::vector<PcmLoop>& loops, double chance_to_go_on = 0.5,
                  const MergeCheckConfig& config = {}) {
-  return {along_x(kNum), along_x(kNum), loops, look_alikes(chance_to_go_on), config};
+  return {along_x(kNum), along_x(kNum), loops, look_alikes(chance_to_go_on), {}, config};
 }
 
 // Answers all that the test asks for.
@@ -123,12 +123,51 @@ TEST(MergeTest, TwoLoopsAreTooFewWhateverThePlacesSay) {
   EXPECT_TRUE(run(other, [](const PlannedCheck&) { return kAgrees; }).accepted);
 }
 
+// Patches of its own for each place, seen there twice; of so many in a hundred both stand off on one side.
+CheckedPlace with_offsets(std::uint32_t theirs, int standing) {
+  CheckedPlace place = kAgrees;
+  for (int i = 0; i < 100; ++i)
+    for (const double metres : {0.01, i < standing ? 0.01 : -0.01})
+      place.offsets.push_back({{static_cast<int>(theirs), i, 0, 0}, metres});
+  return place;
+}
+
+TEST(MergeTest, WallsThatStandOffInAllScansAreOfOtherTunnels) {
+  MergeCheckConfig without;
+  without.relief = false;
+  const auto check = [](int standing, const MergeCheckConfig& config) {
+    MergeTest test = a_test(kTrueLoops, 0.5, config);
+    return run(test, [&](const PlannedCheck& c) { return with_offsets(c.theirs, standing); });
+  };
+  EXPECT_TRUE(check(50, {}).accepted);
+  const MergeCheck built_alike = check(62, {});
+  EXPECT_FALSE(built_alike.accepted);
+  EXPECT_EQ(built_alike.hypotheses.front().outcome, HypothesisOutcome::refuted);
+  EXPECT_NE(built_alike.reason.find("same side in scan after scan in 62 %"), std::string::npos)
+      << built_alike.reason;
+  EXPECT_TRUE(check(62, without).accepted);
+}
+
+TEST(MergeTest, WallsCountWhereOwnLookAlikesHaveOthers) {
+  StandingShares shares;
+  const auto check = [&](int standing) {
+    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, look_alikes(0.95), shares, {});
+    return run(test, [&](const PlannedCheck& c) { return with_offsets(c.theirs, standing); });
+  };
+  EXPECT_FALSE(check(50).accepted);  // look-alikes go on for long: places alone cannot do it
+  StandingOffsets other_walls;
+  for (const PatchOffset& offset : with_offsets(0, 80).offsets) other_walls.add({offset});
+  for (int i = 0; i < 10; ++i) shares.add_other(other_walls);
+  EXPECT_TRUE(check(50).accepted);
+  EXPECT_FALSE(check(57).accepted);  // not refuted by itself, but as likely of others
+}
+
 TEST(MergeTest, AfterAPlaceThatDiffersTheCountStartsAnew) {
   LookAlikes rarely_begin;  // and go on once they have
   for (int i = 0; i < 1000; ++i) rarely_begin.add(0, i < 100);
   for (int i = 0; i < 1000; ++i) rarely_begin.add(1, i < 950);
   const auto evidence = [&](std::uint32_t differs_at) {
-    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, rarely_begin, {});
+    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, rarely_begin, {}, {});
     return run(test,
                [&](const PlannedCheck& check) { return check.own / 6 == differs_at ? kDiffers : kAgrees; })
         .evidence;

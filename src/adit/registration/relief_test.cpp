@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/registration/relief.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "adit/core/rng.hpp"
+#include "adit/registration/features.hpp"
+
+namespace adit {
+namespace {
+
+constexpr double kRadius = 4.0;    // metres, of a tube along x
+constexpr double kNoise = 0.03;    // metres, of one point
+constexpr double kRelief = 0.012;  // metres, of the rock
+
+// Rock as it was broken in the tunnel of that seed: waves of a few metres.
+double rock(std::uint64_t tunnel, double x, double angle) {
+  Rng rng(tunnel);
+  double out = 0.0;
+  for (int wave = 1; wave <= 4; ++wave) {
+    const double phase = rng.uniform(0.0, 2.0 * std::numbers::pi);
+    out += std::sin(x * rng.uniform(0.5, 1.5) + std::round(rng.uniform(-4.0, 4.0)) * angle + phase);
+  }
+  return kRelief * out / std::sqrt(2.0);
+}
+
+// By a LiDAR on the axis of the tunnel, at x.
+SeenSurface seen(std::uint64_t tunnel, double x, std::uint64_t noise) {
+  Rng rng(noise);
+  PointCloud cloud;
+  for (int i = 0; i < 6000; ++i) {
+    const double along = rng.uniform(-12.0, 12.0);
+    const double angle = rng.uniform(-std::numbers::pi, std::numbers::pi);
+    const double r = kRadius + rock(tunnel, x + along, angle) + kNoise * rng.normal();
+    cloud.points.emplace_back(static_cast<float>(along), static_cast<float>(r * std::cos(angle)),
+                              static_cast<float>(r * std::sin(angle)));
+  }
+  return {compute_surface(cloud, {}), Vector3::Zero()};
+}
+
+// One robot drove through `first`, the other through `second`, which lie on one another but for the rock; the
+// second one stands `ahead` of the first each time.
+StandingOffsets driven(std::uint64_t first, std::uint64_t second, int num_pairs = 8, double ahead = 1.0) {
+  StandingOffsets offsets;
+  for (int i = 0; i < num_pairs; ++i) {
+    const double x = 3.0 * i;
+    const auto noise = static_cast<std::uint64_t>(2 * i + 100);
+    offsets.add(patch_offsets(seen(first, x, noise), seen(second, x + ahead, noise + 1),
+                              Pose::translation_of(ahead, 0.0, 0.0), Pose::translation_of(x, 0.0, 0.0)));
+  }
+  return offsets;
+}
+
+// Of a thousand patches, so many that stand.
+StandingOffsets of_a_thousand(int num_standing) {
+  StandingOffsets offsets;
+  for (int i = 0; i < 1000; ++i)
+    for (const double metres : {0.01, i < num_standing ? 0.01 : -0.01}) offsets.add({{{i, 0, 0, 0}, metres}});
+  return offsets;
+}
+
+StandingShares where_others_stand(int of_a_thousand_others) {
+  StandingShares shares;
+  shares.add_other(of_a_thousand(of_a_thousand_others));
+  return shares;
+}
+
+double share(const StandingOffsets& offsets) {
+  return static_cast<double>(offsets.num_standing()) / static_cast<double>(offsets.num_patches());
+}
+
+TEST(Relief, TheSameWallsStandOffHereAndThereByChance) {
+  for (const std::uint64_t tunnel : {1U, 2U, 3U}) {
+    const StandingOffsets offsets = driven(tunnel, tunnel);
+    ASSERT_GT(offsets.num_patches(), 500U);
+    EXPECT_NEAR(share(offsets), 0.5, 0.06);
+    EXPECT_FALSE(offsets.are_of_other_walls({}, 0.01));
+  }
+}
+
+TEST(Relief, OtherWallsStandOffAlikeInAllScansThoughNoiseIsLarger) {
+  static_assert(kRelief < 0.5 * kNoise);
+  for (const std::uint64_t tunnel : {1U, 2U, 3U}) {
+    const StandingOffsets offsets = driven(tunnel, tunnel + 10);
+    EXPECT_GT(share(offsets), 0.6);
+    EXPECT_TRUE(offsets.are_of_other_walls({}, 1e-4));
+  }
+}
+
+TEST(Relief, SpeaksForOneTunnelAndAgainstTheOther) {
+  EXPECT_GT(driven(1, 1).evidence(where_others_stand(800)), 5.0);
+  EXPECT_LT(driven(1, 11).evidence(where_others_stand(800)), -5.0);
+  // Where other walls do not stand off either (tiles of a mould), nothing is known.
+  EXPECT_EQ(driven(1, 1).evidence(where_others_stand(500)), 0.0);
+}
+
+TEST(Relief, OnePairOfScansSaysNothing) {
+  const StandingOffsets offsets = driven(1, 11, 1);
+  EXPECT_EQ(offsets.num_patches(), 0U);
+  EXPECT_FALSE(offsets.are_of_other_walls({}, 0.5));
+  EXPECT_EQ(offsets.evidence(where_others_stand(800)), 0.0);
+}
+
+TEST(Relief, WhatStandsFarOffIsNoRelief) {
+  // A step of 0.3 m: seen by `agreement`, not here.
+  const SeenSurface a = seen(1, 0.0, 1);
+  OrientedPoints points = a.points();
+  for (Eigen::Vector3f& p : points.points) p.tail<2>() *= 3.7F / 4.0F;
+  EXPECT_TRUE(patch_offsets(a, {points, Vector3::Zero()}, Pose(), Pose()).empty());
+}
+
+TEST(Relief, OffsetsAreTowardsTheFreeSide) {
+  const SeenSurface a = seen(1, 0.0, 1);
+  OrientedPoints bulged = a.points();  // inwards, for a metre on one side
+  const auto is_bulged = [](const Eigen::Vector3f& p) {
+    return p.y() > 3.0F && p.x() > 2.0F && p.x() < 3.0F;
+  };
+  for (Eigen::Vector3f& p : bulged.points)
+    if (is_bulged(p)) p.tail<2>() *= 3.95F / 4.0F;
+  int num = 0;
+  for (const PatchOffset& one : patch_offsets(a, {bulged, Vector3::Zero()}, Pose(), Pose())) {
+    const bool is_there = one.patch[0] == 2 && one.patch[1] == 3;
+    EXPECT_NEAR(one.metres, is_there ? 0.05 : 0.0, 0.01);
+    num += is_there ? 1 : 0;
+  }
+  EXPECT_GE(num, 2);
+}
+
+TEST(Relief, PatchesStayWhereTheyAreInTheMap) {
+  // The same surface, looked at from a frame that stands elsewhere and is turned round.
+  const SeenSurface a = seen(1, 0.0, 1);
+  const SeenSurface b = seen(1, 0.0, 2);
+  const Pose T_map_a = Pose::planar(7.0, -3.0, 1.0);
+  const std::vector<PatchOffset> found = patch_offsets(a, b, Pose(), T_map_a);
+  ASSERT_GT(found.size(), 100U);
+  for (const PatchOffset& one : found) {
+    const Vector3 middle(one.patch[0] + 0.5, one.patch[1] + 0.5, one.patch[2] + 0.5);
+    const double from_axis = (T_map_a.inverse() * middle).tail<2>().norm();
+    EXPECT_NEAR(from_axis, kRadius, 1.0);
+  }
+}
+
+TEST(StandingOffsets, ComparesOneHalfOfThePairsWithTheOther) {
+  StandingOffsets offsets;
+  const WallPatch stands{0, 0, 0, 0}, wavers{1, 0, 0, 0}, once{2, 0, 0, 0};
+  offsets.add({{stands, 0.01}, {wavers, 0.01}});
+  offsets.add({{stands, 0.02}, {wavers, -0.01}, {once, 0.01}});
+  offsets.add({{stands, -0.005}});  // the half of the first: still on the same side
+  EXPECT_EQ(offsets.num_patches(), 2U);
+  EXPECT_EQ(offsets.num_standing(), 1U);
+  offsets.add({{stands, -0.05}});  // the half of the second: no longer
+  EXPECT_EQ(offsets.num_standing(), 0U);
+}
+
+TEST(StandingOffsets, AMillimetreTellsNothing) {
+  StandingOffsets offsets;
+  for (const double metres : {0.01, 0.001}) offsets.add({{{0, 0, 0, 0}, metres}});
+  EXPECT_EQ(offsets.num_patches(), 0U);
+  offsets.add({{{0, 0, 0, 0}, 0.01}});
+  offsets.add({{{0, 0, 0, 0}, 0.005}});  // on the average of its half 3 mm
+  EXPECT_EQ(offsets.num_standing(), 1U);
+}
+
+TEST(StandingOffsets, AreOfOtherWallsWhenMoreStandThanOfTheSame) {
+  EXPECT_FALSE(of_a_thousand(580).are_of_other_walls({}, 0.01));
+  EXPECT_TRUE(of_a_thousand(620).are_of_other_walls({}, 0.01));
+  StandingShares cluttered;  // edges stand off even of one place
+  cluttered.add_same(of_a_thousand(600));
+  EXPECT_FALSE(of_a_thousand(620).are_of_other_walls(cluttered, 0.01));
+  EXPECT_TRUE(of_a_thousand(700).are_of_other_walls(cluttered, 0.01));
+}
+
+TEST(StandingOffsets, EvidenceIsTheLikelihoodRatio) {
+  EXPECT_NEAR(of_a_thousand(500).evidence(where_others_stand(800)),
+              500 * std::log(0.52 / 0.6) + 500 * std::log(0.48 / 0.4), 1e-9);
+}
+
+TEST(StandingShares, AreMeasuredOrElseBelieved) {
+  StandingShares shares;
+  EXPECT_EQ(shares.same(), 0.52);
+  EXPECT_EQ(shares.other(), 0.5);
+  shares.add_same(of_a_thousand(400));
+  EXPECT_EQ(shares.same(), 0.52) << "less than chance is chance";
+  shares.add_same(of_a_thousand(700));
+  EXPECT_NEAR(shares.same(), 0.55, 1e-12);
+  shares.add_other(of_a_thousand(800));
+  EXPECT_NEAR(shares.other(), 0.6, 1e-12) << "a third of what is beyond chance";
+}
+
+}  // namespace
+}  // namespace adit
