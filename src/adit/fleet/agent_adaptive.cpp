@@ -104,8 +104,7 @@ void Agent::find_revisits() {
   if (loops.empty()) return;
   std::vector<double> known_before;
   for (const PcmLoop& loop : loops) known_before.push_back(odometry_evidence(chain, loop));
-  MergeTest test(chain, chain, loops, discernment().look_alikes(), discernment().standing_shares(),
-                 config_.adaptive.merge_check, known_before);
+  MergeTest test(chain, chain, loops, discernment().measured(), config_.adaptive.merge_check, known_before);
   for (auto asked = test.next(kCloudsPerMessage); !asked.empty(); asked = test.next(kCloudsPerMessage))
     test.add(compare_own(asked));
   decide(test.verdict(map_->id, map_->id));
@@ -202,8 +201,8 @@ void Agent::begin_test(RobotId peer_id) {
     if (ends.first.robot == map_->id && ends.second.robot == peer_id &&
         loop.verdict == LoopVerdict::accepted && !loop.is_free_to_slide())
       loops.push_back(pcm_loop_of(loop, {}));
-  peers_[peer_id].test.emplace(own_chain(), chain_by(peer_id), telling(loops), discernment().look_alikes(),
-                               discernment().standing_shares(), config_.adaptive.merge_check);
+  peers_[peer_id].test.emplace(own_chain(), chain_by(peer_id), telling(loops), discernment().measured(),
+                               config_.adaptive.merge_check);
 }
 
 bool Agent::compare_clouds_of(RobotId from, const Clouds& clouds) {

@@ -125,6 +125,7 @@ Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryCha
       surfaces_(map, registration) {
   limit_ = config_.allowance * usual_difference();
   compare_own_walls();
+  measured_.reach_m = reach();
   follow(walks_from(similar, features));
 }
 
@@ -177,7 +178,33 @@ void Discernment::compare_own_walls() {
     if (!differ(found[i].agreement))
       offsets.add(patch_offsets(surfaces_.at(pairs[i].a), surfaces_.at(pairs[i].b), found[i].T_a_b,
                                 chain_.pose(pairs[i].a)));
-  standing_shares_.add_same(offsets);
+  measured_.walls.add_same(offsets);
+}
+
+double Discernment::reach() {
+  constexpr double kWay = 12.0;  // metres, over which scans see enough of the same
+  constexpr double kShare = 0.9;
+  constexpr double kSigmas = 1.645;    // within which that share of normal deviations lies
+  constexpr double kMayBeOff = 0.5;    // metres to the side
+  constexpr double kShortest = 50.0;   // metres
+  constexpr double kLongest = 150.0;   // metres
+  constexpr std::size_t kEnough = 10;  // headings
+  std::vector<Fit> pairs;
+  for (const std::uint32_t k : evenly(way_.size(), static_cast<std::size_t>(config_.samples)))
+    if (const auto next = keyframe_at(way_, way_[k] + kWay))
+      pairs.push_back({k, *next, chain_.between(k, *next)});
+  const std::vector<LocalFit> found = fits(pairs, limit_, FitFrom::guess);
+  std::vector<double> off;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (!differ(found[i].agreement))
+      off.push_back(std::abs((pairs[i].T_a_b.inverse() * found[i].T_a_b).log()[5]));
+  if (off.size() < kEnough) return kShortest;
+  const auto nth = off.begin() + std::lround(kShare * static_cast<double>(off.size() - 1));
+  std::ranges::nth_element(off, nth);
+  // The headings of two robots wander apart as random walks; to the side that makes, after d metres,
+  // sqrt(2) sigma sqrt(d / kWay) d / sqrt(3).
+  const double sigma = std::max(*nth / kSigmas, 1e-6);
+  return std::clamp(std::cbrt(1.5 * kWay * std::pow(kMayBeOff / sigma, 2)), kShortest, kLongest);
 }
 
 std::vector<Discernment::Walk> Discernment::walks_from(const std::vector<LoopCandidate>& similar,
@@ -244,12 +271,12 @@ void Discernment::follow(std::vector<Walk> walks) {
       if (!walks[w].is_over)
         offsets[walks[w].look_alike].add(patch_offsets(surfaces_.at(next[w].a), surfaces_.at(next[w].b),
                                                        found[w].T_a_b, chain_.pose(next[w].a)));
-      if (walks[w].is_over || tells[w]) look_alikes_.add(walks[w].num_passed, !walks[w].is_over);
+      if (walks[w].is_over || tells[w]) measured_.look_alikes.add(walks[w].num_passed, !walks[w].is_over);
       if (tells[w]) ++walks[w].num_passed;
     }
     std::erase_if(walks, [](const Walk& walk) { return walk.is_over; });
   }
-  for (const StandingOffsets& of_one : offsets) standing_shares_.add_other(of_one);
+  for (const StandingOffsets& of_one : offsets) measured_.walls.add_other(of_one);
 }
 
 std::vector<bool> Discernment::distinctive(const std::vector<std::uint32_t>& indices) {

@@ -86,6 +86,15 @@ class LookAlikes {
   std::array<Phase, 8> phases_;  ///< After 0, 1, 3, 7, 15, ... agreements.
 };
 
+/// What a robot has measured on its own map, to judge what it shares with others.
+struct Measured {
+  LookAlikes look_alikes;  ///< What became of places that only look alike, followed along the way.
+  StandingShares walls;    ///< Of its own walls seen twice, and of those that only look alike.
+  /// Metres along the way over which odometry leads to within half a metre, within 50 to 150: by how much its
+  /// heading differs from that of the scans.
+  double reach_m = 50.0;
+};
+
 /// Measured when it is made; some seconds of processor time.
 class Discernment {
  public:
@@ -99,10 +108,7 @@ class Discernment {
   [[nodiscard]] bool differ(const Agreement& agreement) const {
     return !(agreement.largest_difference <= limit_);
   }
-  /// What became of places of the map that only look alike, followed along the way.
-  [[nodiscard]] const LookAlikes& look_alikes() const { return look_alikes_; }
-  /// Of its own walls seen twice, and of those that only look alike.
-  [[nodiscard]] const StandingShares& standing_shares() const { return standing_shares_; }
+  [[nodiscard]] const Measured& measured() const { return measured_; }
   /// Of each of `indices`: whether a displacement along the way would show there.
   [[nodiscard]] std::vector<bool> distinctive(const std::vector<std::uint32_t>& indices);
   [[nodiscard]] SurfaceStore& surfaces() { return surfaces_; }
@@ -117,6 +123,7 @@ class Discernment {
   [[nodiscard]] std::vector<LocalFit> fits(const std::vector<Fit>& asked, double enough, FitFrom from);
   [[nodiscard]] double usual_difference();
   void compare_own_walls();
+  [[nodiscard]] double reach();
   [[nodiscard]] std::vector<Walk> walks_from(const std::vector<LoopCandidate>& similar,
                                              FeatureStore& features) const;
   void follow(std::vector<Walk> walks);
@@ -128,8 +135,7 @@ class Discernment {
   std::vector<double> way_;
   SurfaceStore surfaces_;
   double limit_ = 0.0;
-  LookAlikes look_alikes_;
-  StandingShares standing_shares_;
+  Measured measured_;
   std::map<std::uint32_t, bool> distinctive_;
 };
 

@@ -54,8 +54,8 @@ std::vector<LoopCandidate> similar_places(const std::shared_ptr<const RobotMap>&
   return found;
 }
 
-struct Measured {
-  explicit Measured(const std::shared_ptr<const RobotMap>& map)
+struct OnAMap {
+  explicit OnAMap(const std::shared_ptr<const RobotMap>& map)
       : features(map, {}), discernment(map, chain_of(*map), similar_places(map), features, {}, {}) {}
   FeatureStore features;
   Discernment discernment;
@@ -74,10 +74,10 @@ TEST(WayAlong, CountsMetresAndFindsKeyframes) {
 }
 
 TEST(Discernment, ADisplacementDoesNotShowInASmoothTubeAndDoesBesideABlock) {
-  Measured smooth(in_a_tube({}));
+  OnAMap smooth(in_a_tube({}));
   const std::vector<std::uint32_t> places = {40, 50, 60, 70};
   for (const bool tells : smooth.discernment.distinctive(places)) EXPECT_FALSE(tells);
-  Measured with_block(in_a_tube({{{29.0, 1.5, -2.0}, {31.0, 4.0, 1.0}}}));
+  OnAMap with_block(in_a_tube({{{29.0, 1.5, -2.0}, {31.0, 4.0, 1.0}}}));
   const std::vector<bool> near = with_block.discernment.distinctive({56, 64});
   EXPECT_TRUE(near[0]);
   EXPECT_TRUE(near[1]);
@@ -85,7 +85,7 @@ TEST(Discernment, ADisplacementDoesNotShowInASmoothTubeAndDoesBesideABlock) {
 
 TEST(Discernment, ScansOfOnePlaceDoNotDifferAndThoseOfAnotherDo) {
   const auto map = in_a_tube({{{29.0, 1.5, -2.0}, {31.0, 4.0, 1.0}}});
-  Measured measured(map);
+  OnAMap measured(map);
   EXPECT_GT(measured.discernment.limit(), 0.0);
   EXPECT_LT(measured.discernment.limit(), 30.0);
   SurfaceStore& surfaces = measured.discernment.surfaces();
@@ -107,16 +107,31 @@ TEST(Discernment, BlocksThatRepeatGoOnLongerThanBlocksThatDoNot) {
     const double side = rng.uniform() < 0.5 ? -4.0 : 1.5;
     irregular.push_back({{at, side, -2.0}, {at + rng.uniform(0.8, 3.0), side + 2.5, rng.uniform(-1.0, 2.0)}});
   }
-  const Measured tiles(in_a_tube(repeating));
-  const LookAlikes with_tiles = tiles.discernment.look_alikes();
-  const LookAlikes without = Measured(in_a_tube(irregular)).discernment.look_alikes();
+  const OnAMap tiles(in_a_tube(repeating));
+  const LookAlikes with_tiles = tiles.discernment.measured().look_alikes;
+  const LookAlikes without = OnAMap(in_a_tube(irregular)).discernment.measured().look_alikes;
   for (const std::size_t passed : {0U, 1U, 5U, 40U}) {
     EXPECT_GT(with_tiles.chance_to_go_on(passed), 0.7);
     EXPECT_LT(without.chance_to_go_on(passed), 0.6);
   }
   // All of them were cast in one mould: their walls say nothing.
-  const StandingShares walls = tiles.discernment.standing_shares();
+  const StandingShares walls = tiles.discernment.measured().walls;
   EXPECT_LE(walls.other(), walls.same());
+}
+
+TEST(Discernment, AHeadingThatWandersLeadsLessFar) {
+  const auto straight = in_a_tube({});
+  EXPECT_EQ(OnAMap(straight).discernment.measured().reach_m, 150.0);
+  auto wandering = std::make_shared<RobotMap>(*straight);
+  Rng rng(5);
+  Pose T_odom_base;
+  for (std::size_t k = 0; k < wandering->keyframes.size(); ++k) {
+    if (k > 0) T_odom_base = T_odom_base * Pose::planar(kStep, 0.0, 0.004 * rng.normal());
+    wandering->keyframes[k].T_odom_base = T_odom_base;
+  }
+  const double reach = OnAMap(wandering).discernment.measured().reach_m;
+  EXPECT_LT(reach, 100.0);
+  EXPECT_GE(reach, 50.0);
 }
 
 TEST(LookAlikes, GoOnHalfTheTimeUntilSomethingIsKnown) {

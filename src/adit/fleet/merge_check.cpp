@@ -18,7 +18,6 @@ constexpr double kTrueCheck = 0.97;  // chance that scans do not differ where th
 constexpr double kGross = 3.0;
 constexpr double kTrueGross = 0.005;     // chance of that where the alignment is true
 constexpr double kSide = 3.0;            // metres between two keyframes that are compared
-constexpr double kReach = 50.0;          // metres along odometry, from the nearest loop
 constexpr double kSameAlignment = 3.0;   // metres between two hypotheses that say the same
 constexpr std::size_t kFirstChecks = 8;  // of each hypothesis, before the best ones get more
 
@@ -105,7 +104,8 @@ Fields fields_of(MergeCheckConfig& c) {
 }
 
 std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryChain& theirs,
-                                      const std::vector<PcmLoop>& loops, const MergeCheckConfig& config) {
+                                      const std::vector<PcmLoop>& loops, double reach_m,
+                                      const MergeCheckConfig& config) {
   const std::vector<double> own_way = way_along(own);
   const std::vector<double> their_way = way_along(theirs);
   std::vector<PlannedCheck> plan;
@@ -115,7 +115,7 @@ std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryCh
     const auto& loop = *std::ranges::min_element(
         loops, {}, [&](const PcmLoop& l) { return std::abs(their_way[l.b] - their_way[j]); });
     const double from_loop = std::abs(their_way[loop.b] - their_way[j]);
-    if (from_loop > kReach) continue;
+    if (from_loop > reach_m) continue;
     const Pose T_loop_theirs = loop.T_a_b * theirs.between(loop.b, j);
     const Vector3 at = own.pose(loop.a) * T_loop_theirs.translation();
     std::optional<std::uint32_t> nearest;
@@ -139,9 +139,9 @@ std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryCh
 }
 
 MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
-                     const LookAlikes& look_alikes, const StandingShares& shares,
-                     const MergeCheckConfig& config, const std::vector<double>& known_before)
-    : loops_(loops), look_alikes_(look_alikes), standing_shares_(shares), config_(config) {
+                     const Measured& measured, const MergeCheckConfig& config,
+                     const std::vector<double>& known_before)
+    : loops_(loops), measured_(measured), config_(config) {
   std::vector<std::size_t> rest(loops.size());
   for (std::size_t l = 0; l < rest.size(); ++l) rest[l] = l;
   while (!rest.empty() && hypotheses_.size() < static_cast<std::size_t>(config.max_hypotheses)) {
@@ -154,7 +154,7 @@ MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, cons
       hypothesis.apart_m.push_back(apart(picked(loops, other.loops), agreeing, own, theirs));
     if (std::ranges::any_of(hypothesis.apart_m, [](double metres) { return metres <= kSameAlignment; }))
       continue;
-    hypothesis.plan = plan_checks(own, theirs, agreeing, config);
+    hypothesis.plan = plan_checks(own, theirs, agreeing, measured.reach_m, config);
     if (!known_before.empty()) {
       const auto known = [&](std::size_t l) { return known_before[l]; };
       hypothesis.known_before = known(*std::ranges::min_element(hypothesis.loops, {}, known));
@@ -167,11 +167,11 @@ MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, cons
 double MergeTest::needed() const { return std::log(1.0 / config_.error_rate); }
 
 double MergeTest::chance_to_go_on(std::size_t passed) const {
-  return std::min(look_alikes_.chance_to_go_on(passed), kTrueCheck);
+  return std::min(measured_.look_alikes.chance_to_go_on(passed), kTrueCheck);
 }
 
 double MergeTest::evidence(const Hypothesis& hypothesis) const {
-  const double of_walls = config_.relief ? hypothesis.offsets.evidence(standing_shares_) : 0.0;
+  const double of_walls = config_.relief ? hypothesis.offsets.evidence(measured_.walls) : 0.0;
   return evidence_along_the_way(hypothesis) + of_walls;
 }
 
@@ -200,7 +200,7 @@ double MergeTest::evidence_of_agreement(std::size_t passed) const {
 }
 
 bool MergeTest::has_other_walls(const Hypothesis& h) const {
-  return config_.relief && h.offsets.are_of_other_walls(standing_shares_, config_.refusal_rate);
+  return config_.relief && h.offsets.are_of_other_walls(measured_.walls, config_.refusal_rate);
 }
 
 bool MergeTest::is_refuted(const Hypothesis& h) const {

@@ -48,11 +48,11 @@ struct PlannedCheck {
   std::uint32_t theirs = 0;
   Pose T_own_theirs;
 };
-/// Along the whole stretch that both drove, as far as `loops` (which agree with one another) say; places
-/// far apart first, those between them later. With the same chain given twice: revisits, the earlier keyframe
-/// of the two as `own`.
+/// Along the whole stretch that both drove, up to `reach_m` along the way from the nearest of `loops` (which
+/// agree with one another); places far apart first, those between them later. With the same chain given
+/// twice: revisits, the earlier keyframe of the two as `own`.
 [[nodiscard]] std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryChain& theirs,
-                                                    const std::vector<PcmLoop>& loops,
+                                                    const std::vector<PcmLoop>& loops, double reach_m,
                                                     const MergeCheckConfig& config);
 
 /// One place where two maps were compared.
@@ -69,7 +69,7 @@ class MergeTest {
   /// `loops`: all that registration accepted, with those that say something else. `known_before`: evidence
   /// for each that does not come from comparing scans; of a hypothesis the least of its loops' counts.
   MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
-            const LookAlikes& look_alikes, const StandingShares& shares, const MergeCheckConfig& config,
+            const Measured& measured, const MergeCheckConfig& config,
             const std::vector<double>& known_before = {});
 
   /// The next comparisons, at most `num`, each with another keyframe of theirs; none when the test is over.
@@ -107,8 +107,7 @@ class MergeTest {
   std::vector<PcmLoop> loops_;
   std::vector<Hypothesis> hypotheses_;
   std::size_t num_alignments_ = 0;  ///< That loops speak for, those beyond max_hypotheses one a loop.
-  LookAlikes look_alikes_;
-  StandingShares standing_shares_;
+  Measured measured_;
   MergeCheckConfig config_;
 };
 

@@ -51,7 +51,7 @@ LookAlikes look_alikes(double chance_to_go_on) {
 
 MergeTest a_test(const std::vector<PcmLoop>& loops, double chance_to_go_on = 0.5,
                  const MergeCheckConfig& config = {}) {
-  return {along_x(kNum), along_x(kNum), loops, look_alikes(chance_to_go_on), {}, config};
+  return {along_x(kNum), along_x(kNum), loops, {look_alikes(chance_to_go_on), {}}, config};
 }
 
 // Answers all that the test asks for.
@@ -72,7 +72,7 @@ constexpr CheckedPlace kSilent{0.5, false};
 constexpr CheckedPlace kHasANiche{5.0, true};
 
 TEST(PlanChecks, PutsNeighboursTogetherAllAlongTheStretch) {
-  const std::vector<PlannedCheck> plan = plan_checks(along_x(kNum), along_x(kNum), kTrueLoops, {});
+  const std::vector<PlannedCheck> plan = plan_checks(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, {});
   // 50 m to each side of the loops and the 10 m between them, every 3 m; both drives end sooner.
   ASSERT_GE(plan.size(), 30U);
   std::set<std::uint32_t> theirs;
@@ -85,7 +85,7 @@ TEST(PlanChecks, PutsNeighboursTogetherAllAlongTheStretch) {
 }
 
 TEST(PlanChecks, LooksFarApartFirst) {
-  const std::vector<PlannedCheck> plan = plan_checks(along_x(kNum), along_x(kNum), kTrueLoops, {});
+  const std::vector<PlannedCheck> plan = plan_checks(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, {});
   std::vector<std::uint32_t> first;
   for (std::size_t i = 0; i < 4; ++i) first.push_back(plan[i].theirs);
   std::ranges::sort(first);
@@ -93,7 +93,7 @@ TEST(PlanChecks, LooksFarApartFirst) {
 }
 
 TEST(PlanChecks, WithoutLoopsThereIsNothingToCheck) {
-  EXPECT_TRUE(plan_checks(along_x(kNum), along_x(kNum), {}, {}).empty());
+  EXPECT_TRUE(plan_checks(along_x(kNum), along_x(kNum), {}, 50.0, {}).empty());
 }
 
 TEST(PlanChecks, WithinOneMapAKeyframeIsNotComparedWithItselfOrItsNeighbours) {
@@ -101,8 +101,8 @@ TEST(PlanChecks, WithinOneMapAKeyframeIsNotComparedWithItselfOrItsNeighbours) {
   for (int k = 0; k <= 200; ++k)
     poses.push_back(k <= 100 ? Pose::planar(k, 0.0, 0.0) : Pose::planar(200 - k, 1.0, std::numbers::pi));
   const OdometryChain chain(poses, std::vector<Matrix6>(200, odometry_covariance({}, 1.0)));
-  const std::vector<PlannedCheck> plan =
-      plan_checks(chain, chain, {{70, 130, chain.between(70, 130)}, {50, 150, chain.between(50, 150)}}, {});
+  const std::vector<PlannedCheck> plan = plan_checks(
+      chain, chain, {{70, 130, chain.between(70, 130)}, {50, 150, chain.between(50, 150)}}, 50.0, {});
   ASSERT_GE(plan.size(), 10U);
   for (const PlannedCheck& check : plan) {
     EXPECT_GE(check.theirs, check.own + 40);
@@ -151,7 +151,7 @@ TEST(MergeTest, WallsThatStandOffInAllScansAreOfOtherTunnels) {
 TEST(MergeTest, WallsCountWhereOwnLookAlikesHaveOthers) {
   StandingShares shares;
   const auto check = [&](int standing) {
-    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, look_alikes(0.95), shares, {});
+    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, {look_alikes(0.95), shares}, {});
     return run(test, [&](const PlannedCheck& c) { return with_offsets(c.theirs, standing); });
   };
   EXPECT_FALSE(check(50).accepted);  // look-alikes go on for long: places alone cannot do it
@@ -167,7 +167,7 @@ TEST(MergeTest, AfterAPlaceThatDiffersTheCountStartsAnew) {
   for (int i = 0; i < 1000; ++i) rarely_begin.add(0, i < 100);
   for (int i = 0; i < 1000; ++i) rarely_begin.add(1, i < 950);
   const auto evidence = [&](std::uint32_t differs_at) {
-    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, rarely_begin, {}, {});
+    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, {rarely_begin, {}}, {});
     return run(test,
                [&](const PlannedCheck& check) { return check.own / 6 == differs_at ? kDiffers : kAgrees; })
         .evidence;
