@@ -11,8 +11,9 @@
 /// The decision is Wald's sequential probability ratio test ("Sequential tests of statistical hypotheses",
 /// 1945) in two directions. Against chance: the logarithms of likelihood ratios add up over the places that
 /// are distinctive, less that of the number of alignments that loops speak for, and have to reach
-/// log(1 / error_rate). Against copies: scans that differ may not be more than true places would leave. And
-/// against every other hypothesis: it must stay behind by as much.
+/// log(1 / error_rate). Against copies: scans that differ may not be more than true places would leave, nor
+/// may walls stand off one another in more patches than one wall's do (StandingOffsets). And against every
+/// other hypothesis: it must stay behind by as much.
 #pragma once
 
 #include <cstdint>
