@@ -160,8 +160,7 @@ double Discernment::usual_difference() {
 // At each place twice, as maps are compared: by scans that are part of one comparison only, and from places
 // so far apart that the beams fall elsewhere.
 void Discernment::compare_own_walls() {
-  constexpr double kApart =
-      1.5;  // metres between two scans that are compared, and from there to the next two
+  constexpr double kApart = 1.5;  // metres between two scans that are compared, and to the next two
   std::vector<Fit> pairs;
   for (const std::uint32_t k : evenly(way_.size(), static_cast<std::size_t>(config_.samples))) {
     std::optional<std::uint32_t> a = k;
@@ -182,9 +181,9 @@ void Discernment::compare_own_walls() {
 }
 
 double Discernment::reach() {
-  constexpr double kWay = 12.0;  // metres, over which scans see enough of the same
-  constexpr double kShare = 0.9;
-  constexpr double kSigmas = 1.645;    // within which that share of normal deviations lies
+  constexpr double kWay = 12.0;        // metres, over which scans see enough of the same
+  constexpr double kShare = 0.9;       // of the headings,
+  constexpr double kSigmas = 1.645;    // which for normal ones lies within so many sigmas
   constexpr double kMayBeOff = 0.5;    // metres to the side
   constexpr double kShortest = 50.0;   // metres
   constexpr double kLongest = 150.0;   // metres

@@ -15,15 +15,12 @@ constexpr float kNear = 0.2F;             // metres along a wall, from a point o
 constexpr float kOff = 0.15F;             // metres; what stands farther off is another thing, not relief
 constexpr float kSameSide = 0.95F;        // cosine between two normals
 constexpr std::size_t kEnoughPoints = 3;  // of b, in a patch
-// Metres; what is less is left by where on a wall the beams happen to fall.
-constexpr double kTells = 0.002;
-constexpr double kUsual = 0.52;      // share of patches that stand where walls are the same, and at least
-constexpr double kTolerance = 0.04;  // by which that share may be larger between two robots
+constexpr double kTells = 0.002;  // metres; what is less is left by where on a wall the beams happen to fall
 constexpr double kChance = 0.5;
-// Of what look-alikes have beyond chance: the one that is most like the truth is not the average.
-constexpr double kLeast = 1.0 / 3.0;
-constexpr std::size_t kEnoughToMeasure = 300;  // patches
-constexpr std::size_t kEnoughToJudge = 300;    // patches: below, a few bad fits are a large part of them
+constexpr double kUsual = 0.52;       // share of patches that stand where walls are the same, at least
+constexpr double kTolerance = 0.04;   // by which that share may be larger between two robots
+constexpr double kLeast = 1.0 / 3.0;  // of what look-alikes have beyond chance
+constexpr std::size_t kEnough = 300;  // patches: below, a few bad fits are a large part of them
 
 std::int32_t side_of(const Eigen::Vector3f& normal) {
   Eigen::Index axis = 0;
@@ -92,7 +89,7 @@ std::size_t StandingOffsets::num_standing() const {
 }
 
 bool StandingOffsets::are_of_other_walls(const StandingShares& shares, double rate) const {
-  if (num_patches() < kEnoughToJudge) return false;
+  if (num_patches() < kEnough) return false;
   const auto num = static_cast<double>(num_patches());
   const double at_most = std::min(shares.same() + kTolerance, 1.0);
   // The normal approximation of the binomial tail.
@@ -115,7 +112,7 @@ void StandingShares::Count::add(const StandingOffsets& offsets) {
 }
 
 double StandingShares::Count::share() const {
-  if (num_patches < kEnoughToMeasure) return kChance;
+  if (num_patches < kEnough) return kChance;
   return static_cast<double>(num_standing) / static_cast<double>(num_patches);
 }
 
