@@ -71,7 +71,8 @@ void StandingOffsets::add(const std::vector<PatchOffset>& of_a_pair) {
 }
 
 double StandingOffsets::Halves::mean(std::size_t half) const {
-  return sums[half] / static_cast<double>((num_pairs + 1 - half) / 2);
+  const std::size_t num = (num_pairs + 1 - half) / 2;
+  return sums[half] / static_cast<double>(num);
 }
 
 bool StandingOffsets::Halves::can_be_compared() const {
