@@ -268,7 +268,7 @@ std::vector<LoopCandidate> Agent::best_candidates(RobotId peer_id) const {
   parallel_for_each(
       queries.size(),
       [&](std::size_t i) {
-        best[i] = most_similar(queries[i], [&](const ScanContext& context) {
+        best[i] = most_similar_from(lanes(), *map_, queries[i], [&](const ScanContext& context) {
           return index.best_match({map_->id, queries[i]}, context, peer_id);
         });
       },

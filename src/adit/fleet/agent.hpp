@@ -9,6 +9,7 @@
 
 #include "adit/fleet/fleet_graph.hpp"
 #include "adit/fleet/keyframe_store.hpp"
+#include "adit/fleet/lanes.hpp"
 #include "adit/fleet/merge_check.hpp"
 #include "adit/fleet/protocol.hpp"
 #include "adit/place/place_index.hpp"
@@ -143,21 +144,17 @@ class Agent {
   bool compare_clouds_of(RobotId from, const Clouds& clouds);
   Replies conclude_test(RobotId peer_id);
   void decide(MergeCheck check);
-  [[nodiscard]] const OtherPlaces& other_places();
-  /// Places of its own map and others that look like them, all along the way.
-  [[nodiscard]] std::vector<LoopCandidate> own_look_alikes();
+  [[nodiscard]] std::shared_ptr<const OtherPlaces> other_places();
   [[nodiscard]] Discernment& discernment();
+  [[nodiscard]] MergeTest test_of(const std::vector<PcmLoop>& loops, const OdometryChain& own,
+                                  const OdometryChain& theirs, const std::vector<double>& known_before = {});
   [[nodiscard]] OdometryChain own_chain() const { return chain_by(map_->id); }
   /// The way of a robot by its own odometry, as far as it is known.
   [[nodiscard]] OdometryChain chain_by(RobotId robot) const;
   [[nodiscard]] Replies checks_from(RobotId peer, RobotId author, std::size_t first) const;
   void find_candidates(RobotId peer_id);
-  /// What `find` names for keyframe k, and if adaptive for what it looks like from each lane; each place
-  /// once.
-  using FindSimilar = std::function<std::optional<LoopCandidate>(const ScanContext&)>;
-  [[nodiscard]] std::vector<LoopCandidate> most_similar(std::uint32_t k, const FindSimilar& find) const;
-  /// What keyframe k would have looked like to a robot that drove beside this one.
-  [[nodiscard]] std::vector<ScanContext> from_other_lanes(std::uint32_t k) const;
+  /// From which it looks for similar places: only the one it drove, unless it is adaptive.
+  [[nodiscard]] Lanes lanes() const;
   [[nodiscard]] std::size_t num_tried() const;
   [[nodiscard]] Replies cloud_request(RobotId peer_id) const;
   [[nodiscard]] LoopClosure verify(const LoopCandidate& candidate, const Features& match) const;
@@ -172,7 +169,7 @@ class Agent {
   std::map<RobotId, Peer> peers_;
   bool looked_for_revisits_ = false;
   // Of an adaptive agent, each made when it is first needed.
-  std::unique_ptr<OtherPlaces> other_places_;
+  std::shared_ptr<const OtherPlaces> other_places_;
   std::vector<double> own_likeness_;  ///< Distance of each keyframe to the most similar other place.
   std::unique_ptr<Discernment> discernment_;
 };

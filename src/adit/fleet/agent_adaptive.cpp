@@ -36,65 +36,37 @@ Fields fields_of(AdaptiveConfig& c) {
   return fields;
 }
 
-std::vector<ScanContext> Agent::from_other_lanes(std::uint32_t k) const {
-  std::vector<ScanContext> contexts;
-  PointCloud cloud = *map_->keyframes[k].cloud;
-  for (int lane = -config_.adaptive.lanes; lane <= config_.adaptive.lanes; ++lane) {
-    if (lane == 0) continue;
-    const auto aside = static_cast<float>(lane * config_.adaptive.lane_m);
-    for (std::size_t i = 0; i < cloud.points.size(); ++i)
-      cloud.points[i].y() = map_->keyframes[k].cloud->points[i].y() - aside;
-    contexts.push_back(describe(cloud, config_.adaptive.context));
-  }
-  return contexts;
-}
-
-std::vector<LoopCandidate> Agent::most_similar(std::uint32_t k, const FindSimilar& find) const {
-  std::map<KeyframeId, LoopCandidate> nearest;
-  const auto look = [&](const ScanContext& context) {
-    const std::optional<LoopCandidate> match = find(context);
-    if (!match) return;
-    LoopCandidate& known = nearest.try_emplace(match->match, *match).first->second;
-    if (match->distance < known.distance) known = *match;
-  };
-  look(map_->places[k]);
-  if (config_.adaptive.on)
-    for (const ScanContext& context : from_other_lanes(k)) look(context);
-  std::vector<LoopCandidate> found;
-  for (const auto& [match, candidate] : nearest) found.push_back(candidate);
-  return found;
+Lanes Agent::lanes() const {
+  if (!config_.adaptive.on) return {};
+  return {config_.adaptive.lanes, config_.adaptive.lane_m, config_.adaptive.context};
 }
 
 OdometryChain Agent::chain_by(RobotId robot) const {
   return chain_of(known_.robots.at(robot), config_.adaptive.merge_check.odometry_slack);
 }
 
-const OtherPlaces& Agent::other_places() {
-  if (!other_places_) other_places_ = std::make_unique<OtherPlaces>(map_, own_chain(), config_.place);
-  return *other_places_;
-}
-
-std::vector<LoopCandidate> Agent::own_look_alikes() {
-  constexpr std::uint32_t kEvery = 3;  // keyframes: several still fall into a bin of a segment
-  const OtherPlaces& others = other_places();
-  std::vector<std::vector<LoopCandidate>> similar((map_->keyframes.size() + kEvery - 1) / kEvery);
-  parallel_for_each(similar.size(), [&](std::size_t i) {
-    const auto k = static_cast<std::uint32_t>(kEvery * i);
-    similar[i] = most_similar(k, [&](const ScanContext& context) { return others.most_similar(k, context); });
-  });
-  std::vector<LoopCandidate> found;
-  for (const std::vector<LoopCandidate>& of_one : similar)
-    for (const LoopCandidate& candidate : of_one)
-      if (candidate.query < candidate.match) found.push_back(candidate);  // each pair once
-  return found;
+std::shared_ptr<const OtherPlaces> Agent::other_places() {
+  if (!other_places_) other_places_ = std::make_shared<OtherPlaces>(map_, own_chain(), config_.place);
+  return other_places_;
 }
 
 Discernment& Agent::discernment() {
   if (!discernment_)
-    discernment_ = std::make_unique<Discernment>(map_, own_chain(), own_look_alikes(), *features_,
-                                                 config_.registration_in_use(),
-                                                 config_.adaptive.merge_check.discernment);
+    discernment_ = std::make_unique<Discernment>(
+        map_, own_chain(), [others = other_places(), lanes = lanes()] { return others->look_alikes(lanes); },
+        features_, config_.registration_in_use(), config_.adaptive.merge_check.discernment);
   return *discernment_;
+}
+
+MergeTest Agent::test_of(const std::vector<PcmLoop>& loops, const OdometryChain& own,
+                         const OdometryChain& theirs, const std::vector<double>& known_before) {
+  double reach_m = 0.0;
+  MeasuredWhenAsked measured;
+  if (!loops.empty()) {  // without one there is nothing to test
+    reach_m = discernment().reach_m();
+    measured = [&on_own_map = discernment()]() -> const Measured& { return on_own_map.measured(); };
+  }
+  return {own, theirs, loops, reach_m, std::move(measured), config_.adaptive.merge_check, known_before};
 }
 
 void Agent::find_revisits() {
@@ -104,7 +76,7 @@ void Agent::find_revisits() {
   if (loops.empty()) return;
   std::vector<double> known_before;
   for (const PcmLoop& loop : loops) known_before.push_back(odometry_evidence(chain, loop));
-  MergeTest test(chain, chain, loops, discernment().measured(), config_.adaptive.merge_check, known_before);
+  MergeTest test = test_of(loops, chain, chain, known_before);
   for (auto asked = test.next(kCloudsPerMessage); !asked.empty(); asked = test.next(kCloudsPerMessage))
     test.add(compare_own(asked));
   decide(test.verdict(map_->id, map_->id));
@@ -118,8 +90,7 @@ std::vector<LoopCandidate> Agent::own_candidates(const OdometryChain& chain) {
     std::vector<std::uint32_t> later = possible_revisits(chain, way, k);
     std::erase_if(later, [&](std::uint32_t other) { return !map_->searchable[other]; });
     if (later.empty() || !map_->searchable[k]) return;
-    std::vector<ScanContext> contexts = from_other_lanes(k);
-    contexts.push_back(map_->places[k]);
+    const std::vector<ScanContext> contexts = contexts_from(lanes(), *map_, k);
     for (const std::uint32_t other : later)
       for (const ScanContext& context : contexts) {
         const ContextMatch match = compare(context, map_->places[other]);
@@ -158,6 +129,7 @@ std::vector<PcmLoop> Agent::register_own(const std::vector<LoopCandidate>& candi
 }
 
 std::vector<PcmLoop> Agent::telling(const std::vector<PcmLoop>& loops) {
+  if (loops.empty()) return {};
   std::vector<std::uint32_t> own;
   for (const PcmLoop& loop : loops) own.push_back(static_cast<std::uint32_t>(loop.a));
   const std::vector<bool> tells = discernment().distinctive(own);
@@ -201,8 +173,7 @@ void Agent::begin_test(RobotId peer_id) {
     if (ends.first.robot == map_->id && ends.second.robot == peer_id &&
         loop.verdict == LoopVerdict::accepted && !loop.is_free_to_slide())
       loops.push_back(pcm_loop_of(loop, {}));
-  peers_[peer_id].test.emplace(own_chain(), chain_by(peer_id), telling(loops), discernment().measured(),
-                               config_.adaptive.merge_check);
+  peers_[peer_id].test = test_of(telling(loops), own_chain(), chain_by(peer_id));
 }
 
 bool Agent::compare_clouds_of(RobotId from, const Clouds& clouds) {
@@ -268,7 +239,7 @@ std::vector<LoopCandidate> Agent::promising(RobotId peer_id, std::vector<LoopCan
 }
 
 std::vector<LoopCandidate> Agent::standing_out(std::vector<LoopCandidate> found, int max_candidates) {
-  if (own_likeness_.empty()) own_likeness_ = other_places().likeness();
+  if (own_likeness_.empty()) own_likeness_ = other_places()->likeness();
   const auto ratio = [&](const LoopCandidate& c) {
     return config_.adaptive.stand_out ? c.distance / std::max(own_likeness_[c.query.index], 1e-6)
                                       : c.distance;

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <iterator>
-#include <span>
 
 #include "adit/fleet/revisits.hpp"
 #include "adit/fleet/segments.hpp"
@@ -68,6 +66,21 @@ std::optional<LoopCandidate> OtherPlaces::most_similar(std::uint32_t k, const Sc
   return {};
 }
 
+std::vector<LoopCandidate> OtherPlaces::look_alikes(const Lanes& lanes) const {
+  constexpr std::uint32_t kEvery = 3;  // keyframes: several still fall into a bin of a segment
+  std::vector<std::vector<LoopCandidate>> similar((map_->keyframes.size() + kEvery - 1) / kEvery);
+  parallel_for_each(similar.size(), [&](std::size_t i) {
+    const auto k = static_cast<std::uint32_t>(kEvery * i);
+    similar[i] = most_similar_from(lanes, *map_, k,
+                                   [&](const ScanContext& context) { return most_similar(k, context); });
+  });
+  std::vector<LoopCandidate> found;
+  for (const std::vector<LoopCandidate>& of_one : similar)
+    for (const LoopCandidate& candidate : of_one)
+      if (candidate.query < candidate.match) found.push_back(candidate);
+  return found;
+}
+
 std::vector<double> OtherPlaces::likeness() const {
   std::vector<double> likeness(map_->keyframes.size(), 1.0);
   parallel_for_each(
@@ -90,9 +103,9 @@ struct Discernment::Walk {
   std::uint32_t a;
   std::uint32_t b;
   Pose T_a_b;
-  double way = 0.0;  // the next step, metres from a, negative against the drive
-  double direction;  // 1 or -1
-  std::size_t look_alike;
+  double way = 0.0;        // the next step, metres from a, negative against the drive
+  double direction = 1.0;  // or -1
+  std::size_t look_alike = 0;
   std::size_t num_passed = 0;
   bool is_over = false;
 };
@@ -116,17 +129,31 @@ double LookAlikes::chance_to_go_on(std::size_t passed) const {
 }
 
 Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryChain chain,
-                         const std::vector<LoopCandidate>& similar, FeatureStore& features,
+                         FindLookAlikes find_look_alikes, std::shared_ptr<FeatureStore> features,
                          const RegistrationConfig& registration, const DiscernmentConfig& config)
     : registration_(registration),
       config_(config),
       chain_(std::move(chain)),
       way_(way_along(chain_)),
+      find_look_alikes_(std::move(find_look_alikes)),
+      features_(std::move(features)),
       surfaces_(map, registration) {
   limit_ = config_.allowance * usual_difference();
-  compare_own_walls();
-  measured_.reach_m = reach();
-  follow(walks_from(similar, features));
+}
+
+const Measured& Discernment::measured() {
+  if (!measured_) {
+    Measured measured;
+    measured.walls.add_same(compare_own_walls());
+    follow(walks_from(find_look_alikes_()), measured);
+    measured_ = measured;
+  }
+  return *measured_;
+}
+
+double Discernment::reach_m() {
+  if (!reach_m_) reach_m_ = measure_reach();
+  return *reach_m_;
 }
 
 std::vector<LocalFit> Discernment::fits(const std::vector<Fit>& asked, double enough, FitFrom from) {
@@ -159,7 +186,7 @@ double Discernment::usual_difference() {
 
 // At each place twice, as maps are compared: by scans that are part of one comparison only, and from places
 // so far apart that the beams fall elsewhere.
-void Discernment::compare_own_walls() {
+StandingOffsets Discernment::compare_own_walls() {
   constexpr double kApart = 1.5;  // metres between two scans that are compared, and to the next two
   std::vector<Fit> pairs;
   for (const std::uint32_t k : evenly(way_.size(), static_cast<std::size_t>(config_.samples))) {
@@ -177,10 +204,10 @@ void Discernment::compare_own_walls() {
     if (!differ(found[i].agreement))
       offsets.add(patch_offsets(surfaces_.at(pairs[i].a), surfaces_.at(pairs[i].b), found[i].T_a_b,
                                 chain_.pose(pairs[i].a)));
-  measured_.walls.add_same(offsets);
+  return offsets;
 }
 
-double Discernment::reach() {
+double Discernment::measure_reach() {
   constexpr double kWay = 12.0;        // metres, over which scans see enough of the same
   constexpr double kShare = 0.9;       // of the headings,
   constexpr double kSigmas = 1.645;    // which for normal ones lies within so many sigmas
@@ -206,44 +233,51 @@ double Discernment::reach() {
   return std::clamp(std::cbrt(1.5 * kWay * std::pow(kMayBeOff / sigma, 2)), kShortest, kLongest);
 }
 
-std::vector<Discernment::Walk> Discernment::walks_from(const std::vector<LoopCandidate>& similar,
-                                                       FeatureStore& features) const {
-  std::vector<LoopCandidate> tried;
-  std::vector<std::size_t> ends;  // of each stretch, in `tried`
-  for (const Segment& segment :
-       agreeing_segments(chain_, chain_, similar, static_cast<std::size_t>(config_.look_alikes))) {
-    const std::size_t num = std::min(kTried, segment.candidates.size());
-    std::ranges::copy(std::span(segment.candidates).first(num), std::back_inserter(tried));
-    ends.push_back(tried.size());
+std::vector<Discernment::Walk> Discernment::walks_from(const std::vector<LoopCandidate>& similar) const {
+  const std::vector<Segment> stretches =
+      agreeing_segments(chain_, chain_, similar, static_cast<std::size_t>(config_.look_alikes));
+  // Of each stretch the first candidate that can be followed; the next ones are tried only where it cannot.
+  std::vector<std::optional<Walk>> found(stretches.size());
+  for (std::size_t attempt = 0; attempt < kTried; ++attempt) {
+    std::vector<std::size_t> open;
+    std::vector<std::uint32_t> used;
+    for (std::size_t s = 0; s < stretches.size(); ++s) {
+      if (found[s] || attempt >= stretches[s].candidates.size()) continue;
+      const LoopCandidate& candidate = stretches[s].candidates[attempt];
+      used.insert(used.end(), {candidate.query.index, candidate.match.index});
+      open.push_back(s);
+    }
+    features_->prepare(used);
+    parallel_for_each(open.size(), [&](std::size_t i) {
+      found[open[i]] = walk_from(stretches[open[i]].candidates[attempt]);
+    });
   }
-  std::vector<std::uint32_t> used;
-  for (const LoopCandidate& c : tried) used.insert(used.end(), {c.query.index, c.match.index});
-  features.prepare(used);
-  std::vector<Registration> found(tried.size());
-  parallel_for_each(tried.size(), [&](std::size_t i) {
-    found[i] = register_features(features.at(tried[i].query.index), features.at(tried[i].match.index),
-                                 registration_);
-  });
   std::vector<Walk> walks;
-  std::size_t i = 0;
-  for (const std::size_t end : ends) {
-    // What odometry does not exclude is no look-alike: scans from afar that see the same walls.
-    const auto can_be_followed = [&](std::size_t t) {
-      return found[t].verdict == LoopVerdict::accepted && found[t].weak_axis >= kWeakAxis &&
-             !fits_odometry(chain_, {tried[t].query.index, tried[t].match.index, *found[t].T_a_b});
-    };
-    while (i < end && !can_be_followed(i)) ++i;
+  for (const std::optional<Walk>& walk : found) {
+    if (!walk) continue;
     const std::size_t num_look_alikes = walks.size() / 2;
-    if (i < end)
-      for (const double direction : {1.0, -1.0})
-        walks.push_back(
-            {tried[i].query.index, tried[i].match.index, *found[i].T_a_b, 0.0, direction, num_look_alikes});
-    i = end;
+    for (const double direction : {1.0, -1.0}) {
+      walks.push_back(*walk);
+      walks.back().direction = direction;
+      walks.back().look_alike = num_look_alikes;
+    }
   }
   return walks;
 }
 
-void Discernment::follow(std::vector<Walk> walks) {
+// None where registration finds no way to lay one over the other, and where odometry does not exclude that
+// it is one place: scans from afar that see the same walls.
+std::optional<Discernment::Walk> Discernment::walk_from(const LoopCandidate& candidate) const {
+  const std::uint32_t a = candidate.query.index;
+  const std::uint32_t b = candidate.match.index;
+  const Registration found = register_features(features_->at(a), features_->at(b), registration_);
+  if (found.verdict != LoopVerdict::accepted || found.weak_axis < kWeakAxis ||
+      fits_odometry(chain_, {a, b, *found.T_a_b}))
+    return {};
+  return Walk{a, b, *found.T_a_b};
+}
+
+void Discernment::follow(std::vector<Walk> walks, Measured& measured) {
   std::vector<StandingOffsets> offsets(walks.size());  // of each look-alike
   while (!walks.empty()) {
     std::vector<Fit> next;
@@ -270,28 +304,35 @@ void Discernment::follow(std::vector<Walk> walks) {
       if (!walks[w].is_over)
         offsets[walks[w].look_alike].add(patch_offsets(surfaces_.at(next[w].a), surfaces_.at(next[w].b),
                                                        found[w].T_a_b, chain_.pose(next[w].a)));
-      if (walks[w].is_over || tells[w]) measured_.look_alikes.add(walks[w].num_passed, !walks[w].is_over);
+      if (walks[w].is_over || tells[w]) measured.look_alikes.add(walks[w].num_passed, !walks[w].is_over);
       if (tells[w]) ++walks[w].num_passed;
     }
     std::erase_if(walks, [](const Walk& walk) { return walk.is_over; });
   }
-  for (const StandingOffsets& of_one : offsets) measured_.walls.add_other(of_one);
+  for (const StandingOffsets& of_one : offsets) measured.walls.add_other(of_one);
 }
 
+// Both ways: an end of a niche may show one way and not the other.
 std::vector<bool> Discernment::distinctive(const std::vector<std::uint32_t>& indices) {
-  std::vector<Fit> displaced;
-  for (const std::uint32_t k : indices) {
-    if (!distinctive_.emplace(k, false).second) continue;
-    for (const double by : {-config_.displacement_m, config_.displacement_m})
+  constexpr std::uint32_t kTogether = 3;  // keyframes, which one of them speaks for: a metre, of five
+  const auto last = static_cast<std::uint32_t>(way_.size() - 1);
+  const auto speaker_of = [&](std::uint32_t k) { return std::min(k - k % kTogether + kTogether / 2, last); };
+  std::vector<std::uint32_t> open;
+  for (const std::uint32_t k : indices)
+    if (distinctive_.emplace(speaker_of(k), false).second) open.push_back(speaker_of(k));
+  for (const double by : {-config_.displacement_m, config_.displacement_m}) {
+    std::vector<Fit> displaced;
+    for (const std::uint32_t k : open)
       if (const auto other = keyframe_at(way_, way_[k] + by)) displaced.push_back({k, *other, Pose()});
+    const std::vector<LocalFit> found = fits(displaced, limit_, FitFrom::guess);
+    for (std::size_t i = 0; i < displaced.size(); ++i) {
+      const bool differs = differ(found[i].agreement);
+      distinctive_[displaced[i].a] = differs;
+      if (!differs) std::erase(open, displaced[i].a);
+    }
   }
-  const std::vector<LocalFit> found = fits(displaced, limit_, FitFrom::guess);
-  // Both ways: an end of a niche may show one way and not the other.
-  for (const Fit& fit : displaced) distinctive_[fit.a] = true;
-  for (std::size_t i = 0; i < displaced.size(); ++i)
-    if (!differ(found[i].agreement)) distinctive_[displaced[i].a] = false;
   std::vector<bool> out;
-  for (const std::uint32_t k : indices) out.push_back(distinctive_.at(k));
+  for (const std::uint32_t k : indices) out.push_back(distinctive_.at(speaker_of(k)));
   return out;
 }
 

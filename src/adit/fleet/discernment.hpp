@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 
 #include "adit/core/config.hpp"
 #include "adit/fleet/keyframe_store.hpp"
+#include "adit/fleet/lanes.hpp"
 #include "adit/place/place_index.hpp"
 #include "adit/posegraph/pcm.hpp"
 #include "adit/registration/registration_config.hpp"
@@ -55,6 +57,8 @@ class OtherPlaces {
   }
   /// With another context than its own, as from another lane.
   [[nodiscard]] std::optional<LoopCandidate> most_similar(std::uint32_t k, const ScanContext& context) const;
+  /// Places and others that look like them from one of the lanes, all along the way, each pair once.
+  [[nodiscard]] std::vector<LoopCandidate> look_alikes(const Lanes& lanes) const;
   /// Of each keyframe the descriptor distance of the most similar other place; 1 where there is none.
   [[nodiscard]] std::vector<double> likeness() const;
 
@@ -90,17 +94,17 @@ class LookAlikes {
 struct Measured {
   LookAlikes look_alikes;  ///< What became of places that only look alike, followed along the way.
   StandingShares walls;    ///< Of its own walls seen twice, and of those that only look alike.
-  /// Metres along the way over which odometry leads to within half a metre, within 50 to 150: by how much its
-  /// heading differs from that of the scans.
-  double reach_m = 50.0;
 };
+/// The same each time it is asked; whoever asks first waits until it has been measured.
+using MeasuredWhenAsked = std::function<const Measured&()>;
 
-/// Measured when it is made; some seconds of processor time.
+/// Each part is measured when it is first asked for; all together take some seconds of processor time.
 class Discernment {
  public:
-  /// `similar`: places of the map and others of it that look like them, for keyframes all along the way.
+  using FindLookAlikes = std::function<std::vector<LoopCandidate>()>;
+  /// `find_look_alikes` names places of the map and others of it that look like them, all along the way.
   Discernment(const std::shared_ptr<const RobotMap>& map, OdometryChain chain,
-              const std::vector<LoopCandidate>& similar, FeatureStore& features,
+              FindLookAlikes find_look_alikes, std::shared_ptr<FeatureStore> features,
               const RegistrationConfig& registration, const DiscernmentConfig& config);
 
   /// A difference beyond this does not occur between scans of one place.
@@ -108,7 +112,10 @@ class Discernment {
   [[nodiscard]] bool differ(const Agreement& agreement) const {
     return !(agreement.largest_difference <= limit_);
   }
-  [[nodiscard]] const Measured& measured() const { return measured_; }
+  [[nodiscard]] const Measured& measured();
+  /// Metres along the way over which odometry leads to within half a metre, within 50 to 150: by how much its
+  /// heading differs from that of the scans.
+  [[nodiscard]] double reach_m();
   /// Of each of `indices`: whether a displacement along the way would show there.
   [[nodiscard]] std::vector<bool> distinctive(const std::vector<std::uint32_t>& indices);
   [[nodiscard]] SurfaceStore& surfaces() { return surfaces_; }
@@ -122,20 +129,23 @@ class Discernment {
   struct Walk;
   [[nodiscard]] std::vector<LocalFit> fits(const std::vector<Fit>& asked, double enough, FitFrom from);
   [[nodiscard]] double usual_difference();
-  void compare_own_walls();
-  [[nodiscard]] double reach();
-  [[nodiscard]] std::vector<Walk> walks_from(const std::vector<LoopCandidate>& similar,
-                                             FeatureStore& features) const;
-  void follow(std::vector<Walk> walks);
+  [[nodiscard]] StandingOffsets compare_own_walls();
+  [[nodiscard]] double measure_reach();
+  [[nodiscard]] std::vector<Walk> walks_from(const std::vector<LoopCandidate>& similar) const;
+  [[nodiscard]] std::optional<Walk> walk_from(const LoopCandidate& candidate) const;
+  void follow(std::vector<Walk> walks, Measured& measured);
 
   static constexpr std::array<double, 3> kDistances = {0.5, 1.0, 2.0};  ///< Metres.
   RegistrationConfig registration_;
   DiscernmentConfig config_;
   OdometryChain chain_;
   std::vector<double> way_;
+  FindLookAlikes find_look_alikes_;
+  std::shared_ptr<FeatureStore> features_;
   SurfaceStore surfaces_;
   double limit_ = 0.0;
-  Measured measured_;
+  std::optional<Measured> measured_;
+  std::optional<double> reach_m_;
   std::map<std::uint32_t, bool> distinctive_;
 };
 

@@ -56,8 +56,8 @@ std::vector<LoopCandidate> similar_places(const std::shared_ptr<const RobotMap>&
 
 struct OnAMap {
   explicit OnAMap(const std::shared_ptr<const RobotMap>& map)
-      : features(map, {}), discernment(map, chain_of(*map), similar_places(map), features, {}, {}) {}
-  FeatureStore features;
+      : discernment(map, chain_of(*map), [map] { return similar_places(map); },
+                    std::make_shared<FeatureStore>(map, RegistrationConfig{}), {}, {}) {}
   Discernment discernment;
 };
 
@@ -107,7 +107,7 @@ TEST(Discernment, BlocksThatRepeatGoOnLongerThanBlocksThatDoNot) {
     const double side = rng.uniform() < 0.5 ? -4.0 : 1.5;
     irregular.push_back({{at, side, -2.0}, {at + rng.uniform(0.8, 3.0), side + 2.5, rng.uniform(-1.0, 2.0)}});
   }
-  const OnAMap tiles(in_a_tube(repeating));
+  OnAMap tiles(in_a_tube(repeating));
   const LookAlikes with_tiles = tiles.discernment.measured().look_alikes;
   const LookAlikes without = OnAMap(in_a_tube(irregular)).discernment.measured().look_alikes;
   for (const std::size_t passed : {0U, 1U, 5U, 40U}) {
@@ -121,7 +121,7 @@ TEST(Discernment, BlocksThatRepeatGoOnLongerThanBlocksThatDoNot) {
 
 TEST(Discernment, AHeadingThatWandersLeadsLessFar) {
   const auto straight = in_a_tube({});
-  EXPECT_EQ(OnAMap(straight).discernment.measured().reach_m, 150.0);
+  EXPECT_EQ(OnAMap(straight).discernment.reach_m(), 150.0);
   auto wandering = std::make_shared<RobotMap>(*straight);
   Rng rng(5);
   Pose T_odom_base;
@@ -129,7 +129,7 @@ TEST(Discernment, AHeadingThatWandersLeadsLessFar) {
     if (k > 0) T_odom_base = T_odom_base * Pose::planar(kStep, 0.0, 0.004 * rng.normal());
     wandering->keyframes[k].T_odom_base = T_odom_base;
   }
-  const double reach = OnAMap(wandering).discernment.measured().reach_m;
+  const double reach = OnAMap(wandering).discernment.reach_m();
   EXPECT_LT(reach, 100.0);
   EXPECT_GE(reach, 50.0);
 }

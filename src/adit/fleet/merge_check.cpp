@@ -139,9 +139,9 @@ std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryCh
 }
 
 MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
-                     const Measured& measured, const MergeCheckConfig& config,
+                     double reach_m, MeasuredWhenAsked measured, const MergeCheckConfig& config,
                      const std::vector<double>& known_before)
-    : loops_(loops), measured_(measured), config_(config) {
+    : loops_(loops), measured_(std::move(measured)), config_(config) {
   std::vector<std::size_t> rest(loops.size());
   for (std::size_t l = 0; l < rest.size(); ++l) rest[l] = l;
   while (!rest.empty() && hypotheses_.size() < static_cast<std::size_t>(config.max_hypotheses)) {
@@ -154,7 +154,7 @@ MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, cons
       hypothesis.apart_m.push_back(apart(picked(loops, other.loops), agreeing, own, theirs));
     if (std::ranges::any_of(hypothesis.apart_m, [](double metres) { return metres <= kSameAlignment; }))
       continue;
-    hypothesis.plan = plan_checks(own, theirs, agreeing, measured.reach_m, config);
+    hypothesis.plan = plan_checks(own, theirs, agreeing, reach_m, config);
     if (!known_before.empty()) {
       const auto known = [&](std::size_t l) { return known_before[l]; };
       hypothesis.known_before = known(*std::ranges::min_element(hypothesis.loops, {}, known));
@@ -167,11 +167,11 @@ MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, cons
 double MergeTest::needed() const { return std::log(1.0 / config_.error_rate); }
 
 double MergeTest::chance_to_go_on(std::size_t passed) const {
-  return std::min(measured_.look_alikes.chance_to_go_on(passed), kTrueCheck);
+  return std::min(measured_().look_alikes.chance_to_go_on(passed), kTrueCheck);
 }
 
 double MergeTest::evidence(const Hypothesis& hypothesis) const {
-  const double of_walls = config_.relief ? hypothesis.offsets.evidence(measured_.walls) : 0.0;
+  const double of_walls = config_.relief ? hypothesis.offsets.evidence(measured_().walls) : 0.0;
   return evidence_along_the_way(hypothesis) + of_walls;
 }
 
@@ -200,7 +200,9 @@ double MergeTest::evidence_of_agreement(std::size_t passed) const {
 }
 
 bool MergeTest::has_other_walls(const Hypothesis& h) const {
-  return config_.relief && h.offsets.are_of_other_walls(measured_.walls, config_.refusal_rate);
+  // What was measured only raises the share that one wall may have.
+  return config_.relief && h.offsets.are_of_other_walls({}, config_.refusal_rate) &&
+         h.offsets.are_of_other_walls(measured_().walls, config_.refusal_rate);
 }
 
 bool MergeTest::is_refuted(const Hypothesis& h) const {
@@ -213,18 +215,28 @@ bool MergeTest::is_refuted(const Hypothesis& h) const {
 bool MergeTest::is_finished(const Hypothesis& h) const { return h.checked.size() == h.plan.size(); }
 
 std::optional<std::size_t> MergeTest::to_go_on_with() const {
-  double best_finished = -std::numeric_limits<double>::infinity();
+  std::optional<double> best_finished;
   for (const Hypothesis& h : hypotheses_)
-    if (is_finished(h) && !is_refuted(h)) best_finished = std::max(best_finished, evidence_along_the_way(h));
+    if (is_finished(h) && !is_refuted(h))
+      best_finished = std::max(best_finished.value_or(-std::numeric_limits<double>::infinity()),
+                               evidence_along_the_way(h));
+  // It can no longer become a rival.
+  const auto is_too_late = [&](const Hypothesis& h) {
+    const auto num_left = static_cast<double>(h.plan.size() - h.checked.size());
+    return best_finished &&
+           evidence_along_the_way(h) + num_left * evidence_of_agreement(0) < *best_finished - needed();
+  };
+  // By what needs no measuring of the own map: many a test ends with all refuted.
+  const auto share_differing = [](const Hypothesis& h) {
+    return static_cast<double>(num_differing(h.checked)) / static_cast<double>(h.checked.size());
+  };
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
     const Hypothesis& h = hypotheses_[i];
     if (is_finished(h) || is_refuted(h)) continue;
     if (h.checked.empty()) return i;
-    const double at_most = evidence_along_the_way(h) +
-                           static_cast<double>(h.plan.size() - h.checked.size()) * evidence_of_agreement(0);
-    if (at_most < best_finished - needed()) continue;  // it cannot become a rival any more
-    if (!found || evidence(h) > evidence(hypotheses_[*found])) found = i;
+    if (is_too_late(h)) continue;
+    if (!found || share_differing(h) < share_differing(hypotheses_[*found])) found = i;
   }
   return found;
 }
@@ -260,7 +272,8 @@ std::vector<std::size_t> MergeTest::best_first() const {
   std::ranges::stable_sort(order, [&](std::size_t one, std::size_t other) {
     const Hypothesis& a = hypotheses_[one];
     const Hypothesis& b = hypotheses_[other];
-    return is_refuted(a) != is_refuted(b) ? is_refuted(b) : evidence(a) > evidence(b);
+    if (is_refuted(a) || is_refuted(b)) return is_refuted(a) < is_refuted(b);
+    return evidence(a) > evidence(b);
   });
   return order;
 }
@@ -318,16 +331,16 @@ std::string MergeTest::reason(std::size_t which, std::optional<std::size_t> riva
 MergeHypothesis MergeTest::described(std::size_t which, std::size_t best) const {
   const Hypothesis& h = hypotheses_[which];
   MergeHypothesis out;
-  out.evidence = evidence(h);
+  out.evidence = is_refuted(h) ? 0.0 : evidence(h);
   out.num_checked = static_cast<std::uint32_t>(h.checked.size());
   out.num_passed = static_cast<std::uint32_t>(h.checked.size() - num_differing(h.checked));
   out.from_best_m = apart_m(which, best);
   for (const std::size_t l : h.loops)
     out.loops.emplace_back(static_cast<std::uint32_t>(loops_[l].a), static_cast<std::uint32_t>(loops_[l].b));
-  const bool is_near = evidence(hypotheses_[best]) - evidence(h) < needed();
+  const auto is_near = [&] { return evidence(hypotheses_[best]) - evidence(h) < needed(); };
   out.outcome = is_refuted(h)   ? HypothesisOutcome::refuted
                 : which == best ? HypothesisOutcome::unsure
-                : is_near       ? HypothesisOutcome::rival
+                : is_near()     ? HypothesisOutcome::rival
                                 : HypothesisOutcome::behind;
   return out;
 }

@@ -69,8 +69,9 @@ class MergeTest {
  public:
   /// `loops`: all that registration accepted, with those that say something else. `known_before`: evidence
   /// for each that does not come from comparing scans; of a hypothesis the least of its loops' counts.
+  /// `measured` is asked only where scans leave a hypothesis to be weighed.
   MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
-            const Measured& measured, const MergeCheckConfig& config,
+            double reach_m, MeasuredWhenAsked measured, const MergeCheckConfig& config,
             const std::vector<double>& known_before = {});
 
   /// The next comparisons, at most `num`, each with another keyframe of theirs; none when the test is over.
@@ -108,7 +109,7 @@ class MergeTest {
   std::vector<PcmLoop> loops_;
   std::vector<Hypothesis> hypotheses_;
   std::size_t num_alignments_ = 0;  ///< That loops speak for, those beyond max_hypotheses one a loop.
-  Measured measured_;
+  MeasuredWhenAsked measured_;
   MergeCheckConfig config_;
 };
 

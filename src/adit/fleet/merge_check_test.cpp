@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <stdexcept>
 
 #include "adit/core/check.hpp"
 #include "adit/core/rng.hpp"
@@ -49,9 +50,14 @@ LookAlikes look_alikes(double chance_to_go_on) {
   return out;
 }
 
+// What was measured beforehand.
+MeasuredWhenAsked measured(const LookAlikes& look_alikes, const StandingShares& walls = {}) {
+  return [all = Measured{look_alikes, walls}]() -> const Measured& { return all; };
+}
+
 MergeTest a_test(const std::vector<PcmLoop>& loops, double chance_to_go_on = 0.5,
                  const MergeCheckConfig& config = {}) {
-  return {along_x(kNum), along_x(kNum), loops, {look_alikes(chance_to_go_on), {}}, config};
+  return {along_x(kNum), along_x(kNum), loops, 50.0, measured(look_alikes(chance_to_go_on)), config};
 }
 
 // Answers all that the test asks for.
@@ -151,7 +157,7 @@ TEST(MergeTest, WallsThatStandOffInAllScansAreOfOtherTunnels) {
 TEST(MergeTest, WallsCountWhereOwnLookAlikesHaveOthers) {
   StandingShares shares;
   const auto check = [&](int standing) {
-    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, {look_alikes(0.95), shares}, {});
+    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, measured(look_alikes(0.95), shares), {});
     return run(test, [&](const PlannedCheck& c) { return with_offsets(c.theirs, standing); });
   };
   EXPECT_FALSE(check(50).accepted);  // look-alikes go on for long: places alone cannot do it
@@ -167,7 +173,7 @@ TEST(MergeTest, AfterAPlaceThatDiffersTheCountStartsAnew) {
   for (int i = 0; i < 1000; ++i) rarely_begin.add(0, i < 100);
   for (int i = 0; i < 1000; ++i) rarely_begin.add(1, i < 950);
   const auto evidence = [&](std::uint32_t differs_at) {
-    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, {rarely_begin, {}}, {});
+    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, measured(rarely_begin), {});
     return run(test,
                [&](const PlannedCheck& check) { return check.own / 6 == differs_at ? kDiffers : kAgrees; })
         .evidence;
@@ -223,6 +229,17 @@ TEST(MergeTest, ARefutedHypothesisIsNotTestedToTheEnd) {
   const MergeCheck check = run(test, [](const PlannedCheck&) { return kDiffers; });
   EXPECT_FALSE(check.accepted);
   EXPECT_EQ(check.num_checked, 8U);
+}
+
+TEST(MergeTest, WhatIsRefutedNeedsNoMeasuringOfTheOwnMap) {
+  const MeasuredWhenAsked nobody_asks = []() -> const Measured& { throw std::logic_error("asked"); };
+  MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, nobody_asks, {});
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kDiffers; });
+  EXPECT_FALSE(check.accepted);
+  ASSERT_EQ(check.hypotheses.size(), 1U);
+  EXPECT_EQ(check.hypotheses.front().outcome, HypothesisOutcome::refuted);
+  MergeTest other(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, nobody_asks, {});
+  EXPECT_THROW(run(other, [](const PlannedCheck&) { return kAgrees; }), std::logic_error);
 }
 
 TEST(MergeTest, PlacesWithoutAnAlongAxisConstraintSayNothing) {

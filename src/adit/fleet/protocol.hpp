@@ -98,7 +98,7 @@ enum class HypothesisOutcome : std::uint8_t {
 /// Loops that agree with one another lay one map over the other; this is one way to do so, as it was tested.
 struct MergeHypothesis {
   HypothesisOutcome outcome = HypothesisOutcome::refuted;
-  double evidence = 0.0;  ///< As in MergeCheck.
+  double evidence = 0.0;  ///< As in MergeCheck; 0 where it is refuted, for then it is not weighed.
   std::uint32_t num_checked = 0;
   std::uint32_t num_passed = 0;
   double from_best_m = 0.0;  ///< How far from the best one it puts the other robot.

@@ -184,13 +184,14 @@ LocalFit fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
   RegistrationConfig wide = narrow;
   wide.refine_distance_voxels = kWideVoxels;
   const auto fit_from = [&](const Pose& start) {
-    const Pose T = align_to_planes(a.points(), a.tree(), b.some(), start, narrow);
+    const auto [near, has_arrived] = approach_planes(a.points(), a.tree(), b.some(), start, narrow);
+    const Pose T = has_arrived ? align_to_planes(a.points(), a.tree(), b.some(), near, narrow) : near;
     if (!((T.translation() - T_a_b.translation()).norm() < kMaxCorrection)) return;
     const Agreement found = agreement(a, b, T, config);
     if (found.largest_difference < best.agreement.largest_difference) best = {T, found};
   };
   const auto found = [&](const Pose& guess) {
-    fit_from(align_to_planes(a.points(), a.tree(), b.some(), guess, wide));
+    fit_from(approach_planes(a.points(), a.tree(), b.some(), guess, wide).T_a_b);
     return best.agreement.largest_difference <= enough;
   };
   fit_from(T_a_b);

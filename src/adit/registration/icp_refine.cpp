@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <limits>
 
 #include "adit/core/parallel.hpp"
 #include "adit/registration/plane_aligner.hpp"
@@ -16,6 +17,8 @@ constexpr std::size_t kGrain = 512;
 constexpr std::size_t kSample = 2500;
 /// Enough to tell which minimum a start leads to.
 constexpr std::size_t kSearchSample = 600;
+constexpr double kLastStepOfSearch = 2e-3;
+constexpr double kArrived = 0.01;
 
 /// Proportional to the mean diagonal of the translational and of the rotational block: free of units.
 Vector6 gauss_newton_step(const PlaneEquations& sum) {
@@ -30,6 +33,7 @@ std::size_t stride_for(std::size_t num_points, std::size_t sample) { return num_
 
 struct Minimum {
   Pose T_a_b;
+  double last_step = std::numeric_limits<double>::infinity();
   double misfit = 1.0;  ///< 0: all points on the other cloud's planes; a point without partner counts 1.
 };
 
@@ -45,7 +49,8 @@ Minimum descend(PlaneAligner aligner, Pose T_a_b, double last_step, const Regist
     const Vector6 step = gauss_newton_step(equations);
     if (!step.allFinite()) break;
     out.T_a_b = out.T_a_b * Pose::exp(step);
-    if (step.norm() < last_step) break;
+    out.last_step = step.norm();
+    if (out.last_step < last_step) break;
   }
   return out;
 }
@@ -95,9 +100,16 @@ Pose align_to_planes(const OrientedPoints& a, const KdTree& tree_a, const Orient
   return descend(std::move(aligner), T_a_b, kLastStep, config).T_a_b;
 }
 
+Approach approach_planes(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,
+                         const Pose& T_a_b, const RegistrationConfig& config) {
+  const double max_distance = config.refine_distance_voxels * config.voxel_size;
+  PlaneAligner aligner(a, tree_a, b, stride_for(b.size(), kSearchSample), max_distance);
+  const Minimum found = descend(std::move(aligner), T_a_b, kLastStepOfSearch, config);
+  return {found.T_a_b, found.last_step < kArrived};
+}
+
 Pose refine_point_to_plane(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,
                            const Pose& T_a_b, const RegistrationConfig& config) {
-  constexpr double kLastStepOfSearch = 2e-3;
   const double max_distance = config.refine_distance_voxels * config.voxel_size;
   const PlaneAligner aligner(a, tree_a, b, stride_for(b.size(), kSearchSample), max_distance);
   std::vector<Minimum> minima;

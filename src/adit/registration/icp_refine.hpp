@@ -40,6 +40,14 @@ struct PointPair {
 [[nodiscard]] Pose align_to_planes(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,
                                    const Pose& T_a_b, const RegistrationConfig& config);
 
+/// As a start for `align_to_planes` only: to some millimetres, from fewer points.
+struct Approach {
+  Pose T_a_b;
+  bool has_arrived = false;  ///< The last step was shorter than a centimetre: a minimum is near.
+};
+[[nodiscard]] Approach approach_planes(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,
+                                       const Pose& T_a_b, const RegistrationConfig& config);
+
 /// The best of several such minima around `T_a_b`: the rings of a spinning sensor lock onto one another in
 /// narrow false ones.
 [[nodiscard]] Pose refine_point_to_plane(const OrientedPoints& a, const KdTree& tree_a,
