@@ -15,6 +15,7 @@ using Json = nlohmann::ordered_json;
 Json json_of(const MergePair& pair) {
   return {{"robots", pair.robots},
           {"shared_m", pair.shared_m},
+          {"distinctive_places", pair.distinctive_places},
           {"outcome", to_string(pair.outcome)},
           {"refused_reason", pair.refused_reason},
           {"registrations", pair.registrations},
@@ -48,6 +49,7 @@ MergePair pair_of(const Json& json) {
   MergePair pair;
   get(json, "robots", pair.robots);
   get(json, "shared_m", pair.shared_m);
+  get(json, "distinctive_places", pair.distinctive_places);
   pair.outcome = merge_outcome(json.at("outcome").get<std::string>());
   get(json, "refused_reason", pair.refused_reason);
   get(json, "registrations", pair.registrations);
@@ -106,20 +108,22 @@ Result<std::vector<MergeRun>> read_merge_runs(const std::filesystem::path& file)
 Result<> write_merge_runs(const std::filesystem::path& file, const std::vector<MergeRun>& runs) {
   Json all = Json::array();
   for (const MergeRun& run : runs) all.push_back(json_of(run));
-  return write_bytes(file, Json{{"version", 1}, {"runs", all}}.dump(1) + "\n");
+  return write_bytes(file, Json{{"version", 2}, {"runs", all}}.dump(1) + "\n");
 }
 
 Result<> write_merge_csv(const std::filesystem::path& file, const std::vector<MergeRun>& runs) {
   std::string text =
-      "world,group,keyframes,robot_a,robot_b,shared_m,outcome,registrations,loops_in_use,wrong_loops_in_use,"
+      "world,group,keyframes,robot_a,robot_b,shared_m,distinctive_places,outcome,registrations,loops_in_use,"
+      "wrong_loops_in_use,"
       "ate_max_a_m,ate_max_b_m,ate_max_a_pct,ate_max_b_pct,refused_reason\n";
   for (const MergeRun& run : runs)
     for (const MergePair& pair : run.pairs)
-      text += format("{},{},{},{},{},{:.1f},{},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{}\n", run.world,
-                     run.group, run.keyframes, pair.robots[0], pair.robots[1], pair.shared_m,
-                     to_string(pair.outcome), pair.registrations, pair.loops_in_use, pair.wrong_loops_in_use,
-                     pair.ate_max_m[0], pair.ate_max_m[1], pair.ate_max_over_path_pct[0],
-                     pair.ate_max_over_path_pct[1], csv_quoted(pair.refused_reason));
+      text +=
+          format("{},{},{},{},{},{:.1f},{},{},{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{}\n", run.world,
+                 run.group, run.keyframes, pair.robots[0], pair.robots[1], pair.shared_m,
+                 pair.distinctive_places, to_string(pair.outcome), pair.registrations, pair.loops_in_use,
+                 pair.wrong_loops_in_use, pair.ate_max_m[0], pair.ate_max_m[1], pair.ate_max_over_path_pct[0],
+                 pair.ate_max_over_path_pct[1], csv_quoted(pair.refused_reason));
   return write_bytes(file, text);
 }
 

@@ -49,6 +49,7 @@ Result<MergePair> run_pair(const std::vector<RobotRun>& runs, const Meeting& mee
   MergePair pair;
   pair.robots = {result.robots[0].name, result.robots[1].name};
   pair.shared_m = truth.shared_m[a][b];
+  pair.distinctive_places = truth.distinctive_places[a][b];
   pair.refused_reason = result.refused_reason;
   pair.registrations = static_cast<int>(known.loops.size());
   pair.loops_in_use = loops_in_use(judged->solution);
@@ -74,17 +75,6 @@ std::vector<std::vector<std::string>> named(const std::vector<RobotRun>& runs,
   return names;
 }
 
-/// Whether every map lies within one group of robots that anything at all joins.
-bool are_within(const std::vector<std::vector<std::string>>& maps,
-                const std::vector<std::vector<std::string>>& groups) {
-  return std::ranges::all_of(maps, [&](const std::vector<std::string>& map) {
-    return std::ranges::any_of(groups, [&](const std::vector<std::string>& group) {
-      return std::ranges::all_of(
-          map, [&](const std::string& robot) { return std::ranges::count(group, robot) > 0; });
-    });
-  });
-}
-
 /// The joint solution judged like a pair, over the robots that share a map with another.
 bool is_wrong(const MergeTruth& truth, const JointResult& result, int num_loops_in_use) {
   MergeEvidence evidence{num_loops_in_use > 0, num_loops_in_use, result.wrong_loops_in_solution, {}};
@@ -97,12 +87,21 @@ bool is_wrong(const MergeTruth& truth, const JointResult& result, int num_loops_
   return judge_merge(evidence) == MergeOutcome::wrong;
 }
 
+/// What pairs share where they have something to tell it by.
+std::vector<std::vector<double>> distinctive_m(const MergeTruth& truth) {
+  std::vector<std::vector<double>> shared_m = truth.shared_m;
+  for (std::size_t a = 0; a < shared_m.size(); ++a)
+    for (std::size_t b = 0; b < shared_m.size(); ++b)
+      if (truth.distinctive_places[a][b] < kMergeablePlaces) shared_m[a][b] = 0.0;
+  return shared_m;
+}
+
 MergeJoint joint_of(const std::vector<RobotRun>& runs, const MergeTruth& truth, const JointResult& result,
                     int num_loops_in_use) {
   constexpr double kAnything = 1e-3;
   MergeJoint joint;
   joint.maps = result.components;
-  joint.possible_maps = named(runs, groups_sharing(truth.shared_m, kMergeableShare));
+  joint.possible_maps = named(runs, groups_sharing(distinctive_m(truth), kMergeableShare));
   joint.wrong = is_wrong(truth, result, num_loops_in_use) ||
                 !are_within(joint.maps, named(runs, groups_sharing(truth.shared_m, kAnything)));
   joint.wrong_loops_in_use = result.wrong_loops_in_solution;
@@ -115,8 +114,10 @@ MergeJoint joint_of(const std::vector<RobotRun>& runs, const MergeTruth& truth, 
 
 }  // namespace
 
-Result<MergeTruth> merge_truth(const std::vector<RobotRun>& runs, KeyframeSelection selection) {
+Result<MergeTruth> merge_truth(const std::vector<RobotRun>& runs, KeyframeSelection selection,
+                               DistinctivePlaces distinctive_places) {
   MergeTruth truth;
+  truth.distinctive_places = std::move(distinctive_places);
   for (const RobotRun& a : runs) {
     const Result<double> drift = largest_drift_m(a.map_for(selection)->odometry, a.truth);
     if (!drift) return fail(a.result.name, drift.error());

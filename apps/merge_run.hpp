@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "adit/evaluation/merge_result.hpp"
+#include "distinctive_places.hpp"
 #include "study_run.hpp"
 
 namespace adit::app {
@@ -13,9 +14,11 @@ namespace adit::app {
 /// What the ground truth says about the robots of one world.
 struct MergeTruth {
   std::vector<std::vector<double>> shared_m;  ///< [a][b], metres.
-  std::vector<double> drift_m;                ///< Of each robot's odometry (largest_drift_m).
+  DistinctivePlaces distinctive_places;
+  std::vector<double> drift_m;  ///< Of each robot's odometry (largest_drift_m).
 };
-Result<MergeTruth> merge_truth(const std::vector<RobotRun>& runs, KeyframeSelection selection);
+Result<MergeTruth> merge_truth(const std::vector<RobotRun>& runs, KeyframeSelection selection,
+                               DistinctivePlaces distinctive_places);
 
 /// All robots meet once; then every pair is solved by itself on the loops that it found, and all jointly.
 /// Neither sees the ground truth; it only judges.

@@ -7,6 +7,7 @@
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/report/text_tables.hpp"
+#include "distinctive_places.hpp"
 #include "inputs.hpp"
 #include "merge_run.hpp"
 #include "merge_worlds.hpp"
@@ -67,15 +68,31 @@ void print_line(const MergeRun& run, std::FILE* to) {
   std::fflush(to);
 }
 
+/// As an earlier run measured them, or else measured now: that takes longer than a policy.
+Result<DistinctivePlaces> places_of(const ListedWorld& world, const std::vector<RobotRun>& robots,
+                                    const RunConfig& config, const std::vector<MergeRun>& runs) {
+  const auto earlier = std::ranges::find(runs, world.name, &MergeRun::world);
+  if (earlier == runs.end())
+    return distinctive_places(robots, studied_under(KeyframeSelection::adaptive, config));
+  DistinctivePlaces places(robots.size(), std::vector<int>(robots.size(), 0));
+  auto pair = earlier->pairs.begin();
+  for (std::size_t a = 0; a < robots.size(); ++a)
+    for (std::size_t b = a + 1; b < robots.size() && pair != earlier->pairs.end(); ++b, ++pair)
+      places[a][b] = places[b][a] = pair->distinctive_places;
+  return places;
+}
+
 /// Runs every policy on one world; results reach the disk world by world, so that a stop loses one at most.
 Result<> run_world(const ListedWorld& world, const std::vector<KeyframeSelection>& selections,
                    const RunConfig& config, const Options& options, std::vector<MergeRun>& runs) {
   const Result<std::vector<RobotRun>> robots =
       driven_robots(world, config, selections, std::filesystem::path(options.out) / "maps");
   if (!robots) return tl::unexpected(robots.error());
+  const Result<DistinctivePlaces> places = places_of(world, *robots, config, runs);
+  if (!places) return fail(world.name, places.error());
   for (const KeyframeSelection selection : selections) {
     if (interrupted()) return fail("interrupted");
-    const Result<MergeTruth> truth = merge_truth(*robots, selection);
+    const Result<MergeTruth> truth = merge_truth(*robots, selection, *places);
     if (!truth) return fail(world.name, truth.error());
     Result<MergeRun> run = run_merges(*robots, *truth, selection, studied_under(selection, config));
     if (!run) return fail(world.name, run.error());

@@ -72,13 +72,15 @@ std::vector<GroupAndPolicy> groups_of(const std::vector<MergeRun>& runs) {
 Table summary_table(const std::vector<MergeRun>& runs) {
   Table table{
       "Merging, in short",
-      "Mergeable pairs share at least 25 m. Bent: merged in the right place, but with an ATE of 1 % of the "
-      "path or more. Kept apart: of the pairs that share less. Joint: all robots of a world at once; whole "
-      "where the maps are all that the shared stretches allow. CPU: processor time of all "
-      "threads from the robots' maps to the joint solution.",
+      "Mergeable pairs share at least 25 m and a place that is like no other in the scans of both. Bent: "
+      "merged in the right place, but with an ATE of 1 % of the path or more. Indistinct: merged rightly, of "
+      "the pairs that share 25 m and no such place. Kept apart: of the pairs that share less. Joint: all "
+      "robots of a world at once; whole where all are in one map that mergeable pairs join. CPU: processor "
+      "time of all threads from the robots' maps to the joint solution.",
       {},
-      {"Worlds", "Keyframes", "Number", "Merged well", "Bent", "Refused", "Kept apart", "Wrong merges",
-       "Wrong loops", "Joint: whole", "Joint: wrong", "Joint: wrong loops", "Registrations", "CPU (s)"},
+      {"Worlds", "Keyframes", "Number", "Merged well", "Bent", "Refused", "Indistinct", "Kept apart",
+       "Wrong merges", "Wrong loops", "Joint: whole", "Joint: wrong", "Joint: wrong loops", "Registrations",
+       "CPU (s)"},
       {}};
   for (const GroupAndPolicy& key : groups_of(runs)) {
     MergeCounts counts;
@@ -86,11 +88,12 @@ Table summary_table(const std::vector<MergeRun>& runs) {
       if (key == GroupAndPolicy{run.group, run.keyframes}) counts.add(run);
     table.rows.push_back({key.first, key.second, format("{}", counts.worlds),
                           share_text(counts.success, counts.mergeable), format("{}", counts.bent),
-                          format("{}", counts.refused), share_text(counts.kept_apart, counts.others),
-                          format("{}", counts.wrong), format("{}", counts.wrong_loops),
-                          share_text(counts.joint_whole, counts.worlds), format("{}", counts.joint_wrong),
-                          format("{}", counts.joint_wrong_loops), format("{}", counts.registrations),
-                          format("{:.1f}", counts.time_s)});
+                          format("{}", counts.refused),
+                          share_text(counts.indistinct_merged, counts.indistinct),
+                          share_text(counts.kept_apart, counts.others), format("{}", counts.wrong),
+                          format("{}", counts.wrong_loops), share_text(counts.joint_whole, counts.worlds),
+                          format("{}", counts.joint_wrong), format("{}", counts.joint_wrong_loops),
+                          format("{}", counts.registrations), format("{:.1f}", counts.time_s)});
   }
   return table;
 }
@@ -107,21 +110,22 @@ double worst_ate_pct(const MergeRun& run) {
 Table worlds_table(const std::vector<MergeRun>& runs) {
   Table table{
       "Each world",
-      "Maps: the robots that share one are joined by a plus; in brackets what was possible, where that "
-      "differs. ATE: the worst robot's, per cent of its path.",
+      "Maps: the robots that share one are joined by a plus; in brackets what mergeable pairs would "
+      "join, where that is more. ATE: the worst robot's, per cent of its path.",
       {},
-      {"World", "Keyframes", "Mergeable", "Well", "Bent", "Refused", "Wrong", "Wrong loops", "Max ATE (%)",
-       "Maps of all robots", "Joint max ATE (%)", "Registrations", "CPU (s)"},
+      {"World", "Keyframes", "Mergeable", "Well", "Bent", "Refused", "Indistinct", "Wrong", "Wrong loops",
+       "Max ATE (%)", "Maps of all robots", "Joint max ATE (%)", "Registrations", "CPU (s)"},
       {}};
   for (const MergeRun& run : runs) {
     MergeCounts counts;
     counts.add(run);
     std::string maps = maps_text(run.joint.maps);
-    if (run.joint.maps != run.joint.possible_maps)
+    if (!are_within(run.joint.possible_maps, run.joint.maps))
       maps += format(" ({})", maps_text(run.joint.possible_maps));
     table.rows.push_back({run.world, run.keyframes, format("{}", counts.mergeable),
                           format("{}", counts.success), format("{}", counts.bent),
-                          format("{}", counts.refused), format("{}", counts.wrong),
+                          format("{}", counts.refused),
+                          share_text(counts.indistinct_merged, counts.indistinct), format("{}", counts.wrong),
                           format("{}", counts.wrong_loops), format("{:.2f}", worst_ate_pct(run)), maps,
                           format("{:.2f}", run.joint.ate_max_over_path_pct), format("{}", run.registrations),
                           format("{:.1f}", run.time_s)});
@@ -130,16 +134,19 @@ Table worlds_table(const std::vector<MergeRun>& runs) {
 }
 
 Table refusals_table(const std::vector<MergeRun>& runs) {
-  Table table{"Mergeable pairs that were refused",
-              "With the reason that the decision itself gave.",
+  Table table{"Pairs that share 25 m and were refused",
+              "With the number of places on the stretch that are like no other, and the reason that the "
+              "decision itself "
+              "gave.",
               {},
-              {"World", "Keyframes", "Robots", "Shared (m)", "Reason"},
+              {"World", "Keyframes", "Robots", "Shared (m)", "Distinctive places", "Reason"},
               {}};
   for (const MergeRun& run : runs)
     for (const MergePair& pair : run.pairs)
-      if (pair.mergeable() && pair.outcome == MergeOutcome::refused)
+      if (pair.shares_enough() && pair.outcome == MergeOutcome::refused)
         table.rows.push_back({run.world, run.keyframes, maps_text({{pair.robots[0], pair.robots[1]}}),
-                              format("{:.0f}", pair.shared_m), pair.refused_reason});
+                              format("{:.0f}", pair.shared_m), format("{}", pair.distinctive_places),
+                              pair.refused_reason});
   return table;
 }
 
@@ -180,6 +187,16 @@ MergeOutcome judge_merge(const MergeEvidence& evidence) {
   return held_by_wrong_loops || is_worse_than_drift(evidence) ? MergeOutcome::wrong : MergeOutcome::bent;
 }
 
+bool are_within(const std::vector<std::vector<std::string>>& maps,
+                const std::vector<std::vector<std::string>>& groups) {
+  return std::ranges::all_of(maps, [&](const std::vector<std::string>& map) {
+    return std::ranges::any_of(groups, [&](const std::vector<std::string>& group) {
+      return std::ranges::all_of(
+          map, [&](const std::string& robot) { return std::ranges::count(group, robot) > 0; });
+    });
+  });
+}
+
 void MergeCounts::add(const MergeRun& run) {
   ++worlds;
   for (const MergePair& pair : run.pairs) {
@@ -191,13 +208,16 @@ void MergeCounts::add(const MergeRun& run) {
       success += is(MergeOutcome::success);
       bent += is(MergeOutcome::bent);
       refused += is(MergeOutcome::refused);
+    } else if (pair.shares_enough()) {
+      ++indistinct;
+      indistinct_merged += is(MergeOutcome::success) + is(MergeOutcome::bent);
     } else {
       ++others;
       kept_apart += is(MergeOutcome::refused);
     }
   }
   joint_wrong += run.joint.wrong ? 1 : 0;
-  joint_whole += run.joint.maps == run.joint.possible_maps && !run.joint.wrong ? 1 : 0;
+  joint_whole += are_within(run.joint.possible_maps, run.joint.maps) && !run.joint.wrong ? 1 : 0;
   joint_wrong_loops += run.joint.wrong_loops_in_use;
   registrations += run.registrations;
   time_s += run.time_s;

@@ -13,8 +13,10 @@
 
 namespace adit {
 
-/// Metres of a shared stretch from which on a pair counts as one that should be merged.
+/// Metres of a shared stretch, and places on it that are like no other, from which on a pair counts as one
+/// that should be merged.
 inline constexpr double kMergeableShare = 25.0;
+inline constexpr int kMergeablePlaces = 1;
 
 enum class MergeOutcome {
   success,  ///< Merged, and the largest ATE of every robot is below 1 % of its path (the paper's rule).
@@ -43,10 +45,15 @@ struct MergeEvidence {
 /// more than a metre and twice as far off as the worst of the odometries alone; else it is bent.
 [[nodiscard]] MergeOutcome judge_merge(const MergeEvidence& evidence);
 
+/// Whether every map lies within one of `groups`. All are lists of robot names.
+[[nodiscard]] bool are_within(const std::vector<std::vector<std::string>>& maps,
+                              const std::vector<std::vector<std::string>>& groups);
+
 /// One pair of robots under one keyframe policy, merged by itself.
 struct MergePair {
   std::array<std::string, 2> robots;
   double shared_m = 0.0;
+  int distinctive_places = 0;  ///< On the stretch, to both of them.
   MergeOutcome outcome = MergeOutcome::refused;
   std::string refused_reason;  ///< One sentence where it was refused.
   int registrations = 0;
@@ -55,7 +62,8 @@ struct MergePair {
   std::array<double, 2> ate_max_m{};
   std::array<double, 2> ate_max_over_path_pct{};
 
-  [[nodiscard]] bool mergeable() const { return shared_m >= kMergeableShare; }
+  [[nodiscard]] bool shares_enough() const { return shared_m >= kMergeableShare; }
+  [[nodiscard]] bool mergeable() const { return shares_enough() && distinctive_places >= kMergeablePlaces; }
 };
 
 /// All robots of a world at once. Maps are lists of robot names.
@@ -83,9 +91,10 @@ struct MergeRun {
 struct MergeCounts {
   int worlds = 0;
   int mergeable = 0, success = 0, bent = 0,
-      refused = 0;                 ///< Pairs that share enough, and what became of them.
-  int others = 0, kept_apart = 0;  ///< Pairs that do not.
-  int wrong = 0;                   ///< Of all pairs.
+      refused = 0;                            ///< Pairs that should be merged, and what became of them.
+  int indistinct = 0, indistinct_merged = 0;  ///< Pairs that share enough, but no distinctive place.
+  int others = 0, kept_apart = 0;             ///< Pairs that share less.
+  int wrong = 0;                              ///< Of all pairs.
   int wrong_loops = 0, joint_wrong_loops = 0, joint_wrong = 0, joint_whole = 0;
   int registrations = 0;
   double time_s = 0.0;

@@ -35,10 +35,11 @@ TEST(JudgeMerge, OutcomesHaveNames) {
   EXPECT_THROW((void)merge_outcome("perhaps"), ContractViolation);
 }
 
-MergePair pair_of(double shared_m, MergeOutcome outcome) {
+MergePair pair_of(double shared_m, MergeOutcome outcome, int distinctive_places = 3) {
   MergePair pair;
   pair.robots = {"robot_0", "robot_1"};
   pair.shared_m = shared_m;
+  pair.distinctive_places = distinctive_places;
   pair.outcome = outcome;
   pair.refused_reason = outcome == MergeOutcome::refused ? "the tunnel was too smooth" : "";
   return pair;
@@ -49,9 +50,10 @@ MergeRun made_up_run(const std::string& world, const std::string& group) {
   run.world = world;
   run.group = group;
   run.keyframes = "all";
-  run.pairs = {pair_of(90.0, MergeOutcome::success), pair_of(60.0, MergeOutcome::refused),
-               pair_of(30.0, MergeOutcome::wrong), pair_of(0.0, MergeOutcome::refused),
-               pair_of(12.0, MergeOutcome::wrong)};
+  run.pairs = {pair_of(90.0, MergeOutcome::success),   pair_of(60.0, MergeOutcome::refused),
+               pair_of(30.0, MergeOutcome::wrong),     pair_of(0.0, MergeOutcome::refused),
+               pair_of(12.0, MergeOutcome::wrong),     pair_of(80.0, MergeOutcome::bent, 0),
+               pair_of(80.0, MergeOutcome::refused, 0)};
   run.joint.maps = {{"robot_0", "robot_1"}, {"robot_2"}};
   run.joint.possible_maps = {{"robot_0", "robot_1", "robot_2"}};
   run.registrations = 500;
@@ -66,6 +68,8 @@ TEST(MergeCounts, PairsAreCountedByWhatTheyShare) {
   EXPECT_EQ(counts.mergeable, 6);
   EXPECT_EQ(counts.success, 2);
   EXPECT_EQ(counts.refused, 2);
+  EXPECT_EQ(counts.indistinct, 4);
+  EXPECT_EQ(counts.indistinct_merged, 2);
   EXPECT_EQ(counts.others, 4);
   EXPECT_EQ(counts.kept_apart, 2);
   EXPECT_EQ(counts.wrong, 4);
@@ -80,11 +84,23 @@ TEST(MergeTables, NameEveryRefusalAndEveryWrongMerge) {
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size()) << table.title;
   EXPECT_EQ(tables[0].rows.size(), 2U);  // One a group.
   EXPECT_EQ(tables[1].rows.size(), 2U);
-  EXPECT_EQ(tables[1].rows[0][9], "0+1 2 (0+1+2)");
+  EXPECT_EQ(tables[1].rows[0][10], "0+1 2 (0+1+2)");
   EXPECT_EQ(tables[2].rows.size(), 2U);
   EXPECT_EQ(tables[2].rows[0].back(), "0+1 (30 m shared, 0 m off), 0+1 (12 m shared, 0 m off)");
-  EXPECT_EQ(tables[3].rows.size(), 2U);
+  EXPECT_EQ(tables[3].rows.size(), 4U);
   EXPECT_EQ(tables[3].rows[0].back(), "the tunnel was too smooth");
+}
+
+TEST(MergeCounts, AMapThatHoldsMoreThanMergeablePairsWouldJoinIsWhole) {
+  MergeRun run = made_up_run("a", "tuning");
+  run.joint.maps = {{"robot_0", "robot_1", "robot_2"}};
+  run.joint.possible_maps = {{"robot_0", "robot_1"}, {"robot_2"}};
+  MergeCounts counts;
+  counts.add(run);
+  EXPECT_EQ(counts.joint_whole, 1);
+  run.joint.wrong = true;
+  counts.add(run);
+  EXPECT_EQ(counts.joint_whole, 1);
 }
 
 TEST(MergeTables, LeaveOutWhatDidNotHappen) {
