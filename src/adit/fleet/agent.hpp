@@ -145,8 +145,6 @@ class Agent {
   Replies conclude_test(RobotId peer_id);
   void decide(MergeCheck check);
   [[nodiscard]] std::shared_ptr<const OtherPlaces> other_places();
-  /// Of each keyframe the distance to the most similar other place.
-  [[nodiscard]] const std::vector<double>& own_likeness();
   [[nodiscard]] Discernment& discernment();
   [[nodiscard]] MergeTest test_of(const std::vector<PcmLoop>& loops, const OdometryChain& own,
                                   const OdometryChain& theirs, const std::vector<double>& known_before = {});
@@ -172,7 +170,7 @@ class Agent {
   bool looked_for_revisits_ = false;
   // Of an adaptive agent, each made when it is first needed.
   std::shared_ptr<const OtherPlaces> other_places_;
-  std::vector<double> own_likeness_;
+  std::vector<double> own_likeness_;  ///< Distance of each keyframe to the most similar other place.
   std::unique_ptr<Discernment> discernment_;
 };
 

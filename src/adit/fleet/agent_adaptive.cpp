@@ -50,11 +50,6 @@ std::shared_ptr<const OtherPlaces> Agent::other_places() {
   return other_places_;
 }
 
-const std::vector<double>& Agent::own_likeness() {
-  if (own_likeness_.empty()) own_likeness_ = other_places()->likeness();
-  return own_likeness_;
-}
-
 Discernment& Agent::discernment() {
   if (!discernment_)
     discernment_ = std::make_unique<Discernment>(
@@ -229,10 +224,8 @@ std::vector<LoopCandidate> Agent::promising(RobotId peer_id, std::vector<LoopCan
   std::vector<LoopCandidate> chosen;
   if (!found.empty()) {
     const auto of_each = static_cast<std::size_t>(config_.adaptive.of_a_segment);
-    const std::vector<double> likeness = config_.adaptive.stand_out ? own_likeness() : std::vector<double>();
-    for (const Segment& segment :
-         agreeing_segments(own_chain(), chain_by(peer_id), found,
-                           static_cast<std::size_t>(config_.adaptive.segments), likeness))
+    for (const Segment& segment : agreeing_segments(own_chain(), chain_by(peer_id), found,
+                                                    static_cast<std::size_t>(config_.adaptive.segments)))
       std::ranges::copy(std::span(segment.candidates).first(std::min(of_each, segment.candidates.size())),
                         std::back_inserter(chosen));
   }
@@ -246,9 +239,10 @@ std::vector<LoopCandidate> Agent::promising(RobotId peer_id, std::vector<LoopCan
 }
 
 std::vector<LoopCandidate> Agent::standing_out(std::vector<LoopCandidate> found, int max_candidates) {
-  const std::vector<double>& likeness = own_likeness();
+  if (own_likeness_.empty()) own_likeness_ = other_places()->likeness();
   const auto ratio = [&](const LoopCandidate& c) {
-    return config_.adaptive.stand_out ? c.distance / std::max(likeness[c.query.index], 1e-6) : c.distance;
+    return config_.adaptive.stand_out ? c.distance / std::max(own_likeness_[c.query.index], 1e-6)
+                                      : c.distance;
   };
   std::ranges::sort(found, {},
                     [&](const LoopCandidate& c) { return std::tuple(ratio(c), c.query, c.match); });

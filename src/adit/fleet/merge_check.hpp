@@ -34,7 +34,7 @@ struct MergeCheckConfig {
   double refusal_rate = 0.01;
   double spacing_m = 3.0;
   int max_checks = 200;
-  int max_hypotheses = 12;
+  int max_hypotheses = 6;
   int min_loops = 3;
   double odometry_slack = 1.0;
   bool distinctive_only = true;
