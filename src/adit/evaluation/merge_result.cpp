@@ -98,6 +98,9 @@ Table summary_table(const std::vector<MergeRun>& runs) {
   return table;
 }
 
+/// Ablations say what they leave out after the policy's name; their worlds and refusals would fill pages.
+bool is_variant(const MergeRun& run) { return run.keyframes.find(' ') != std::string::npos; }
+
 /// The worst robot of the pairs that were merged.
 double worst_ate_pct(const MergeRun& run) {
   double worst = 0.0;
@@ -117,6 +120,7 @@ Table worlds_table(const std::vector<MergeRun>& runs) {
        "Max ATE (%)", "Maps of all robots", "Joint max ATE (%)", "Registrations", "CPU (s)"},
       {}};
   for (const MergeRun& run : runs) {
+    if (is_variant(run)) continue;
     MergeCounts counts;
     counts.add(run);
     std::string maps = maps_text(run.joint.maps);
@@ -143,7 +147,7 @@ Table refusals_table(const std::vector<MergeRun>& runs) {
               {}};
   for (const MergeRun& run : runs)
     for (const MergePair& pair : run.pairs)
-      if (pair.shares_enough() && pair.outcome == MergeOutcome::refused)
+      if (!is_variant(run) && pair.shares_enough() && pair.outcome == MergeOutcome::refused)
         table.rows.push_back({run.world, run.keyframes, maps_text({{pair.robots[0], pair.robots[1]}}),
                               format("{:.0f}", pair.shared_m), format("{}", pair.distinctive_places),
                               pair.refused_reason});

@@ -102,8 +102,9 @@ struct MergeCounts {
   void add(const MergeRun& run);
 };
 
-/// Summary of each group and policy; each world; the mergeable pairs that were refused, with the reason; the
-/// wrong merges. The last two only where there are any.
+/// Summary of each group and policy; each world; the wrong merges; the pairs that share enough and were
+/// refused, with the reason. The last two only where there are any; worlds and refusals of policies as they
+/// are, not of those with a second word in their name, which leave something out.
 [[nodiscard]] std::vector<Table> merge_tables(const std::vector<MergeRun>& runs);
 
 }  // namespace adit

@@ -103,6 +103,16 @@ TEST(MergeCounts, AMapThatHoldsMoreThanMergeablePairsWouldJoinIsWhole) {
   EXPECT_EQ(counts.joint_whole, 1);
 }
 
+TEST(MergeTables, OfVariantsTellOnlyTheSumsAndTheWrongMerges) {
+  MergeRun variant = made_up_run("a", "tuning");
+  variant.keyframes = "all without relief";
+  const std::vector<Table> tables = merge_tables({made_up_run("a", "tuning"), variant});
+  EXPECT_EQ(tables[0].rows.size(), 2U);
+  EXPECT_EQ(tables[1].rows.size(), 1U);
+  EXPECT_EQ(tables[2].rows.size(), 2U);
+  EXPECT_EQ(tables[3].rows.size(), 2U);
+}
+
 TEST(MergeTables, LeaveOutWhatDidNotHappen) {
   MergeRun run = made_up_run("a", "tuning");
   run.pairs = {pair_of(90.0, MergeOutcome::success)};
