@@ -24,6 +24,7 @@ struct AdaptiveConfig {
   bool on = false;
   int candidates = 64;
   int segments = 10;
+  int segments_that_stand_out = 0;
   int of_a_segment = 4;
   bool stand_out = true;
   double lane_m = 1.0;
@@ -120,7 +121,10 @@ class Agent {
   [[nodiscard]] bool has_way_of(RobotId peer_id) const;
   /// The most similar place of the peer to each of its own, and if adaptive to how that looks from each lane.
   [[nodiscard]] std::vector<LoopCandidate> best_candidates(RobotId peer_id) const;
-  /// Those that agree along the way, then those that stand out.
+  /// Those that agree along the way.
+  [[nodiscard]] std::vector<LoopCandidate> of_segments(RobotId peer_id,
+                                                       const std::vector<LoopCandidate>& found);
+  /// The same, then those that stand out.
   [[nodiscard]] std::vector<LoopCandidate> promising(RobotId peer_id, std::vector<LoopCandidate> found);
   /// Those that stand out most from what the robot's own map has that looks like them; spread over its way.
   [[nodiscard]] std::vector<LoopCandidate> standing_out(std::vector<LoopCandidate> found, int max_candidates);
@@ -145,6 +149,8 @@ class Agent {
   Replies conclude_test(RobotId peer_id);
   void decide(MergeCheck check);
   [[nodiscard]] std::shared_ptr<const OtherPlaces> other_places();
+  /// Of each keyframe the distance to the most similar other place.
+  [[nodiscard]] const std::vector<double>& own_likeness();
   [[nodiscard]] Discernment& discernment();
   [[nodiscard]] MergeTest test_of(const std::vector<PcmLoop>& loops, const OdometryChain& own,
                                   const OdometryChain& theirs, const std::vector<double>& known_before = {});
@@ -170,7 +176,7 @@ class Agent {
   bool looked_for_revisits_ = false;
   // Of an adaptive agent, each made when it is first needed.
   std::shared_ptr<const OtherPlaces> other_places_;
-  std::vector<double> own_likeness_;  ///< Distance of each keyframe to the most similar other place.
+  std::vector<double> own_likeness_;
   std::unique_ptr<Discernment> discernment_;
 };
 

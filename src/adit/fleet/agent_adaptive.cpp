@@ -22,6 +22,8 @@ Fields fields_of(AdaptiveConfig& c) {
       {"candidates", &c.candidates, "", 1, 1e6, "candidates that are registered with each peer"},
       {"segments", &c.segments, "", 0, 1e6,
        "stretches along which candidates agree, whose best ones are registered first"},
+      {"segments_that_stand_out", &c.segments_that_stand_out, "", 0, 1e6,
+       "the same of those that agree where the robot's own map has nothing as similar; taken in turns"},
       {"of_a_segment", &c.of_a_segment, "", 1, 1e6, "candidates that are registered of each of them"},
       {"stand_out", &c.stand_out, "", 0, 0,
        "rank candidates by their distance over that to the most similar other place of one's "
@@ -48,6 +50,11 @@ OdometryChain Agent::chain_by(RobotId robot) const {
 std::shared_ptr<const OtherPlaces> Agent::other_places() {
   if (!other_places_) other_places_ = std::make_shared<OtherPlaces>(map_, own_chain(), config_.place);
   return other_places_;
+}
+
+const std::vector<double>& Agent::own_likeness() {
+  if (own_likeness_.empty()) own_likeness_ = other_places()->likeness();
+  return own_likeness_;
 }
 
 Discernment& Agent::discernment() {
@@ -219,16 +226,32 @@ bool Agent::has_way_of(RobotId peer_id) const {
          std::ranges::all_of(peers_.at(peer_id).places, [&](const auto& place) { return place.index < num; });
 }
 
+std::vector<LoopCandidate> Agent::of_segments(RobotId peer_id, const std::vector<LoopCandidate>& found) {
+  if (found.empty()) return {};
+  const AdaptiveConfig& config = config_.adaptive;
+  const OdometryChain own = own_chain();
+  const OdometryChain theirs = chain_by(peer_id);
+  std::vector<std::vector<Segment>> rankings = {
+      agreeing_segments(own, theirs, found, static_cast<std::size_t>(config.segments))};
+  if (config.segments_that_stand_out > 0)
+    rankings.push_back(agreeing_segments(
+        own, theirs, found, static_cast<std::size_t>(config.segments_that_stand_out), own_likeness()));
+  std::vector<LoopCandidate> chosen;
+  std::set<Ends> taken;
+  for (std::size_t rank = 0; rank < std::max(rankings.front().size(), rankings.back().size()); ++rank)
+    for (const std::vector<Segment>& ranking : rankings) {
+      if (rank >= ranking.size()) continue;
+      const std::vector<LoopCandidate>& candidates = ranking[rank].candidates;
+      const std::size_t num = std::min(static_cast<std::size_t>(config.of_a_segment), candidates.size());
+      for (const LoopCandidate& candidate : std::span(candidates).first(num))
+        if (taken.emplace(candidate.query, candidate.match).second) chosen.push_back(candidate);
+    }
+  return chosen;
+}
+
 std::vector<LoopCandidate> Agent::promising(RobotId peer_id, std::vector<LoopCandidate> found) {
   const auto most = static_cast<std::size_t>(config_.adaptive.candidates);
-  std::vector<LoopCandidate> chosen;
-  if (!found.empty()) {
-    const auto of_each = static_cast<std::size_t>(config_.adaptive.of_a_segment);
-    for (const Segment& segment : agreeing_segments(own_chain(), chain_by(peer_id), found,
-                                                    static_cast<std::size_t>(config_.adaptive.segments)))
-      std::ranges::copy(std::span(segment.candidates).first(std::min(of_each, segment.candidates.size())),
-                        std::back_inserter(chosen));
-  }
+  std::vector<LoopCandidate> chosen = of_segments(peer_id, found);
   std::set<Ends> taken;
   for (const LoopCandidate& candidate : chosen) taken.emplace(candidate.query, candidate.match);
   std::erase_if(found, [&](const LoopCandidate& c) { return taken.contains({c.query, c.match}); });
@@ -239,10 +262,9 @@ std::vector<LoopCandidate> Agent::promising(RobotId peer_id, std::vector<LoopCan
 }
 
 std::vector<LoopCandidate> Agent::standing_out(std::vector<LoopCandidate> found, int max_candidates) {
-  if (own_likeness_.empty()) own_likeness_ = other_places()->likeness();
+  const std::vector<double>& likeness = own_likeness();
   const auto ratio = [&](const LoopCandidate& c) {
-    return config_.adaptive.stand_out ? c.distance / std::max(own_likeness_[c.query.index], 1e-6)
-                                      : c.distance;
+    return config_.adaptive.stand_out ? c.distance / std::max(likeness[c.query.index], 1e-6) : c.distance;
   };
   std::ranges::sort(found, {},
                     [&](const LoopCandidate& c) { return std::tuple(ratio(c), c.query, c.match); });

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -30,10 +31,18 @@ struct Match {
   Vector3 own_position;    // in the own odometry's frame
   Vector3 their_position;  // in theirs
   Pose T_own_theirs;       // between those frames, as this match alone says
+  double weight;
 };
 
+double weight_of(const LoopCandidate& candidate, const std::vector<double>& likeness) {
+  if (likeness.empty()) return 1.0;
+  const double ratio = candidate.distance / std::max(likeness[candidate.query.index], 1e-6);
+  return 1.0 / (1.0 + ratio * ratio);
+}
+
 std::vector<Match> along_the_way(const OdometryChain& own, const OdometryChain& theirs,
-                                 const std::vector<LoopCandidate>& found) {
+                                 const std::vector<LoopCandidate>& found,
+                                 const std::vector<double>& likeness) {
   const std::vector<double> own_way = way_along(own);
   const std::vector<double> their_way = way_along(theirs);
   std::vector<Match> matches;
@@ -44,7 +53,8 @@ std::vector<Match> along_the_way(const OdometryChain& own, const OdometryChain& 
     const Pose T_match_query = Pose::planar(0.0, 0.0, c.yaw);
     matches.push_back({&c, own_way[c.query.index], their_way[c.match.index], T_own_query.translation(),
                        T_their_match.translation(),
-                       T_own_query * T_match_query.inverse() * T_their_match.inverse()});
+                       T_own_query * T_match_query.inverse() * T_their_match.inverse(),
+                       weight_of(c, likeness)});
   }
   std::ranges::sort(matches, {},
                     [](const Match& m) { return std::tuple(m.candidate->query, m.candidate->match); });
@@ -64,40 +74,34 @@ std::span<const Match> within_reach(const std::vector<Match>& matches, const Mat
   return {first, last};
 }
 
-int bin_of(double way) { return static_cast<int>(way / kBin); }
+std::size_t bin_of(double way) { return static_cast<std::size_t>(way / kBin); }
 
 double support_of(const std::vector<Match>& matches, const Match& anchor, std::size_t num_bins) {
-  std::vector<bool> own_bins(num_bins, false);
-  std::vector<bool> their_bins(num_bins, false);
-  std::ptrdiff_t num_own = 0;
-  std::ptrdiff_t num_theirs = 0;
-  const auto count = [](std::vector<bool>::reference bin, std::ptrdiff_t& num) {
-    if (!bin) ++num;
-    bin = true;
-  };
+  std::vector<double> own_bins(num_bins, 0.0);  // the largest weight in each
+  std::vector<double> their_bins(num_bins, 0.0);
   for (const Match& other : within_reach(matches, anchor)) {
     if (!agree(anchor, other)) continue;
-    count(own_bins[static_cast<std::size_t>(bin_of(other.own_way))], num_own);
-    count(their_bins[static_cast<std::size_t>(bin_of(other.their_way))], num_theirs);
+    for (double* bin : {&own_bins[bin_of(other.own_way)], &their_bins[bin_of(other.their_way)]})
+      *bin = std::max(*bin, other.weight);
   }
-  return kBin * static_cast<double>(std::min(num_own, num_theirs));
+  const auto sum = [](const std::vector<double>& bins) {
+    return std::accumulate(bins.begin(), bins.end(), 0.0);
+  };
+  return kBin * std::min(sum(own_bins), sum(their_bins));
 }
 
 }  // namespace
 
 std::vector<Segment> agreeing_segments(const OdometryChain& own, const OdometryChain& theirs,
-                                       const std::vector<LoopCandidate>& found, std::size_t num) {
-  const std::vector<Match> matches = along_the_way(own, theirs, found);
-  int num_bins = 0;
+                                       const std::vector<LoopCandidate>& found, std::size_t num,
+                                       const std::vector<double>& likeness) {
+  const std::vector<Match> matches = along_the_way(own, theirs, found, likeness);
+  std::size_t num_bins = 0;
   for (const Match& match : matches)
     num_bins = std::max({num_bins, bin_of(match.own_way) + 1, bin_of(match.their_way) + 1});
   std::vector<double> support(matches.size());
   parallel_for_each(
-      matches.size(),
-      [&](std::size_t i) {
-        support[i] = support_of(matches, matches[i], static_cast<std::size_t>(num_bins));
-      },
-      16);
+      matches.size(), [&](std::size_t i) { support[i] = support_of(matches, matches[i], num_bins); }, 16);
   std::vector<std::size_t> order(matches.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return support[i]; });
@@ -107,7 +111,7 @@ std::vector<Segment> agreeing_segments(const OdometryChain& own, const OdometryC
   for (const std::size_t i : order) {
     if (segments.size() == num) break;
     if (taken[i]) continue;
-    std::map<int, const LoopCandidate*> best;
+    std::map<std::size_t, const LoopCandidate*> best;
     for (const Match& other : within_reach(matches, matches[i])) {
       if (!agree(matches[i], other)) continue;
       const auto at = static_cast<std::size_t>(&other - matches.data());

@@ -83,6 +83,20 @@ TEST(AgreeingSegments, AStretchThatAllLooksLikeOnePlaceIsNotLong) {
   EXPECT_LE(agreeing_segments(along_x(), along_x(), found, 1)[0].support_m, 3.0);
 }
 
+TEST(AgreeingSegments, AShortStretchThatStandsOutGoesBeforeALongOneThatDoesNot) {
+  std::vector<LoopCandidate> found;
+  for (std::uint32_t k = 100; k < 200; ++k) found.push_back(candidate(k, k + 90, 0.0, 0.2));
+  for (std::uint32_t k = 240; k < 300; ++k) found.push_back(candidate(k, k - 200, 0.0, 0.2));
+  EXPECT_LT(agreeing_segments(along_x(), along_x(), found, 1)[0].candidates[0].query.index, 200U);
+  // The own map has places as similar beside the long one, and none beside the short one.
+  std::vector<double> likeness(kNum, 0.2);
+  for (std::size_t k = 240; k < 300; ++k) likeness[k] = 1.0;
+  const std::vector<Segment> segments = agreeing_segments(along_x(), along_x(), found, 2, likeness);
+  ASSERT_EQ(segments.size(), 2U);
+  EXPECT_GE(segments[0].candidates[0].query.index, 240U);
+  EXPECT_LT(segments[1].candidates[0].query.index, 200U);
+}
+
 TEST(AgreeingSegments, EachCandidateBelongsToOneAndThreadsDoNotMatter) {
   std::vector<LoopCandidate> found = anywhere(2);
   for (std::uint32_t k = 0; k < kNum; ++k) found.push_back(candidate(k, (k + 99) % kNum, 0.0, 0.2));
