@@ -38,7 +38,7 @@ struct Minimum {
 };
 
 /// Iterates until the steps are shorter than `last_step`.
-Minimum descend(PlaneAligner aligner, Pose T_a_b, double last_step, const RegistrationConfig& config) {
+Minimum descend(PlaneAligner aligner, const Pose& T_a_b, double last_step, const RegistrationConfig& config) {
   constexpr double kMinPairs = 12.0;
   const double kernel = config.refine_kernel_voxels * config.voxel_size;
   Minimum out{T_a_b};
