@@ -9,6 +9,7 @@
 
 #include "adit/core/parallel.hpp"
 #include "adit/fleet/discernment.hpp"
+#include "adit/fleet/fleet_graph.hpp"
 #include "adit/registration/registration.hpp"
 
 namespace adit::app {
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double kEvery = 10.0;      // metres along a way
 constexpr double kElsewhere = 15.0;  // metres from a place
-constexpr double kPassed = 4.0;      // metres from a place
+constexpr double kSamePlace = 4.0;   // metres between two scans, of which one is asked
 constexpr std::size_t kMostAlike = 12;
 constexpr int kByRingKey = 128;  // keyframes of a robot that are compared, to find those
 
@@ -27,12 +28,6 @@ struct Seen {
   std::shared_ptr<FeatureStore> features;
   std::unique_ptr<Discernment> discernment;
 };
-
-OdometryChain chain_of(const RobotMap& map) {
-  std::vector<Pose> poses;
-  for (const Keyframe& keyframe : map.keyframes) poses.push_back(keyframe.T_odom_base);
-  return {poses, {map.step_covariances.begin() + 1, map.step_covariances.end()}};
-}
 
 Result<Seen> seen_by(const RobotRun& run, const RunConfig& config) {
   const RegistrationConfig& registration = config.loops.registration_in_use();
@@ -45,14 +40,14 @@ Result<Seen> seen_by(const RobotRun& run, const RunConfig& config) {
   }
   seen.features = std::make_shared<FeatureStore>(seen.map, registration);
   seen.discernment = std::make_unique<Discernment>(
-      seen.map, chain_of(*seen.map), [] { return std::vector<LoopCandidate>(); }, seen.features, registration,
-      config.loops.adaptive.merge_check.discernment);
+      seen.map, chain_of(graph_of(*seen.map)), [] { return std::vector<LoopCandidate>(); }, seen.features,
+      registration, config.loops.adaptive.merge_check.discernment);
   return seen;
 }
 
 std::vector<std::uint32_t> sampled(const Seen& seen) {
   std::vector<std::uint32_t> out;
-  const std::vector<double> way = way_along(chain_of(*seen.map));
+  const std::vector<double> way = way_along(chain_of(graph_of(*seen.map)));
   for (double metres = 0.5 * kEvery; const auto k = keyframe_at(way, metres); metres += kEvery)
     out.push_back(*k);
   return out;
@@ -77,8 +72,8 @@ class MostAlike {
   [[nodiscard]] std::vector<LoopCandidate> to(std::size_t robot, std::uint32_t k) const {
     const Seen& seen = all_[robot];
     std::vector<LoopCandidate> found;
-    for (std::size_t other = 0; other < all_.size(); ++other)
-      for (const ScanContext& context : contexts_from(lanes_, *seen.map, k))
+    for (const ScanContext& context : contexts_from(lanes_, *seen.map, k))
+      for (std::size_t other = 0; other < all_.size(); ++other)
         for (const LoopCandidate& match :
              index_->best_matches({id_of(robot), k}, context, id_of(other), kByRingKey))
           if ((all_[other].positions[match.match.index] - seen.positions[k]).norm() > kElsewhere)
@@ -88,8 +83,9 @@ class MostAlike {
     for (const LoopCandidate& c : found) {
       if (most.size() == kMostAlike) break;
       // Of neighbours the most similar one speaks for all.
-      const bool is_near = std::ranges::any_of(
-          most, [&](const LoopCandidate& other) { return (position(c) - position(other)).norm() < kPassed; });
+      const bool is_near = std::ranges::any_of(most, [&](const LoopCandidate& other) {
+        return (position(c) - position(other)).norm() < kSamePlace;
+      });
       if (!is_near) most.push_back(c);
     }
     return most;

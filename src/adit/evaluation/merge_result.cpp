@@ -140,8 +140,7 @@ Table worlds_table(const std::vector<MergeRun>& runs) {
 Table refusals_table(const std::vector<MergeRun>& runs) {
   Table table{"Pairs that share 25 m and were refused",
               "With the number of places on the stretch that are like no other, and the reason that the "
-              "decision itself "
-              "gave.",
+              "decision itself gave.",
               {},
               {"World", "Keyframes", "Robots", "Shared (m)", "Distinctive places", "Reason"},
               {}};

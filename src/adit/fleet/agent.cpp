@@ -24,15 +24,6 @@ void in_parts(const std::vector<T>& all, std::size_t size, const Visit& visit) {
   }
 }
 
-RobotGraph graph_of(const RobotMap& map) {
-  RobotGraph graph{map.name, {}};
-  graph.nodes.reserve(map.keyframes.size());
-  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
-    graph.nodes.push_back({map.keyframes[k].stamp, map.keyframes[k].T_odom_base, map.step_covariances[k]});
-  }
-  return graph;
-}
-
 /// The back-end inverts the covariance of each step; the first keyframe has none.
 bool is_usable(const GraphPart& part) {
   for (std::size_t i = part.first_index == 0 ? 1 : 0; i < part.nodes.size(); ++i) {

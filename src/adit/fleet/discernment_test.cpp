@@ -40,14 +40,8 @@ std::shared_ptr<const RobotMap> in_a_tube(const std::vector<test::Box>& boxes) {
   });
 }
 
-OdometryChain chain_of(const RobotMap& map) {
-  std::vector<Pose> poses;
-  for (const Keyframe& keyframe : map.keyframes) poses.push_back(keyframe.T_odom_base);
-  return {poses, {map.step_covariances.begin() + 1, map.step_covariances.end()}};
-}
-
 std::vector<LoopCandidate> similar_places(const std::shared_ptr<const RobotMap>& map) {
-  const OtherPlaces others(map, chain_of(*map), {});
+  const OtherPlaces others(map, chain_of(graph_of(*map)), {});
   std::vector<LoopCandidate> found;
   for (std::uint32_t k = 0; k < map->keyframes.size(); ++k)
     if (const auto match = others.most_similar(k); match && k < match->match.index) found.push_back(*match);
@@ -56,7 +50,7 @@ std::vector<LoopCandidate> similar_places(const std::shared_ptr<const RobotMap>&
 
 struct OnAMap {
   explicit OnAMap(const std::shared_ptr<const RobotMap>& map)
-      : discernment(map, chain_of(*map), [map] { return similar_places(map); },
+      : discernment(map, chain_of(graph_of(*map)), [map] { return similar_places(map); },
                     std::make_shared<FeatureStore>(map, RegistrationConfig{}), {}, {}) {}
   Discernment discernment;
 };
@@ -159,7 +153,7 @@ TEST(LookAlikes, TheChanceNeverFallsWithTheWayThatTheyHaveGone) {
 
 TEST(OtherPlaces, NamesThePlaceThatLooksAlikeAndNoneNearBy) {
   const auto map = in_a_tube({{{15.0, 1.5, -2.0}, {17.0, 4.0, 1.0}}, {{45.0, 1.5, -2.0}, {47.0, 4.0, 1.0}}});
-  const OtherPlaces others(map, chain_of(*map), {});
+  const OtherPlaces others(map, chain_of(graph_of(*map)), {});
   const auto match = others.most_similar(30);
   ASSERT_TRUE(match.has_value());
   EXPECT_NEAR(kStep * match->match.index, 45.0, 4.0);  // 30 m farther, at the other block

@@ -259,6 +259,15 @@ PcmLoop pcm_loop_of(const LoopClosure& loop, const BackEndConfig& config) {
   return {loop.from.index, loop.to.index, loop.T_from_to, loop_information(config)};
 }
 
+RobotGraph graph_of(const RobotMap& map) {
+  RobotGraph graph{map.name, {}};
+  graph.nodes.reserve(map.keyframes.size());
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    graph.nodes.push_back({map.keyframes[k].stamp, map.keyframes[k].T_odom_base, map.step_covariances[k]});
+  }
+  return graph;
+}
+
 OdometryChain chain_of(const RobotGraph& graph, double slack) {
   std::vector<Pose> poses;
   std::vector<Matrix6> steps;

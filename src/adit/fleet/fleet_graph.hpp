@@ -13,6 +13,7 @@
 #include "adit/posegraph/optimizer.hpp"
 #include "adit/posegraph/pcm.hpp"
 #include "adit/posegraph/pose_graph.hpp"
+#include "adit/robot/robot_map.hpp"
 
 namespace adit {
 
@@ -82,6 +83,8 @@ struct FleetSolution {
   PoseGraph optimized;
 };
 
+/// What others learn of a robot's own map: its keyframes' stamps, poses and steps.
+[[nodiscard]] RobotGraph graph_of(const RobotMap& map);
 /// With sigmas of `slack` times those of its steps.
 [[nodiscard]] OdometryChain chain_of(const RobotGraph& graph, double slack = 1.0);
 /// The fixed information of a loop, from those sigmas.

@@ -215,16 +215,14 @@ bool MergeTest::is_refuted(const Hypothesis& h) const {
 bool MergeTest::is_finished(const Hypothesis& h) const { return h.checked.size() == h.plan.size(); }
 
 std::optional<std::size_t> MergeTest::to_go_on_with() const {
-  std::optional<double> best_finished;
+  double best_finished = -std::numeric_limits<double>::infinity();
   for (const Hypothesis& h : hypotheses_)
-    if (is_finished(h) && !is_refuted(h))
-      best_finished = std::max(best_finished.value_or(-std::numeric_limits<double>::infinity()),
-                               evidence_along_the_way(h));
+    if (is_finished(h) && !is_refuted(h)) best_finished = std::max(best_finished, evidence_along_the_way(h));
   // It can no longer become a rival.
   const auto is_too_late = [&](const Hypothesis& h) {
     const auto num_left = static_cast<double>(h.plan.size() - h.checked.size());
-    return best_finished &&
-           evidence_along_the_way(h) + num_left * evidence_of_agreement(0) < *best_finished - needed();
+    return std::isfinite(best_finished) &&
+           evidence_along_the_way(h) + num_left * evidence_of_agreement(0) < best_finished - needed();
   };
   // By what needs no measuring of the own map: many a test ends with all refuted.
   const auto share_differing = [](const Hypothesis& h) {
