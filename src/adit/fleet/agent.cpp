@@ -284,14 +284,23 @@ std::size_t Agent::num_tried() const {
 
 void Agent::find_candidates(RobotId peer_id) {
   std::vector<LoopCandidate> found = best_candidates(peer_id);
-  if (config_.adaptive.on) found = promising(peer_id, std::move(found));
   Peer& peer = peers_[peer_id];
+  if (config_.adaptive.on) {
+    Chosen chosen = promising(peer_id, std::move(found));
+    found = std::move(chosen.first);
+    peer.further = std::move(chosen.further);
+  }
   peer.places = {};
+  await_clouds(peer_id, std::move(found));
+}
+
+void Agent::await_clouds(RobotId peer_id, std::vector<LoopCandidate> candidates) {
   const auto in_all = static_cast<std::size_t>(config_.max_candidates);
   const std::size_t room =
       std::max(in_all - std::min(in_all, num_tried()), static_cast<std::size_t>(config_.candidates_per_peer));
-  found.resize(std::min(found.size(), room));
-  for (const LoopCandidate& candidate : found) peer.waiting[candidate.match.index].push_back(candidate);
+  candidates.resize(std::min(candidates.size(), room));
+  for (const LoopCandidate& candidate : candidates)
+    peers_[peer_id].waiting[candidate.match.index].push_back(candidate);
 }
 
 Agent::Replies Agent::cloud_request(RobotId peer_id) const {

@@ -23,8 +23,9 @@ namespace adit {
 struct AdaptiveConfig {
   bool on = false;
   int candidates = 64;
-  int segments = 10;
-  int segments_that_stand_out = 0;
+  int further_candidates = 40;
+  int segments = 7;
+  int segments_that_stand_out = 7;
   int of_a_segment = 4;
   bool stand_out = true;
   double lane_m = 1.0;
@@ -96,8 +97,9 @@ class Agent {
     std::vector<Places::Place> places;  ///< Those of them that have not been searched.
     bool has_all_places = false;        ///< None of them is still to come.
     std::map<std::uint32_t, std::vector<LoopCandidate>>
-        waiting;                    ///< By the peer's keyframe whose cloud is awaited.
-    std::optional<MergeTest> test;  ///< When all loops have been tried; it asks for clouds itself.
+        waiting;                         ///< By the peer's keyframe whose cloud is awaited.
+    std::vector<LoopCandidate> further;  ///< For a second search.
+    std::optional<MergeTest> test;       ///< When all loops have been tried; it asks for clouds itself.
   };
 
   [[nodiscard]] Hello hello() const;
@@ -121,11 +123,14 @@ class Agent {
   [[nodiscard]] bool has_way_of(RobotId peer_id) const;
   /// The most similar place of the peer to each of its own, and if adaptive to how that looks from each lane.
   [[nodiscard]] std::vector<LoopCandidate> best_candidates(RobotId peer_id) const;
+  struct Chosen {
+    std::vector<LoopCandidate> first;
+    std::vector<LoopCandidate> further;  ///< If loops among the first ones only contradict one another.
+  };
   /// Those that agree along the way.
-  [[nodiscard]] std::vector<LoopCandidate> of_segments(RobotId peer_id,
-                                                       const std::vector<LoopCandidate>& found);
-  /// The same, then those that stand out.
-  [[nodiscard]] std::vector<LoopCandidate> promising(RobotId peer_id, std::vector<LoopCandidate> found);
+  [[nodiscard]] Chosen of_segments(RobotId peer_id, const std::vector<LoopCandidate>& found);
+  /// The same, and after the first ones those that stand out.
+  [[nodiscard]] Chosen promising(RobotId peer_id, std::vector<LoopCandidate> found);
   /// Those that stand out most from what the robot's own map has that looks like them; spread over its way.
   [[nodiscard]] std::vector<LoopCandidate> standing_out(std::vector<LoopCandidate> found, int max_candidates);
   [[nodiscard]] std::vector<LoopCandidate> own_candidates(const OdometryChain& chain);
@@ -146,6 +151,8 @@ class Agent {
   Replies go_on_testing(RobotId peer_id);
   /// Whether they were what the test had asked for.
   bool compare_clouds_of(RobotId from, const Clouds& clouds);
+  /// After many loops of which no two say anything true, the true ones may not have been among them.
+  [[nodiscard]] bool searches_on(RobotId peer_id, const MergeCheck& check);
   Replies conclude_test(RobotId peer_id);
   void decide(MergeCheck check);
   [[nodiscard]] std::shared_ptr<const OtherPlaces> other_places();
@@ -159,6 +166,8 @@ class Agent {
   [[nodiscard]] OdometryChain chain_by(RobotId robot) const;
   [[nodiscard]] Replies checks_from(RobotId peer, RobotId author, std::size_t first) const;
   void find_candidates(RobotId peer_id);
+  /// As many of them as there is room for wait for the peer's clouds.
+  void await_clouds(RobotId peer_id, std::vector<LoopCandidate> candidates);
   /// From which it looks for similar places: only the one it drove, unless it is adaptive.
   [[nodiscard]] Lanes lanes() const;
   [[nodiscard]] std::size_t num_tried() const;

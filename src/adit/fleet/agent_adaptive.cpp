@@ -20,6 +20,8 @@ Fields fields_of(AdaptiveConfig& c) {
   Fields fields = {
       {"on", &c.on, "", 0, 0, "choose the candidates that agree along the way or stand out, and test merges"},
       {"candidates", &c.candidates, "", 1, 1e6, "candidates that are registered with each peer"},
+      {"further_candidates", &c.further_candidates, "", 0, 1e6,
+       "and so many more where these led to many loops, all of which are refuted"},
       {"segments", &c.segments, "", 0, 1e6,
        "stretches along which candidates agree, whose best ones are registered first"},
       {"segments_that_stand_out", &c.segments_that_stand_out, "", 0, 1e6,
@@ -209,8 +211,27 @@ bool Agent::compare_clouds_of(RobotId from, const Clouds& clouds) {
   return true;
 }
 
+bool Agent::searches_on(RobotId peer_id, const MergeCheck& check) {
+  constexpr std::size_t kMany = 4;  // one loop of so many candidates: where places differ there are fewer
+  Peer& peer = peers_.at(peer_id);
+  std::size_t num_loops = 0;
+  for (const MergeHypothesis& hypothesis : check.hypotheses) {
+    if (hypothesis.outcome != HypothesisOutcome::refuted) return false;
+    num_loops += hypothesis.loops.size();
+  }
+  if (kMany * num_loops < static_cast<std::size_t>(config_.adaptive.candidates)) return false;
+  await_clouds(peer_id, std::exchange(peer.further, {}));
+  return !peer.waiting.empty();
+}
+
 Agent::Replies Agent::conclude_test(RobotId peer_id) {
-  decide(peers_.at(peer_id).test->verdict(map_->id, peer_id));
+  Peer& peer = peers_.at(peer_id);
+  MergeCheck check = peer.test->verdict(map_->id, peer_id);
+  if (searches_on(peer_id, check)) {
+    peer.test.reset();
+    return cloud_request(peer_id);
+  }
+  decide(std::move(check));
   return checks_from(peer_id, map_->id, decided_.at(map_->id).size() - 1);
 }
 
@@ -226,38 +247,53 @@ bool Agent::has_way_of(RobotId peer_id) const {
          std::ranges::all_of(peers_.at(peer_id).places, [&](const auto& place) { return place.index < num; });
 }
 
-std::vector<LoopCandidate> Agent::of_segments(RobotId peer_id, const std::vector<LoopCandidate>& found) {
+Agent::Chosen Agent::of_segments(RobotId peer_id, const std::vector<LoopCandidate>& found) {
   if (found.empty()) return {};
   const AdaptiveConfig& config = config_.adaptive;
   const OdometryChain own = own_chain();
   const OdometryChain theirs = chain_by(peer_id);
-  std::vector<std::vector<Segment>> rankings = {
-      agreeing_segments(own, theirs, found, static_cast<std::size_t>(config.segments))};
-  if (config.segments_that_stand_out > 0)
-    rankings.push_back(agreeing_segments(
-        own, theirs, found, static_cast<std::size_t>(config.segments_that_stand_out), own_likeness()));
-  std::vector<LoopCandidate> chosen;
+  struct Ranking {
+    std::size_t num_first;
+    std::vector<Segment> segments;
+  };
+  std::vector<Ranking> rankings;
+  const int num_further = config.further_candidates / (2 * config.of_a_segment);  // of both kinds
+  const auto rank_by = [&](int num, const std::vector<double>& likeness) {
+    const auto num_in_all = static_cast<std::size_t>(num + num_further);
+    rankings.push_back(
+        {static_cast<std::size_t>(num), agreeing_segments(own, theirs, found, num_in_all, likeness)});
+  };
+  if (config.segments > 0) rank_by(config.segments, {});
+  if (config.segments_that_stand_out > 0) rank_by(config.segments_that_stand_out, own_likeness());
+  std::size_t num_ranks = 0;
+  for (const Ranking& ranking : rankings) num_ranks = std::max(num_ranks, ranking.segments.size());
+  Chosen chosen;
   std::set<Ends> taken;
-  for (std::size_t rank = 0; rank < std::max(rankings.front().size(), rankings.back().size()); ++rank)
-    for (const std::vector<Segment>& ranking : rankings) {
-      if (rank >= ranking.size()) continue;
-      const std::vector<LoopCandidate>& candidates = ranking[rank].candidates;
+  for (std::size_t rank = 0; rank < num_ranks; ++rank)
+    for (const auto& [num_first, segments] : rankings) {
+      if (rank >= segments.size()) continue;
+      const std::vector<LoopCandidate>& candidates = segments[rank].candidates;
       const std::size_t num = std::min(static_cast<std::size_t>(config.of_a_segment), candidates.size());
       for (const LoopCandidate& candidate : std::span(candidates).first(num))
-        if (taken.emplace(candidate.query, candidate.match).second) chosen.push_back(candidate);
+        if (taken.emplace(candidate.query, candidate.match).second)
+          (rank < num_first ? chosen.first : chosen.further).push_back(candidate);
     }
   return chosen;
 }
 
-std::vector<LoopCandidate> Agent::promising(RobotId peer_id, std::vector<LoopCandidate> found) {
-  const auto most = static_cast<std::size_t>(config_.adaptive.candidates);
-  std::vector<LoopCandidate> chosen = of_segments(peer_id, found);
+Agent::Chosen Agent::promising(RobotId peer_id, std::vector<LoopCandidate> found) {
+  const auto num_first = static_cast<std::size_t>(config_.adaptive.candidates);
+  const auto num_further = static_cast<std::size_t>(config_.adaptive.further_candidates);
+  Chosen chosen = of_segments(peer_id, found);
+  chosen.first.resize(std::min(chosen.first.size(), num_first));
+  chosen.further.resize(std::min(chosen.further.size(), num_further));
   std::set<Ends> taken;
-  for (const LoopCandidate& candidate : chosen) taken.emplace(candidate.query, candidate.match);
+  for (const std::vector<LoopCandidate>* some : {&chosen.first, &chosen.further})
+    for (const LoopCandidate& candidate : *some) taken.emplace(candidate.query, candidate.match);
   std::erase_if(found, [&](const LoopCandidate& c) { return taken.contains({c.query, c.match}); });
-  chosen.resize(std::min(chosen.size(), most));
-  std::ranges::move(standing_out(std::move(found), static_cast<int>(most - chosen.size())),
-                    std::back_inserter(chosen));
+  const std::size_t num_left = num_first + num_further - taken.size();
+  for (const LoopCandidate& candidate : standing_out(std::move(found), static_cast<int>(num_left)))
+    (chosen.first.size() < num_first ? chosen.first : chosen.further).push_back(candidate);
   return chosen;
 }
 

@@ -144,7 +144,7 @@ Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryCha
 const Measured& Discernment::measured() {
   if (!measured_) {
     Measured measured;
-    measured.walls.add_same(compare_own_walls());
+    measured.walls.add_same(compare_own_walls().counted());
     follow(walks_from(find_look_alikes_()), measured);
     measured_ = measured;
   }
@@ -309,7 +309,7 @@ void Discernment::follow(std::vector<Walk> walks, Measured& measured) {
     }
     std::erase_if(walks, [](const Walk& walk) { return walk.is_over; });
   }
-  for (const StandingOffsets& of_one : offsets) measured.walls.add_other(of_one);
+  for (const StandingOffsets& of_one : offsets) measured.walls.add_other(of_one.counted());
 }
 
 // Both ways: an end of a niche may show one way and not the other.

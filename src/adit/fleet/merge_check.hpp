@@ -34,8 +34,8 @@ struct MergeCheckConfig {
   double refusal_rate = 0.01;
   double spacing_m = 3.0;
   int max_checks = 200;
-  int max_hypotheses = 6;
-  int min_loops = 3;
+  int max_hypotheses = 12;
+  int min_loops = 2;
   double odometry_slack = 1.0;
   bool distinctive_only = true;
   bool relief = true;

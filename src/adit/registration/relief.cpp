@@ -14,13 +14,43 @@ constexpr float kRange = 15.0F;           // metres; farther away the beams are 
 constexpr float kNear = 0.2F;             // metres along a wall, from a point of b to one of a
 constexpr float kOff = 0.15F;             // metres; what stands farther off is another thing, not relief
 constexpr float kSameSide = 0.95F;        // cosine between two normals
-constexpr std::size_t kEnoughPoints = 3;  // of b, in a patch
+constexpr std::size_t kEnoughPoints = 6;  // of b, in a patch: from afar the beams are too few
 constexpr double kTells = 0.002;  // metres; what is less is left by where on a wall the beams happen to fall
 constexpr double kChance = 0.5;
-constexpr double kUsual = 0.52;       // share of patches that stand where walls are the same, at least
-constexpr double kTolerance = 0.04;   // by which that share may be larger between two robots
-constexpr double kLeast = 1.0 / 3.0;  // of what look-alikes have beyond chance
-constexpr std::size_t kEnough = 300;  // patches: below, a few bad fits are a large part of them
+// Between two robots' drives through one tunnel, over the tuning worlds (decision 0015).
+constexpr SameWalls kSame = {0.52, 0.015};
+// What is believed of look-alikes before any is seen, worth as many stretches.
+constexpr double kPriorSigma = 0.35;
+constexpr double kPriorStretches = 4.0;
+constexpr double kMayBeSame = 0.05;     // chance below which a share is not one of the same walls
+constexpr std::size_t kEnough = 200;    // patches: below, a few bad fits are a large part of them
+constexpr std::size_t kSeenWell = 100;  // patches that make a share worth something
+
+// That so large a share, or a larger one, is found.
+double at_least(const StandingShare& found, const SameWalls& walls) {
+  return 0.5 *
+         std::erfc((found.share - walls.mean) / std::hypot(walls.sigma, found.sigma) / std::numbers::sqrt2);
+}
+
+double normal_density(double off, double sigma) {
+  return std::exp(-0.5 * off * off / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
+}
+
+double density(const StandingShare& found, const SameWalls& walls) {
+  return normal_density(found.share - walls.mean, std::hypot(walls.sigma, found.sigma));
+}
+
+double density(const StandingShare& found, const OtherWalls& walls) {
+  constexpr double kStep = 0.1;  // sigmas
+  constexpr int kSteps = 60;     // to each side
+  double sum = 0.0;
+  for (int i = -kSteps; i <= kSteps; ++i) {
+    const double share =
+        kChance + std::min(std::exp(walls.mean_log + kStep * i * walls.sigma_log), 1.0 - kChance);
+    sum += kStep * normal_density(kStep * i, 1.0) * normal_density(found.share - share, found.sigma);
+  }
+  return sum;
+}
 
 std::int32_t side_of(const Eigen::Vector3f& normal) {
   Eigen::Index axis = 0;
@@ -64,62 +94,81 @@ std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& 
 
 void StandingOffsets::add(const std::vector<PatchOffset>& of_a_pair) {
   for (const PatchOffset& offset : of_a_pair) {
-    Halves& halves = patches_[offset.patch];
-    halves.sums[halves.num_pairs % 2] += offset.metres;
-    ++halves.num_pairs;
+    if (std::abs(offset.metres) <= kTells) continue;
+    Sides& sides = patches_[offset.patch];
+    ++(offset.metres > 0.0 ? sides.num_in_front : sides.num_behind);
   }
 }
 
-double StandingOffsets::Halves::mean(std::size_t half) const {
-  const std::size_t num = (num_pairs + 1 - half) / 2;
-  return sums[half] / static_cast<double>(num);
-}
-
-bool StandingOffsets::Halves::can_be_compared() const {
-  return num_pairs >= 2 && std::abs(mean(0)) > kTells && std::abs(mean(1)) > kTells;
-}
-
-std::size_t StandingOffsets::num_patches() const {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(patches_, [](const auto& patch) { return patch.second.can_be_compared(); }));
-}
-
-std::size_t StandingOffsets::num_standing() const {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(patches_, [](const auto& patch) { return patch.second.stands(); }));
+StandingShare StandingOffsets::counted() const {
+  // A patch weighs as much as the pairs beyond the first that saw it.
+  struct OfPatch {
+    double weight;
+    double agreeing;
+  };
+  std::vector<OfPatch> all;
+  double weight = 0.0;
+  double agreeing = 0.0;
+  for (const auto& [patch, sides] : patches_) {
+    const auto front = static_cast<double>(sides.num_in_front);
+    const auto behind = static_cast<double>(sides.num_behind);
+    const double num = front + behind;
+    if (num < 2.0) continue;
+    all.push_back({num - 1.0, (front * (front - 1.0) + behind * (behind - 1.0)) / num});
+    weight += all.back().weight;
+    agreeing += all.back().agreeing;
+  }
+  if (all.empty()) return {};
+  StandingShare out{all.size(), agreeing / weight, 0.0};
+  double squares = 0.0;
+  for (const OfPatch& one : all) squares += std::pow(one.agreeing - out.share * one.weight, 2);
+  out.sigma = std::max(std::sqrt(squares), 1.0) / weight;  // where all agree, one might not have
+  return out;
 }
 
 bool StandingOffsets::are_of_other_walls(const StandingShares& shares, double rate) const {
-  if (num_patches() < kEnough) return false;
-  const auto num = static_cast<double>(num_patches());
-  const double at_most = std::min(shares.same() + kTolerance, 1.0);
-  // The normal approximation of the binomial tail.
-  const double z = (static_cast<double>(num_standing()) - at_most * num) / std::sqrt(num * 0.25);
-  return 0.5 * std::erfc(z / std::numbers::sqrt2) < rate;
+  const StandingShare found = counted();
+  return found.num_patches >= kEnough && at_least(found, shares.same()) < rate;
 }
 
 double StandingOffsets::evidence(const StandingShares& shares) const {
-  const double same = shares.same();
-  const double other = shares.other();
-  if (!(other > same)) return 0.0;
-  const auto standing = static_cast<double>(num_standing());
-  const double not_standing = static_cast<double>(num_patches()) - standing;
-  return standing * std::log(same / other) + not_standing * std::log((1.0 - same) / (1.0 - other));
+  const std::optional<OtherWalls> other = shares.other();
+  StandingShare found = counted();
+  if (!other || found.num_patches < kSeenWell) return 0.0;
+  found.share = std::max(found.share, kChance);  // less than chance is chance
+  constexpr double kLeast = 1e-300;              // for the logarithm
+  return std::log(std::max(density(found, shares.same()), kLeast)) -
+         std::log(std::max(density(found, *other), kLeast));
 }
 
-void StandingShares::Count::add(const StandingOffsets& offsets) {
-  num_patches += offsets.num_patches();
-  num_standing += offsets.num_standing();
+void StandingShares::add_same(const StandingShare& share) { same_ = share; }
+
+void StandingShares::add_other(const StandingShare& share) {
+  if (share.num_patches >= kSeenWell) others_.push_back(share);
 }
 
-double StandingShares::Count::share() const {
-  if (num_patches < kEnough) return kChance;
-  return static_cast<double>(num_standing) / static_cast<double>(num_patches);
+SameWalls StandingShares::same() const {
+  SameWalls walls = kSame;
+  if (same_.num_patches >= kEnough) walls.mean = std::max(walls.mean, same_.share);
+  return walls;
 }
 
-void StandingShares::add_same(const StandingOffsets& offsets) { same_.add(offsets); }
-void StandingShares::add_other(const StandingOffsets& offsets) { other_.add(offsets); }
-double StandingShares::same() const { return std::max(kUsual, same_.share()); }
-double StandingShares::other() const { return kChance + kLeast * (other_.share() - kChance); }
+std::optional<OtherWalls> StandingShares::other() const {
+  if (others_.empty()) return {};
+  const auto num = static_cast<double>(others_.size());
+  double mean = 0.0;
+  for (const StandingShare& one : others_) {
+    if (at_least(one, same()) > kMayBeSame) return {};
+    mean += std::log(one.share - kChance) / num;
+  }
+  double beyond_chance = kPriorStretches * kPriorSigma * kPriorSigma;
+  for (const StandingShare& one : others_) {
+    const double beyond_half = one.share - kChance;
+    beyond_chance +=
+        std::max(0.0, std::pow(std::log(beyond_half) - mean, 2) - std::pow(one.sigma / beyond_half, 2));
+  }
+  const double variance = beyond_chance / (kPriorStretches + num - 1.0);
+  return OtherWalls{mean, std::sqrt(variance * (1.0 + 1.0 / num))};
+}
 
 }  // namespace adit

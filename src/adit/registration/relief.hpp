@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "adit/core/pose.hpp"
@@ -30,55 +31,66 @@ struct PatchOffset {
 [[nodiscard]] std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& b,
                                                      const Pose& T_a_b, const Pose& T_map_a);
 
-class StandingOffsets;
+/// Of how many patches, and how far off it may be by chance (one sigma).
+struct StandingShare {
+  std::size_t num_patches = 0;
+  double share = 0.5;
+  double sigma = 0.5;
+};
 
-/// Which share of the patches stands off, by what a robot sees in its own map. Of one wall it is a little
-/// more than half: where on an edge the beams fall is no chance. Where too little was seen: 0.52 and 0.5.
+/// How the share lies among stretches of one wall: normally, beside what it is off by chance.
+struct SameWalls {
+  double mean = 0.5;
+  double sigma = 0.0;
+};
+
+/// How the share lies among stretches of other walls. Its part beyond one half grows with the ratio of relief
+/// to noise, a factor that is another one from stretch to stretch: the logarithm of that part lies normally.
+struct OtherWalls {
+  double mean_log = 0.0;
+  double sigma_log = 0.0;
+};
+
+/// Which share of the patches stands off, by what a robot sees in its own map.
 class StandingShares {
  public:
-  void add_same(const StandingOffsets& offsets);
-  /// Of walls that only look alike.
-  void add_other(const StandingOffsets& offsets);
+  void add_same(const StandingShare& share);
+  /// Of a stretch of wall that only looks like another one.
+  void add_other(const StandingShare& share);
 
-  [[nodiscard]] double same() const;
-  /// A third of what those seen have beyond chance: the one that is most like the truth is not the average.
-  [[nodiscard]] double other() const;
+  /// Of one wall it is a little more than half: where on an edge the beams fall is no chance.
+  [[nodiscard]] SameWalls same() const;
+  /// Of a further stretch that only looks like another one, by those that were seen. None where none was
+  /// seen well, and where the walls of one of them may be the same: cast in one mould.
+  [[nodiscard]] std::optional<OtherWalls> other() const;
 
  private:
-  struct Count {
-    std::size_t num_patches = 0;
-    std::size_t num_standing = 0;
-    void add(const StandingOffsets& offsets);
-    [[nodiscard]] double share() const;  ///< Chance, where too little was seen.
-  };
-  Count same_;
-  Count other_;
+  StandingShare same_;
+  std::vector<StandingShare> others_;  ///< Of each stretch that was seen well.
 };
 
 /// Offsets from several pairs of scans, none of which is part of two pairs. Of each patch that two or more
-/// pairs saw, the mean of one half of them is compared with that of the other, where both are more than two
-/// millimetres: noise puts them on one side as often as not.
+/// pairs saw, beyond two millimetres, every two of them are on one side or not: noise puts them there as
+/// often as not, however many have seen it.
 class StandingOffsets {
  public:
   void add(const std::vector<PatchOffset>& of_a_pair);
-  [[nodiscard]] std::size_t num_patches() const;   ///< That two pairs or more saw.
-  [[nodiscard]] std::size_t num_standing() const;  ///< Of which both halves stand off on the same side.
-  /// So many stand that this happens less often than `rate` where the walls are the same; never with fewer
-  /// than 300 patches.
+  /// Over the patches that two pairs or more saw: of two pairs that saw one, the share that agree on the
+  /// side.
+  [[nodiscard]] StandingShare counted() const;
+  /// So large a share happens less often than `rate` where the walls are the same; never with fewer than 200
+  /// patches.
   [[nodiscard]] bool are_of_other_walls(const StandingShares& shares, double rate) const;
-  /// That the walls are the same: the logarithm of the likelihood ratio of the two shares. None, 0, where
-  /// other walls stand off no more often than the same.
+  /// That the walls are the same: the logarithm of the likelihood ratio of the two. None, 0, where it is not
+  /// known how often other walls stand off, or fewer than 100 patches were seen.
   [[nodiscard]] double evidence(const StandingShares& shares) const;
 
  private:
-  struct Halves {
-    std::array<double, 2> sums{};
-    std::size_t num_pairs = 0;
-    [[nodiscard]] double mean(std::size_t half) const;
-    [[nodiscard]] bool can_be_compared() const;
-    [[nodiscard]] bool stands() const { return can_be_compared() && sums[0] * sums[1] > 0.0; }
+  struct Sides {
+    std::size_t num_in_front = 0;
+    std::size_t num_behind = 0;
   };
-  std::map<WallPatch, Halves> patches_;
+  std::map<WallPatch, Sides> patches_;
 };
 
 }  // namespace adit

@@ -55,7 +55,17 @@ StandingOffsets driven(std::uint64_t first, std::uint64_t second, int num_pairs 
   return offsets;
 }
 
-// Of a thousand patches, so many that stand.
+StandingShare found(double share, std::size_t num_patches = 1000) {
+  return {num_patches, share, 0.5 / std::sqrt(static_cast<double>(num_patches))};
+}
+
+StandingShares where_others_stand(double share, int num_stretches = 5) {
+  StandingShares shares;
+  for (int i = 0; i < num_stretches; ++i) shares.add_other(found(share));
+  return shares;
+}
+
+// Of a thousand patches that two pairs saw, so many that they put on one side.
 StandingOffsets of_a_thousand(int num_standing) {
   StandingOffsets offsets;
   for (int i = 0; i < 1000; ++i)
@@ -63,21 +73,11 @@ StandingOffsets of_a_thousand(int num_standing) {
   return offsets;
 }
 
-StandingShares where_others_stand(int of_a_thousand_others) {
-  StandingShares shares;
-  shares.add_other(of_a_thousand(of_a_thousand_others));
-  return shares;
-}
-
-double share(const StandingOffsets& offsets) {
-  return static_cast<double>(offsets.num_standing()) / static_cast<double>(offsets.num_patches());
-}
-
 TEST(Relief, TheSameWallsStandOffHereAndThereByChance) {
   for (const std::uint64_t tunnel : {1U, 2U, 3U}) {
     const StandingOffsets offsets = driven(tunnel, tunnel);
-    ASSERT_GT(offsets.num_patches(), 500U);
-    EXPECT_NEAR(share(offsets), 0.5, 0.06);
+    ASSERT_GT(offsets.counted().num_patches, 300U);
+    EXPECT_NEAR(offsets.counted().share, 0.5, 0.06);
     EXPECT_FALSE(offsets.are_of_other_walls({}, 0.01));
   }
 }
@@ -86,23 +86,29 @@ TEST(Relief, OtherWallsStandOffAlikeInAllScansThoughNoiseIsLarger) {
   static_assert(kRelief < 0.5 * kNoise);
   for (const std::uint64_t tunnel : {1U, 2U, 3U}) {
     const StandingOffsets offsets = driven(tunnel, tunnel + 10);
-    EXPECT_GT(share(offsets), 0.6);
+    EXPECT_GT(offsets.counted().share, 0.6);
     EXPECT_TRUE(offsets.are_of_other_walls({}, 1e-4));
   }
 }
 
+// However many scans have seen a patch: what a short stretch shows can be held against a long one.
+TEST(Relief, TheShareIsTheSameForFewPairsOfScansAndForMany) {
+  const StandingOffsets few = driven(1, 11, 3);
+  const StandingOffsets many = driven(1, 11, 12);
+  EXPECT_NEAR(few.counted().share, many.counted().share, 0.08);
+  EXPECT_LT(many.counted().sigma, 0.6 * few.counted().sigma);
+}
+
 TEST(Relief, SpeaksForOneTunnelAndAgainstTheOther) {
-  EXPECT_GT(driven(1, 1).evidence(where_others_stand(800)), 5.0);
-  EXPECT_LT(driven(1, 11).evidence(where_others_stand(800)), -5.0);
-  // Where other walls do not stand off either (tiles of a mould), nothing is known.
-  EXPECT_EQ(driven(1, 1).evidence(where_others_stand(500)), 0.0);
+  EXPECT_GT(driven(1, 1).evidence(where_others_stand(0.65)), 5.0);
+  EXPECT_LT(driven(1, 11).evidence(where_others_stand(0.65)), -5.0);
 }
 
 TEST(Relief, OnePairOfScansSaysNothing) {
   const StandingOffsets offsets = driven(1, 11, 1);
-  EXPECT_EQ(offsets.num_patches(), 0U);
+  EXPECT_EQ(offsets.counted().num_patches, 0U);
   EXPECT_FALSE(offsets.are_of_other_walls({}, 0.5));
-  EXPECT_EQ(offsets.evidence(where_others_stand(800)), 0.0);
+  EXPECT_EQ(offsets.evidence(where_others_stand(0.65)), 0.0);
 }
 
 TEST(Relief, WhatStandsFarOffIsNoRelief) {
@@ -144,51 +150,92 @@ TEST(Relief, PatchesStayWhereTheyAreInTheMap) {
   }
 }
 
-TEST(StandingOffsets, ComparesOneHalfOfThePairsWithTheOther) {
+TEST(StandingOffsets, EveryTwoPairsThatSawAPatchAgreeOrNot) {
   StandingOffsets offsets;
   const WallPatch stands{0, 0, 0, 0}, wavers{1, 0, 0, 0}, once{2, 0, 0, 0};
   offsets.add({{stands, 0.01}, {wavers, 0.01}});
+  EXPECT_EQ(offsets.counted().num_patches, 0U);
   offsets.add({{stands, 0.02}, {wavers, -0.01}, {once, 0.01}});
-  offsets.add({{stands, -0.005}});  // the half of the first: still on the same side
-  EXPECT_EQ(offsets.num_patches(), 2U);
-  EXPECT_EQ(offsets.num_standing(), 1U);
-  offsets.add({{stands, -0.05}});  // the half of the second: no longer
-  EXPECT_EQ(offsets.num_standing(), 0U);
+  EXPECT_EQ(offsets.counted().num_patches, 2U);
+  EXPECT_DOUBLE_EQ(offsets.counted().share, 0.5);
+  offsets.add({{stands, -0.005}});  // one of three twos still agrees; it weighs as two
+  EXPECT_DOUBLE_EQ(offsets.counted().share, (2.0 / 3.0 + 0.0) / (2.0 + 1.0));
 }
 
 TEST(StandingOffsets, AMillimetreTellsNothing) {
   StandingOffsets offsets;
   for (const double metres : {0.01, 0.001}) offsets.add({{{0, 0, 0, 0}, metres}});
-  EXPECT_EQ(offsets.num_patches(), 0U);
-  offsets.add({{{0, 0, 0, 0}, 0.01}});
-  offsets.add({{{0, 0, 0, 0}, 0.005}});  // on the average of its half 3 mm
-  EXPECT_EQ(offsets.num_standing(), 1U);
+  EXPECT_EQ(offsets.counted().num_patches, 0U);
+  offsets.add({{{0, 0, 0, 0}, 0.003}});
+  EXPECT_EQ(offsets.counted().share, 1.0);
+}
+
+TEST(StandingOffsets, TheShareIsAsUncertainAsTheTossOfACoin) {
+  Rng rng(3);
+  std::vector<double> off;  // in sigmas
+  for (int trial = 0; trial < 200; ++trial) {
+    StandingOffsets offsets;
+    for (int i = 0; i < 200; ++i)
+      for (int pair = 0; pair < 2 + i % 4; ++pair) offsets.add({{{i, 0, 0, 0}, rng.normal()}});
+    const StandingShare counted = offsets.counted();
+    off.push_back((counted.share - 0.5) / counted.sigma);
+  }
+  double squares = 0.0;
+  for (const double one : off) squares += one * one / 200.0;
+  EXPECT_NEAR(squares, 1.0, 0.3);
 }
 
 TEST(StandingOffsets, AreOfOtherWallsWhenMoreStandThanOfTheSame) {
-  EXPECT_FALSE(of_a_thousand(580).are_of_other_walls({}, 0.01));
-  EXPECT_TRUE(of_a_thousand(620).are_of_other_walls({}, 0.01));
+  EXPECT_FALSE(of_a_thousand(560).are_of_other_walls({}, 0.01));
+  EXPECT_TRUE(of_a_thousand(600).are_of_other_walls({}, 0.01));
   StandingShares cluttered;  // edges stand off even of one place
-  cluttered.add_same(of_a_thousand(600));
-  EXPECT_FALSE(of_a_thousand(620).are_of_other_walls(cluttered, 0.01));
-  EXPECT_TRUE(of_a_thousand(700).are_of_other_walls(cluttered, 0.01));
+  cluttered.add_same(found(0.6));
+  EXPECT_FALSE(of_a_thousand(600).are_of_other_walls(cluttered, 0.01));
+  EXPECT_TRUE(of_a_thousand(680).are_of_other_walls(cluttered, 0.01));
 }
 
-TEST(StandingOffsets, EvidenceIsTheLikelihoodRatio) {
-  EXPECT_NEAR(of_a_thousand(500).evidence(where_others_stand(800)),
-              500 * std::log(0.52 / 0.6) + 500 * std::log(0.48 / 0.4), 1e-9);
+TEST(StandingOffsets, WhereAllAgreeTheEvidenceIsFinite) {
+  EXPECT_LT(of_a_thousand(1000).evidence(where_others_stand(0.65)), -100.0);
+  EXPECT_TRUE(std::isfinite(of_a_thousand(1000).evidence(where_others_stand(0.65))));
+}
+
+TEST(StandingOffsets, FewerThanHalfIsChanceAsWell) {
+  EXPECT_NEAR(of_a_thousand(400).evidence(where_others_stand(0.65)),
+              of_a_thousand(500).evidence(where_others_stand(0.65)), 0.5);
 }
 
 TEST(StandingShares, AreMeasuredOrElseBelieved) {
   StandingShares shares;
-  EXPECT_EQ(shares.same(), 0.52);
-  EXPECT_EQ(shares.other(), 0.5);
-  shares.add_same(of_a_thousand(400));
-  EXPECT_EQ(shares.same(), 0.52) << "less than chance is chance";
-  shares.add_same(of_a_thousand(700));
-  EXPECT_NEAR(shares.same(), 0.55, 1e-12);
-  shares.add_other(of_a_thousand(800));
-  EXPECT_NEAR(shares.other(), 0.6, 1e-12) << "a third of what is beyond chance";
+  const double believed = shares.same().mean;
+  EXPECT_GT(believed, 0.5);
+  EXPECT_FALSE(shares.other());
+  shares.add_same(found(0.45));
+  EXPECT_EQ(shares.same().mean, believed) << "less than chance is chance";
+  shares.add_same(found(0.9, 50));
+  EXPECT_EQ(shares.same().mean, believed) << "too few patches";
+  shares.add_same(found(0.6));
+  EXPECT_EQ(shares.same().mean, 0.6);
+}
+
+TEST(StandingShares, TheMoreLookAlikesWereSeenTheSharperIsWhatOthersDo) {
+  const auto one = where_others_stand(0.65, 1).other();
+  const auto many = where_others_stand(0.65, 20).other();
+  ASSERT_TRUE(one && many);
+  EXPECT_NEAR(one->mean_log, std::log(0.15), 1e-12);
+  EXPECT_LT(many->sigma_log, 0.6 * one->sigma_log);
+  StandingShares uneven;
+  for (const double share : {0.58, 0.62, 0.7, 0.8}) uneven.add_other(found(share));
+  EXPECT_GT(uneven.other()->sigma_log, where_others_stand(0.65, 4).other()->sigma_log);
+}
+
+TEST(StandingShares, WhereOneLookAlikeMayHaveTheSameWallsNothingIsKnown) {
+  StandingShares shares = where_others_stand(0.65);
+  EXPECT_GT(of_a_thousand(500).evidence(shares), 5.0);
+  shares.add_other(found(0.9, 50));  // hardly seen: not counted
+  EXPECT_GT(of_a_thousand(500).evidence(shares), 5.0);
+  shares.add_other(found(0.53));  // cast in one mould
+  EXPECT_FALSE(shares.other());
+  EXPECT_EQ(of_a_thousand(500).evidence(shares), 0.0);
 }
 
 }  // namespace
