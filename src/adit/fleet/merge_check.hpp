@@ -35,7 +35,7 @@ struct MergeCheckConfig {
   double spacing_m = 3.0;
   int max_checks = 200;
   int max_hypotheses = 12;
-  int min_loops = 2;
+  int min_loops = 1;
   double odometry_slack = 1.0;
   bool distinctive_only = true;
   bool relief = true;
