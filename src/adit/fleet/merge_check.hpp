@@ -11,9 +11,9 @@
 /// The decision is Wald's sequential probability ratio test ("Sequential tests of statistical hypotheses",
 /// 1945) in two directions. Against chance: the logarithms of likelihood ratios add up over the places that
 /// are distinctive, less that of the number of alignments that loops speak for, and have to reach
-/// log(1 / error_rate). Against copies: scans that differ may not be more than true places would leave, nor
-/// may walls stand off one another in more patches than one wall's do (StandingOffsets). And against every
-/// other hypothesis: it must stay behind by as much.
+/// log(1 / error_rate), together with what walls say (StandingOffsets). Against copies: scans that differ may
+/// not be more than true places would leave, nor may walls stand off one another more often than one wall
+/// does. And against every other hypothesis: it must stay behind by as much.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@
 namespace adit {
 
 struct MergeCheckConfig {
-  double error_rate = 1e-4;
+  double error_rate = 1e-3;
   double refusal_rate = 0.01;
   double spacing_m = 3.0;
   int max_checks = 200;

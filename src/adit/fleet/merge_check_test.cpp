@@ -191,7 +191,7 @@ TEST(MergeTest, PlacesThatAgreeJoinTheMaps) {
   EXPECT_TRUE(check.accepted) << check.reason;
   EXPECT_EQ(check.num_passed, check.num_checked);
   EXPECT_NEAR(check.evidence, check.num_checked * std::log(0.97 / 0.5), 1e-9);
-  EXPECT_NEAR(check.needed, std::log(1e4), 1e-9);
+  EXPECT_NEAR(check.needed, std::log(1e3), 1e-9);
   const std::vector<std::pair<std::uint32_t, std::uint32_t>> loops = {{80, 119}, {90, 109}, {100, 99}};
   EXPECT_EQ(check.loops, loops);
   ASSERT_EQ(check.hypotheses.size(), 1U);
