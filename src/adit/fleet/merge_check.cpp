@@ -77,6 +77,35 @@ double apart(const std::vector<PcmLoop>& first, const std::vector<PcmLoop>& seco
   return nearest;
 }
 
+// A clique may differ as much as odometry may over the whole way; loops near one another have to agree
+// better, whatever odometry's noise was taken for. Without those that most of their neighbours contradict.
+std::vector<std::size_t> without_misplaced(const OdometryChain& own, const OdometryChain& theirs,
+                                           const std::vector<PcmLoop>& loops,
+                                           const std::vector<std::size_t>& clique) {
+  constexpr double kOff = 0.75;           // metres
+  constexpr std::size_t kNeighbours = 5;  // asked, of those
+  constexpr std::size_t kNear = 60;       // keyframes or less away;
+  constexpr std::size_t kEnough = 3;      // fewer decide nothing
+  std::vector<std::size_t> out;
+  for (const std::size_t l : clique) {
+    const PcmLoop& loop = loops[l];
+    std::vector<std::pair<std::size_t, double>> by_distance;  // and by how much it is contradicted
+    for (const std::size_t other : clique) {
+      const PcmLoop& that = loops[other];
+      const std::size_t keyframes = loop.b > that.b ? loop.b - that.b : that.b - loop.b;
+      if (other == l || keyframes > kNear) continue;
+      const Pose T_a_b = own.between(loop.a, that.a) * that.T_a_b * theirs.between(that.b, loop.b);
+      by_distance.emplace_back(keyframes, (T_a_b.translation() - loop.T_a_b.translation()).norm());
+    }
+    std::ranges::stable_sort(by_distance, {}, &std::pair<std::size_t, double>::first);
+    by_distance.resize(std::min(by_distance.size(), kNeighbours));
+    const auto contradicting = static_cast<std::size_t>(
+        std::ranges::count_if(by_distance, [](const auto& neighbour) { return neighbour.second > kOff; }));
+    if (by_distance.size() < kEnough || 2 * contradicting <= by_distance.size()) out.push_back(l);
+  }
+  return out.empty() ? clique : out;
+}
+
 std::size_t num_differing(const std::vector<CheckedPlace>& places, double by_more_than = 1.0) {
   return static_cast<std::size_t>(std::ranges::count_if(
       places, [&](const CheckedPlace& place) { return !(place.difference <= by_more_than); }));
@@ -150,6 +179,7 @@ MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, cons
     for (const std::size_t l : pcm(own, theirs, picked(loops, rest)).largest)
       hypothesis.loops.push_back(rest[l]);
     std::erase_if(rest, [&](std::size_t l) { return std::ranges::binary_search(hypothesis.loops, l); });
+    hypothesis.loops = without_misplaced(own, theirs, loops, hypothesis.loops);
     const std::vector<PcmLoop> agreeing = picked(loops, hypothesis.loops);
     for (const Hypothesis& other : hypotheses_)
       hypothesis.apart_m.push_back(apart(picked(loops, other.loops), agreeing, own, theirs));

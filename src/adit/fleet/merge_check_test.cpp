@@ -18,11 +18,11 @@ namespace adit {
 namespace {
 
 // Half a metre between keyframes.
-OdometryChain along_x(std::size_t num) {
+OdometryChain along_x(std::size_t num, double variance = 1e-4) {
   std::vector<Pose> poses;
   for (std::size_t k = 0; k < num; ++k)
     poses.push_back(Pose::translation_of(0.5 * static_cast<double>(k), 0, 0));
-  return {poses, std::vector<Matrix6>(num - 1, Matrix6::Identity() * 1e-4)};
+  return {poses, std::vector<Matrix6>(num - 1, Matrix6::Identity() * variance)};
 }
 
 constexpr std::size_t kNum = 200;  // keyframes: 100 m
@@ -114,6 +114,23 @@ TEST(PlanChecks, WithinOneMapAKeyframeIsNotComparedWithItselfOrItsNeighbours) {
     EXPECT_GE(check.theirs, check.own + 40);
     EXPECT_LT((poses[check.own].translation() - poses[check.theirs].translation()).norm(), 3.0);
   }
+}
+
+TEST(MergeTest, ALoopThatItsNeighboursContradictIsLeftOut) {
+  std::vector<PcmLoop> loops;
+  for (const std::uint32_t at : {70U, 80U, 90U, 100U, 110U}) loops.push_back(loop_at(at));
+  loops[2].T_a_b = loops[2].T_a_b * Pose::translation_of(1.0, 0.0, 0.0);
+  const OdometryChain chain = along_x(kNum, 0.05);  // which would allow it
+  const auto loops_of = [&](const std::vector<PcmLoop>& some) {
+    MergeTest test(chain, chain, some, 50.0, measured(look_alikes(0.5)), {});
+    const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+    EXPECT_TRUE(check.accepted) << check.reason;
+    return check.loops;
+  };
+  const auto kept = loops_of(loops);
+  EXPECT_EQ(kept.size(), 4U);
+  EXPECT_EQ(std::ranges::count(kept, 90U, &std::pair<std::uint32_t, std::uint32_t>::first), 0);
+  EXPECT_EQ(loops_of({loops[1], loops[2]}).size(), 2U) << "nobody knows which of the two is right";
 }
 
 TEST(MergeTest, SoManyLoopsHaveToAgreeWhateverThePlacesSay) {
