@@ -78,12 +78,7 @@ TEST(Nclt, AdaptiveRobotsMergeThoughTheOdometryOfOneSlips) {
   ASSERT_TRUE(joint.solution.pairs.at(0).merged) << joint.solution.pairs[0].refused_reason;
   const LoopCounts used = test::loops_in_use(joint, recordings);
   EXPECT_GE(used.total, 30);
-  EXPECT_EQ(used.wrong_registration, 0);
-  // Outdoors places 20 m apart see the same walls: far is not wrong where the transform is right.
-  for (const auto& [loop, T_true] : test::far_loops_in_use(joint, recordings)) {
-    EXPECT_LT((T_true.inverse() * loop.T_from_to).translation().norm(), 0.6);
-    EXPECT_LT((T_true.inverse() * loop.T_from_to).angle(), 0.05);
-  }
+  EXPECT_EQ(used.wrong(), 0);
   const auto errors =
       joint_ate(test::joint_trajectories(joint), std::vector{recordings[0].truth, recordings[1].truth});
   ASSERT_TRUE(errors.has_value()) << errors.error().message;

@@ -61,20 +61,6 @@ inline LoopCounts loops_in_use(const Joint& joint, const std::vector<Recording>&
   return counts;
 }
 
-/// Loops in use between keyframes more than 10 m apart, which count as a wrong place, with their true
-/// T_from_to.
-inline std::vector<std::pair<LoopClosure, Pose>> far_loops_in_use(const Joint& joint,
-                                                                  const std::vector<Recording>& recordings) {
-  std::vector<std::pair<LoopClosure, Pose>> far;
-  for (const LoopOutcome& outcome : joint.solution.loops) {
-    if (!outcome.in_use()) continue;
-    const Pose T_true = true_loop(outcome.loop, joint, recordings);
-    if (classify(outcome.loop, Pose(), T_true) == LoopClass::wrong_place)
-      far.emplace_back(outcome.loop, T_true);
-  }
-  return far;
-}
-
 inline std::vector<Trajectory> joint_trajectories(const Joint& joint) {
   std::vector<Trajectory> trajectories;
   for (const auto& map : joint.maps) {

@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/geometry/voxel_grid.hpp"
 
@@ -32,6 +33,9 @@ bool is_usable(const GraphPart& part) {
   }
   return true;
 }
+
+// Farther apart two scans may show the same walls, but it is not a place to which a robot came.
+constexpr double kOnePlace = 10.0;  // metres
 
 bool same_grid(const ScanContext& a, const ScanContext& b) {
   return a.num_rings == b.num_rings && a.num_sectors == b.num_sectors;
@@ -344,6 +348,11 @@ LoopClosure Agent::verify(const LoopCandidate& candidate, const Features& match)
   loop.weak_axis = registration.weak_axis;
   loop.verdict = registration.verdict;
   loop.reason = registration.reason;
+  if (const double apart = loop.T_from_to.translation().norm();
+      config_.adaptive.on && loop.verdict == LoopVerdict::accepted && apart > kOnePlace) {
+    loop.verdict = LoopVerdict::rejected;
+    loop.reason = format("its ends would be {:.1f} m apart: not one place", apart);
+  }
   return loop;
 }
 

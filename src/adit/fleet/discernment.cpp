@@ -144,7 +144,7 @@ Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryCha
 const Measured& Discernment::measured() {
   if (!measured_) {
     Measured measured;
-    measured.walls.add_same(compare_own_walls().counted());
+    measured.walls.set_same(compare_own_walls().counted());
     follow(walks_from(find_look_alikes_()), measured);
     measured_ = measured;
   }

@@ -328,8 +328,8 @@ std::string MergeTest::reason(std::size_t which, std::optional<std::size_t> riva
     const StandingShare walls = h.offsets.counted();
     return format(
         "walls stand off one another: scan after scan puts {:.0f} % of {} patches on one side, of which "
-        "noise "
-        "leaves half; other tunnels, built alike; drive on until one passes where the other has truly been",
+        "noise leaves half; other tunnels, built alike; drive on until one passes where the other has truly "
+        "been",
         100.0 * walls.share, walls.num_patches);
   }
   if (is_refuted(h))

@@ -141,7 +141,7 @@ double StandingOffsets::evidence(const StandingShares& shares) const {
          std::log(std::max(density(found, *other), kLeast));
 }
 
-void StandingShares::add_same(const StandingShare& share) { same_ = share; }
+void StandingShares::set_same(const StandingShare& share) { same_ = share; }
 
 void StandingShares::add_other(const StandingShare& share) {
   if (share.num_patches >= kSeenWell) others_.push_back(share);

@@ -54,7 +54,7 @@ struct OtherWalls {
 /// Which share of the patches stands off, by what a robot sees in its own map.
 class StandingShares {
  public:
-  void add_same(const StandingShare& share);
+  void set_same(const StandingShare& share);
   /// Of a stretch of wall that only looks like another one.
   void add_other(const StandingShare& share);
 

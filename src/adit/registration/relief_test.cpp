@@ -189,7 +189,7 @@ TEST(StandingOffsets, AreOfOtherWallsWhenMoreStandThanOfTheSame) {
   EXPECT_FALSE(of_a_thousand(560).are_of_other_walls({}, 0.01));
   EXPECT_TRUE(of_a_thousand(600).are_of_other_walls({}, 0.01));
   StandingShares cluttered;  // edges stand off even of one place
-  cluttered.add_same(found(0.6));
+  cluttered.set_same(found(0.6));
   EXPECT_FALSE(of_a_thousand(600).are_of_other_walls(cluttered, 0.01));
   EXPECT_TRUE(of_a_thousand(680).are_of_other_walls(cluttered, 0.01));
 }
@@ -209,11 +209,11 @@ TEST(StandingShares, AreMeasuredOrElseBelieved) {
   const double believed = shares.same().mean;
   EXPECT_GT(believed, 0.5);
   EXPECT_FALSE(shares.other());
-  shares.add_same(found(0.45));
+  shares.set_same(found(0.45));
   EXPECT_EQ(shares.same().mean, believed) << "less than chance is chance";
-  shares.add_same(found(0.9, 50));
+  shares.set_same(found(0.9, 50));
   EXPECT_EQ(shares.same().mean, believed) << "too few patches";
-  shares.add_same(found(0.6));
+  shares.set_same(found(0.6));
   EXPECT_EQ(shares.same().mean, 0.6);
 }
 
