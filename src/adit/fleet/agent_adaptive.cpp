@@ -257,11 +257,11 @@ Agent::Chosen Agent::of_segments(RobotId peer_id, const std::vector<LoopCandidat
     std::vector<Segment> segments;
   };
   std::vector<Ranking> rankings;
-  const int num_further = config.further_candidates / (2 * config.of_a_segment);  // of both kinds
+  const auto num_further =  // of either kind
+      static_cast<std::size_t>(config.further_candidates / (2 * config.of_a_segment));
   const auto rank_by = [&](int num, const std::vector<double>& likeness) {
-    const auto num_in_all = static_cast<std::size_t>(num + num_further);
-    rankings.push_back(
-        {static_cast<std::size_t>(num), agreeing_segments(own, theirs, found, num_in_all, likeness)});
+    const auto num_first = static_cast<std::size_t>(num);
+    rankings.push_back({num_first, agreeing_segments(own, theirs, found, num_first + num_further, likeness)});
   };
   if (config.segments > 0) rank_by(config.segments, {});
   if (config.segments_that_stand_out > 0) rank_by(config.segments_that_stand_out, own_likeness());
