@@ -17,7 +17,7 @@ constexpr float kSameSide = 0.95F;        // cosine between two normals
 constexpr std::size_t kEnoughPoints = 6;  // of b, in a patch: from afar the beams are too few
 constexpr double kTells = 0.002;  // metres; what is less is left by where on a wall the beams happen to fall
 constexpr double kChance = 0.5;
-// Between two robots' drives through one tunnel, over the tuning worlds (decision 0015).
+// Between two robots' drives through one tunnel, in three tuning worlds (decision 0015).
 constexpr SameWalls kSame = {0.52, 0.015};
 // What is believed of look-alikes before any is seen, worth as many stretches.
 constexpr double kPriorSigma = 0.35;
