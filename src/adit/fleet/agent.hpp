@@ -151,8 +151,8 @@ class Agent {
   Replies go_on_testing(RobotId peer_id);
   /// Whether they were what the test had asked for.
   bool compare_clouds_of(RobotId from, const Clouds& clouds);
-  /// After many loops of which no two say anything true, the true ones may not have been among them.
-  [[nodiscard]] bool searches_on(RobotId peer_id, const MergeCheck& check);
+  /// Many loops, and all that they say is refuted: the true ones may not have been among the candidates.
+  [[nodiscard]] bool leads_nowhere(const MergeCheck& check) const;
   Replies conclude_test(RobotId peer_id);
   void decide(MergeCheck check);
   [[nodiscard]] std::shared_ptr<const OtherPlaces> other_places();

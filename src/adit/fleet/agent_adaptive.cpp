@@ -211,23 +211,21 @@ bool Agent::compare_clouds_of(RobotId from, const Clouds& clouds) {
   return true;
 }
 
-bool Agent::searches_on(RobotId peer_id, const MergeCheck& check) {
+bool Agent::leads_nowhere(const MergeCheck& check) const {
   constexpr std::size_t kMany = 4;  // one loop of so many candidates: where places differ there are fewer
-  Peer& peer = peers_.at(peer_id);
   std::size_t num_loops = 0;
   for (const MergeHypothesis& hypothesis : check.hypotheses) {
     if (hypothesis.outcome != HypothesisOutcome::refuted) return false;
     num_loops += hypothesis.loops.size();
   }
-  if (kMany * num_loops < static_cast<std::size_t>(config_.adaptive.candidates)) return false;
-  await_clouds(peer_id, std::exchange(peer.further, {}));
-  return !peer.waiting.empty();
+  return kMany * num_loops >= static_cast<std::size_t>(config_.adaptive.candidates);
 }
 
 Agent::Replies Agent::conclude_test(RobotId peer_id) {
   Peer& peer = peers_.at(peer_id);
   MergeCheck check = peer.test->verdict(map_->id, peer_id);
-  if (searches_on(peer_id, check)) {
+  if (leads_nowhere(check)) await_clouds(peer_id, std::exchange(peer.further, {}));
+  if (!peer.waiting.empty()) {
     peer.test.reset();
     return cloud_request(peer_id);
   }

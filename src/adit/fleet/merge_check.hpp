@@ -67,9 +67,10 @@ struct CheckedPlace {
 /// The test of two robots' loops: asks for comparisons until it knows.
 class MergeTest {
  public:
-  /// `loops`: all that registration accepted, with those that say something else. `known_before`: evidence
-  /// for each that does not come from comparing scans; of a hypothesis the least of its loops' counts.
-  /// `measured` is asked only where scans leave a hypothesis to be weighed.
+  /// `loops`: all that registration accepted, with those that say something else; of those that agree, the
+  /// ones that most of their neighbours contradict are left out. `known_before`: evidence for each that does
+  /// not come from comparing scans; of a hypothesis the least of its loops' counts. `measured` is asked only
+  /// where scans leave a hypothesis to be weighed.
   MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
             double reach_m, MeasuredWhenAsked measured, const MergeCheckConfig& config,
             const std::vector<double>& known_before = {});

@@ -31,11 +31,11 @@ struct PatchOffset {
 [[nodiscard]] std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& b,
                                                      const Pose& T_a_b, const Pose& T_map_a);
 
-/// Of how many patches, and how far off it may be by chance (one sigma).
+/// How often two pairs of scans that saw a patch put the wall on one side; chance, where none was seen twice.
 struct StandingShare {
-  std::size_t num_patches = 0;
-  double share = 0.5;
-  double sigma = 0.5;
+  std::size_t num_patches = 0;  ///< Over which it was counted.
+  double share = 0.5;           ///< Of one.
+  double sigma = 0.5;           ///< By which it may be off by chance.
 };
 
 /// How the share lies among stretches of one wall: normally, beside what it is off by chance.
@@ -54,6 +54,7 @@ struct OtherWalls {
 /// Which share of the patches stands off, by what a robot sees in its own map.
 class StandingShares {
  public:
+  /// Of its own walls, seen twice.
   void set_same(const StandingShare& share);
   /// Of a stretch of wall that only looks like another one.
   void add_other(const StandingShare& share);
@@ -75,8 +76,7 @@ class StandingShares {
 class StandingOffsets {
  public:
   void add(const std::vector<PatchOffset>& of_a_pair);
-  /// Over the patches that two pairs or more saw: of two pairs that saw one, the share that agree on the
-  /// side.
+  /// Over the patches that two pairs or more saw.
   [[nodiscard]] StandingShare counted() const;
   /// So large a share happens less often than `rate` where the walls are the same; never with fewer than 200
   /// patches.
