@@ -70,7 +70,9 @@ std::vector<MergePicture> merge_pictures(const FleetGraph& fleet, const FleetSol
     MergePicture picture;
     picture.robots = {fleet.robots.at(check.a).name, fleet.robots.at(check.b).name};
     picture.merged = pair->merged;
-    picture.verdict = pair->merged ? check.reason : pair->refused_reason;
+    picture.verdict = !pair->merged                 ? pair->refused_reason
+                      : pair->joined_reason.empty() ? check.reason
+                                                    : pair->joined_reason;
     picture.evidence_needed = check.needed;
     picture.path = odometry_of(fleet.robots.at(check.a), Pose());
     for (const MergeHypothesis& h : check.hypotheses)

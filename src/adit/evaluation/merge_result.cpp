@@ -75,12 +75,13 @@ Table summary_table(const std::vector<MergeRun>& runs) {
       "Mergeable pairs share at least 25 m and a place that is like no other in the scans of both. Bent: "
       "merged in the right place, but with an ATE of 1 % of the path or more. Indistinct: merged rightly, of "
       "the pairs that share 25 m and no such place. Kept apart: of the pairs that share less. Joint: all "
-      "robots of a world at once; whole where all are in one map that mergeable pairs join. CPU: processor "
+      "robots of a world at once; merged: mergeable pairs that end in one right map; whole where all are in "
+      "one map that mergeable pairs join. CPU: processor "
       "time of all threads from the robots' maps to the joint solution.",
       {},
       {"Worlds", "Keyframes", "Number", "Merged well", "Bent", "Refused", "Indistinct", "Kept apart",
-       "Wrong merges", "Wrong loops", "Joint: whole", "Joint: wrong", "Joint: wrong loops", "Registrations",
-       "CPU (s)"},
+       "Wrong merges", "Wrong loops", "Joint: merged", "Joint: whole", "Joint: wrong", "Joint: wrong loops",
+       "Registrations", "CPU (s)"},
       {}};
   for (const GroupAndPolicy& key : groups_of(runs)) {
     MergeCounts counts;
@@ -91,9 +92,10 @@ Table summary_table(const std::vector<MergeRun>& runs) {
                           format("{}", counts.refused),
                           share_text(counts.indistinct_merged, counts.indistinct),
                           share_text(counts.kept_apart, counts.others), format("{}", counts.wrong),
-                          format("{}", counts.wrong_loops), share_text(counts.joint_whole, counts.worlds),
-                          format("{}", counts.joint_wrong), format("{}", counts.joint_wrong_loops),
-                          format("{}", counts.registrations), format("{:.1f}", counts.time_s)});
+                          format("{}", counts.wrong_loops), share_text(counts.joint_merged, counts.mergeable),
+                          share_text(counts.joint_whole, counts.worlds), format("{}", counts.joint_wrong),
+                          format("{}", counts.joint_wrong_loops), format("{}", counts.registrations),
+                          format("{:.1f}", counts.time_s)});
   }
   return table;
 }
@@ -208,6 +210,8 @@ void MergeCounts::add(const MergeRun& run) {
     wrong_loops += pair.wrong_loops_in_use;
     if (pair.mergeable()) {
       ++mergeable;
+      joint_merged +=
+          !run.joint.wrong && are_within({{pair.robots[0], pair.robots[1]}}, run.joint.maps) ? 1 : 0;
       success += is(MergeOutcome::success);
       bent += is(MergeOutcome::bent);
       refused += is(MergeOutcome::refused);

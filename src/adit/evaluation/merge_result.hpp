@@ -96,6 +96,7 @@ struct MergeCounts {
   int others = 0, kept_apart = 0;             ///< Pairs that share less.
   int wrong = 0;                              ///< Of all pairs.
   int wrong_loops = 0, joint_wrong_loops = 0, joint_wrong = 0, joint_whole = 0;
+  int joint_merged = 0;  ///< Mergeable pairs that share a map with all robots of the world, and a right one.
   int registrations = 0;
   double time_s = 0.0;
 

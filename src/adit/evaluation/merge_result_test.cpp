@@ -74,6 +74,7 @@ TEST(MergeCounts, PairsAreCountedByWhatTheyShare) {
   EXPECT_EQ(counts.kept_apart, 2);
   EXPECT_EQ(counts.wrong, 4);
   EXPECT_EQ(counts.joint_whole, 0);
+  EXPECT_EQ(counts.joint_merged, 6);  // all of them between robots 0 and 1
   EXPECT_EQ(counts.registrations, 1000);
 }
 
@@ -98,9 +99,14 @@ TEST(MergeCounts, AMapThatHoldsMoreThanMergeablePairsWouldJoinIsWhole) {
   MergeCounts counts;
   counts.add(run);
   EXPECT_EQ(counts.joint_whole, 1);
+  EXPECT_EQ(counts.joint_merged, 3);
   run.joint.wrong = true;
   counts.add(run);
+  run.joint.wrong = false;
+  run.joint.maps = {{"robot_0"}, {"robot_1", "robot_2"}};
+  counts.add(run);
   EXPECT_EQ(counts.joint_whole, 1);
+  EXPECT_EQ(counts.joint_merged, 3);
 }
 
 TEST(MergeTables, OfVariantsTellOnlyTheSumsAndTheWrongMerges) {

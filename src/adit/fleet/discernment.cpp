@@ -116,16 +116,17 @@ void LookAlikes::add(std::size_t passed, bool went_on) {
   if (!went_on) ++phase.num_ended;
 }
 
-double LookAlikes::chance_to_go_on(std::size_t passed) const {
-  const std::size_t num_phases = std::min<std::size_t>(std::bit_width(passed + 1), phases_.size());
+ChancesToGoOn LookAlikes::chances() const {
+  ChancesToGoOn chances{};
   double chance = kPriorChance;
-  for (std::size_t p = 0; p < num_phases; ++p) {
+  for (std::size_t p = 0; p < phases_.size(); ++p) {
     const auto steps = static_cast<double>(phases_[p].num_steps);
     const auto went_on = steps - static_cast<double>(phases_[p].num_ended);
     const double measured = (went_on + chance * kPriorSteps) / (steps + kPriorSteps);
     chance = p == 0 ? measured : std::max(chance, measured);
+    chances[p] = chance;
   }
-  return chance;
+  return chances;
 }
 
 Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryChain chain,
@@ -282,23 +283,21 @@ void Discernment::follow(std::vector<Walk> walks, Measured& measured) {
   while (!walks.empty()) {
     std::vector<Fit> next;
     std::vector<std::uint32_t> places;
+    std::vector<std::size_t> differing;
     for (Walk& walk : walks) {
       walk.way += walk.direction * config_.spacing_m;
-      // The two drives run the same way along the look-alike, or one against the other; keyframe b stands
-      // T_a_b.x ahead of a already, and the two that are compared stand at one of the distances in turn.
-      const double sense = (walk.T_a_b.rotation_matrix() * Vector3::UnitX()).x() > 0.0 ? 1.0 : -1.0;
-      const double apart = kDistances[next.size() % kDistances.size()];
-      const auto a = keyframe_at(way_, way_[walk.a] + walk.way);
-      const auto b =
-          keyframe_at(way_, way_[walk.b] + sense * (walk.way + apart - walk.T_a_b.translation().x()));
-      walk.is_over = std::abs(walk.way) > kFollowed || !a || !b;
+      const std::optional<Fit> fit = at(walk, walk.way, kDistances[next.size() % kDistances.size()]);
+      walk.is_over = std::abs(walk.way) > kFollowed || !fit;
       if (walk.is_over) continue;
-      next.push_back({*a, *b, chain_.between(*a, walk.a) * walk.T_a_b * chain_.between(walk.b, *b)});
-      places.push_back(*a);
+      next.push_back(*fit);
+      places.push_back(fit->a);
     }
     std::erase_if(walks, [](const Walk& walk) { return walk.is_over; });
     const std::vector<bool> tells = distinctive(places);
-    const std::vector<LocalFit> found = fits(next, limit_, FitFrom::along_the_way);
+    std::vector<LocalFit> found = fits(next, limit_, FitFrom::along_the_way);
+    for (std::size_t w = 0; w < walks.size(); ++w)
+      if (differ(found[w].agreement)) differing.push_back(w);
+    if (config_.second_looks) look_again(walks, differing, next, found);
     for (std::size_t w = 0; w < walks.size(); ++w) {
       walks[w].is_over = differ(found[w].agreement);
       if (!walks[w].is_over)
@@ -310,6 +309,36 @@ void Discernment::follow(std::vector<Walk> walks, Measured& measured) {
     std::erase_if(walks, [](const Walk& walk) { return walk.is_over; });
   }
   for (const StandingOffsets& of_one : offsets) measured.walls.add_other(of_one.counted());
+}
+
+std::optional<Discernment::Fit> Discernment::at(const Walk& walk, double way, double apart) const {
+  // The two drives run the same way along the look-alike, or one against the other; keyframe b stands
+  // T_a_b.x ahead of a already.
+  const double sense = (walk.T_a_b.rotation_matrix() * Vector3::UnitX()).x() > 0.0 ? 1.0 : -1.0;
+  const auto a = keyframe_at(way_, way_[walk.a] + way);
+  const auto b = keyframe_at(way_, way_[walk.b] + sense * (way + apart - walk.T_a_b.translation().x()));
+  if (!a || !b) return {};
+  return Fit{*a, *b, chain_.between(*a, walk.a) * walk.T_a_b * chain_.between(walk.b, *b)};
+}
+
+void Discernment::look_again(const std::vector<Walk>& walks, const std::vector<std::size_t>& which,
+                             std::vector<Fit>& fitted, std::vector<LocalFit>& found) {
+  std::vector<std::size_t> seen;
+  std::vector<Fit> asked;
+  for (const std::size_t w : which)
+    for (const double metres : {kSecondLook, -kSecondLook}) {
+      const std::optional<Fit> fit = at(walks[w], walks[w].way + metres, kDistances.front());
+      if (!fit) continue;
+      seen.push_back(w);
+      asked.push_back(*fit);
+      break;
+    }
+  const std::vector<LocalFit> again = fits(asked, limit_, FitFrom::along_the_way);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (differ(again[i].agreement)) continue;
+    fitted[seen[i]] = asked[i];
+    found[seen[i]] = again[i];
+  }
 }
 
 // Both ways: an end of a niche may show one way and not the other.

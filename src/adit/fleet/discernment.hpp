@@ -15,6 +15,7 @@
 #include "adit/core/config.hpp"
 #include "adit/fleet/keyframe_store.hpp"
 #include "adit/fleet/lanes.hpp"
+#include "adit/fleet/protocol.hpp"
 #include "adit/place/place_index.hpp"
 #include "adit/posegraph/pcm.hpp"
 #include "adit/registration/registration_config.hpp"
@@ -28,6 +29,7 @@ struct DiscernmentConfig {
   double spacing_m = 3.0;
   double displacement_m = 5.0;
   double allowance = 1.5;
+  bool second_looks = true;
 };
 inline Fields fields_of(DiscernmentConfig& c) {
   return {
@@ -39,8 +41,14 @@ inline Fields fields_of(DiscernmentConfig& c) {
       {"displacement_m", &c.displacement_m, "m", 0.5, 1000.0,
        "a place is distinctive when scans this much farther along the way differ"},
       {"allowance", &c.allowance, "", 1.0, 100.0,
-       "scans differ beyond this times what nine of ten pairs of scans of one place do"}};
+       "scans differ beyond this times what nine of ten pairs of scans of one place do"},
+      {"second_looks", &c.second_looks, "", 0, 0,
+       "where scans differ, others a metre on decide whether the place does"}};
 }
+
+/// Where scans differ a fit may have failed, or a niche lie in the shadow of one of them. Whether they differ
+/// so far along the way, too, decides: metres.
+inline constexpr double kSecondLook = 1.0;
 
 /// Way driven up to each keyframe, metres.
 [[nodiscard]] std::vector<double> way_along(const OdometryChain& chain);
@@ -79,15 +87,15 @@ class LookAlikes {
  public:
   /// One that has agreed at `passed` distinctive places so far agreed at the next one, or differed.
   void add(std::size_t passed, bool went_on);
-  /// That one which has agreed at `passed` distinctive places also agrees at the next one.
-  [[nodiscard]] double chance_to_go_on(std::size_t passed) const;
+  /// Of each phase.
+  [[nodiscard]] ChancesToGoOn chances() const;
 
  private:
   struct Phase {
     std::size_t num_steps = 0;
     std::size_t num_ended = 0;
   };
-  std::array<Phase, 8> phases_;  ///< After 0, 1, 3, 7, 15, ... agreements.
+  std::array<Phase, std::tuple_size_v<ChancesToGoOn>> phases_;
 };
 
 /// What a robot has measured on its own map, to judge what it shares with others.
@@ -134,6 +142,11 @@ class Discernment {
   [[nodiscard]] std::vector<Walk> walks_from(const std::vector<LoopCandidate>& similar) const;
   [[nodiscard]] std::optional<Walk> walk_from(const LoopCandidate& candidate) const;
   void follow(std::vector<Walk> walks, Measured& measured);
+  /// So far along the walk; the two that are compared stand `apart` metres from one another.
+  [[nodiscard]] std::optional<Fit> at(const Walk& walk, double way, double apart) const;
+  /// Takes the place of what was fitted where scans differ, if they agree there.
+  void look_again(const std::vector<Walk>& walks, const std::vector<std::size_t>& which,
+                  std::vector<Fit>& fitted, std::vector<LocalFit>& found);
 
   static constexpr std::array<double, 3> kDistances = {0.5, 1.0, 2.0};  ///< Metres.
   RegistrationConfig registration_;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "adit/fleet/discernment.hpp"
 
+#include "adit/fleet/merge_evidence.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -105,8 +107,8 @@ TEST(Discernment, BlocksThatRepeatGoOnLongerThanBlocksThatDoNot) {
   const LookAlikes with_tiles = tiles.discernment.measured().look_alikes;
   const LookAlikes without = OnAMap(in_a_tube(irregular)).discernment.measured().look_alikes;
   for (const std::size_t passed : {0U, 1U, 5U, 40U}) {
-    EXPECT_GT(with_tiles.chance_to_go_on(passed), 0.7);
-    EXPECT_LT(without.chance_to_go_on(passed), 0.6);
+    EXPECT_GT(chance_to_go_on(with_tiles.chances(), passed), 0.7);
+    EXPECT_LT(chance_to_go_on(without.chances(), passed), 0.6);
   }
   // All of them were cast in one mould: their walls say nothing.
   EXPECT_FALSE(tiles.discernment.measured().walls.other());
@@ -128,26 +130,27 @@ TEST(Discernment, AHeadingThatWandersLeadsLessFar) {
 }
 
 TEST(LookAlikes, GoOnHalfTheTimeUntilSomethingIsKnown) {
-  for (const std::size_t passed : {0U, 1U, 2U, 100U}) EXPECT_EQ(LookAlikes().chance_to_go_on(passed), 0.5);
+  for (const std::size_t passed : {0U, 1U, 2U, 100U})
+    EXPECT_EQ(chance_to_go_on(LookAlikes().chances(), passed), 0.5);
 }
 
 TEST(LookAlikes, ThatHaveGoneOnForLongAreTrustedToGoOn) {
   LookAlikes seen;
   for (int i = 0; i < 80; ++i) seen.add(0, i < 8);   // nine of ten end at once,
   for (int i = 0; i < 80; ++i) seen.add(7, i < 76);  // and those that passed seven go on
-  EXPECT_LT(seen.chance_to_go_on(0), 0.2);
-  EXPECT_LT(seen.chance_to_go_on(6), 0.2);
-  EXPECT_GT(seen.chance_to_go_on(7), 0.8);
-  EXPECT_EQ(seen.chance_to_go_on(14), seen.chance_to_go_on(7));  // one phase
-  EXPECT_EQ(seen.chance_to_go_on(1000), seen.chance_to_go_on(7));
+  EXPECT_LT(chance_to_go_on(seen.chances(), 0), 0.2);
+  EXPECT_LT(chance_to_go_on(seen.chances(), 6), 0.2);
+  EXPECT_GT(chance_to_go_on(seen.chances(), 7), 0.8);
+  EXPECT_EQ(chance_to_go_on(seen.chances(), 14), chance_to_go_on(seen.chances(), 7));  // one phase
+  EXPECT_EQ(chance_to_go_on(seen.chances(), 1000), chance_to_go_on(seen.chances(), 7));
 }
 
 TEST(LookAlikes, TheChanceNeverFallsWithTheWayThatTheyHaveGone) {
   LookAlikes seen;
   for (int i = 0; i < 80; ++i) seen.add(0, i < 72);
   for (int i = 0; i < 80; ++i) seen.add(3, false);  // a mere chance of this map
-  EXPECT_GT(seen.chance_to_go_on(0), 0.8);
-  EXPECT_EQ(seen.chance_to_go_on(3), seen.chance_to_go_on(0));
+  EXPECT_GT(chance_to_go_on(seen.chances(), 0), 0.8);
+  EXPECT_EQ(chance_to_go_on(seen.chances(), 3), chance_to_go_on(seen.chances(), 0));
 }
 
 TEST(OtherPlaces, NamesThePlaceThatLooksAlikeAndNoneNearBy) {

@@ -285,6 +285,8 @@ Fields fields_of(BackEndConfig& c) {
       {"checks_needed", &c.checks_needed, "", 0, 0, "let only pairs share a map that passed the merge check"},
       {"cycles_needed", &c.cycles_needed, "", 0, 0,
        "take back merges that passed it and that merges with third robots contradict"},
+      {"joint_evidence", &c.joint_evidence, "", 0, 0,
+       "join maps, too, for which several pairs of robots have enough evidence only together"},
       {"min_loops", &c.min_loops, "", 1, 10000, "loops in use that two robots need to share a map"},
       {"loop_translation", &c.loop_translation, "m", 1e-4, 10.0, "sigma of a loop's translation"},
       {"loop_rotation_deg", &c.loop_rotation_deg, "deg", 1e-3, 90.0, "sigma of a loop's rotation"}};

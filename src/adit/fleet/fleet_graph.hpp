@@ -35,7 +35,8 @@ struct BackEndConfig {
   bool pcm_on = true;
   bool gnc_on = true;
   bool checks_needed = false;     ///< Only pairs with an accepted MergeCheck may share a map.
-  bool cycles_needed = true;      ///< And only as long as the merges of others do not contradict it.
+  bool cycles_needed = true;      ///< And only as long as the merges of others do not contradict it;
+  bool joint_evidence = true;     ///< or those that only several pairs together have enough evidence for.
   int min_loops = 1;              ///< Loops in use between two robots before they count as merged.
   double loop_translation = 0.1;  ///< Fixed sigmas of a loop, as in Swarm-SLAM's back-end.
   double loop_rotation_deg = 0.6;
@@ -60,6 +61,7 @@ struct PairOutcome {
   std::size_t second_clique = 0;  ///< The largest one disjoint from it.
   bool clique_exact = true;
   bool merged = false;
+  std::string joined_reason;   ///< One sentence where pairs together decided what its own test left open.
   std::string refused_reason;  ///< One sentence; "" when merged.
 };
 

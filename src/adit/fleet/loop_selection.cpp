@@ -6,6 +6,7 @@
 #include <set>
 
 #include "adit/core/format.hpp"
+#include "adit/fleet/joint_evidence.hpp"
 #include "adit/fleet/merge_cycles.hpp"
 
 namespace adit {
@@ -120,6 +121,15 @@ std::string taken_back(const FleetGraph& fleet, const std::vector<Merge>& merges
       has_least_evidence ? "has the least evidence of them" : "without it the others agree best");
 }
 
+std::string joined(const FleetGraph& fleet, const JointMerge& joint) {
+  std::string pairs;
+  for (const Merge& merge : joint.merges)
+    pairs += format("{}{}-{} ({:.1f})", pairs.empty() ? "" : " and ", fleet.robots.at(merge.a).name,
+                    fleet.robots.at(merge.b).name, merge.evidence);
+  return format("{} say the same: evidence {:.1f} together and {:.1f} needed", pairs, joint.evidence,
+                joint.needed);
+}
+
 /// What scans refuted about pairs of robots that did not merge.
 std::vector<Merge> refuted_hypotheses(const FleetGraph& fleet, const BackEndConfig& config) {
   std::vector<Merge> out;
@@ -139,28 +149,67 @@ std::vector<Merge> refuted_hypotheses(const FleetGraph& fleet, const BackEndConf
   return out;
 }
 
-/// Takes the loops of merges out that cycles of robots contradict.
-void take_back(const FleetGraph& fleet, Chains& chains, const BackEndConfig& config,
-               LoopSelection& selection) {
-  std::vector<Merge> merges;
-  std::vector<PairOutcome*> pairs;
-  std::map<RobotId, OdometryChain> of_robots;
-  for (PairOutcome& pair : selection.pairs) {
-    if (pair.clique == 0) continue;
-    Merge merge{pair.a, pair.b, fleet.checks.at({pair.a, pair.b}).evidence, {}};
-    for (const std::size_t l : selection.of_pairs.at({pair.a, pair.b}))
-      if (selection.loops[l].in_clique) merge.loops.push_back(pcm_loop_of(selection.loops[l].loop, config));
-    merges.push_back(std::move(merge));
-    pairs.push_back(&pair);
-    for (const RobotId robot : {pair.a, pair.b}) of_robots.emplace(robot, chains.of(robot));
+/// Looks at what pairs of robots say together.
+class Fleetwide {
+ public:
+  Fleetwide(const FleetGraph& fleet, Chains& chains, const BackEndConfig& config, LoopSelection& selection)
+      : fleet_(fleet), config_(config), selection_(selection) {
+    for (const PairOutcome& pair : selection.pairs) {
+      for (const RobotId robot : {pair.a, pair.b})
+        if (fleet.checks.contains({pair.a, pair.b})) chains_.emplace(robot, chains.of(robot));
+      if (pair.clique == 0) continue;
+      Merge merge{pair.a, pair.b, fleet.checks.at({pair.a, pair.b}).evidence, {}};
+      for (const std::size_t l : selection.of_pairs.at({pair.a, pair.b}))
+        if (selection.loops[l].in_clique) merge.loops.push_back(pcm_loop_of(selection.loops[l].loop, config));
+      merges_.push_back(std::move(merge));
+    }
   }
-  for (const Contradiction& contradiction :
-       contradictions(merges, refuted_hypotheses(fleet, config), of_robots)) {
-    PairOutcome& pair = *pairs[contradiction.merge];
-    pair.refused_reason = taken_back(fleet, merges, contradiction);
-    for (const std::size_t l : selection.of_pairs.at({pair.a, pair.b})) selection.loops[l].in_clique = false;
+
+  /// Takes the loops of merges out that cycles of robots contradict.
+  void take_back() {
+    std::set<std::size_t> gone;
+    for (const Contradiction& contradiction :
+         contradictions(merges_, refuted_hypotheses(fleet_, config_), chains_)) {
+      const Merge& merge = merges_[contradiction.merge];
+      outcome_of(merge).refused_reason = taken_back(fleet_, merges_, contradiction);
+      for (const std::size_t l : selection_.of_pairs.at({merge.a, merge.b}))
+        selection_.loops[l].in_clique = false;
+      gone.insert(contradiction.merge);
+    }
+    std::vector<Merge> left;
+    for (std::size_t m = 0; m < merges_.size(); ++m)
+      if (!gone.contains(m)) left.push_back(std::move(merges_[m]));
+    merges_ = std::move(left);
   }
-}
+
+  /// Puts those in that have enough evidence only together.
+  void join() {
+    for (const JointMerge& joint : joint_merges(fleet_, merges_, chains_, config_))
+      for (const Merge& merge : joint.merges) {
+        PairOutcome& pair = outcome_of(merge);
+        std::set<std::pair<std::size_t, std::size_t>> ends;
+        for (const PcmLoop& loop : merge.loops) ends.emplace(loop.a, loop.b);
+        for (const std::size_t l : selection_.of_pairs.at({merge.a, merge.b})) {
+          const LoopClosure& loop = selection_.loops[l].loop;
+          selection_.loops[l].in_clique = ends.contains({loop.from.index, loop.to.index});
+        }
+        pair.clique = merge.loops.size();
+        pair.joined_reason = joined(fleet_, joint);
+      }
+  }
+
+ private:
+  PairOutcome& outcome_of(const Merge& merge) {
+    return *std::ranges::find_if(
+        selection_.pairs, [&](const PairOutcome& pair) { return pair.a == merge.a && pair.b == merge.b; });
+  }
+
+  const FleetGraph& fleet_;
+  const BackEndConfig& config_;
+  LoopSelection& selection_;
+  std::map<RobotId, OdometryChain> chains_;
+  std::vector<Merge> merges_;  ///< Those that stand.
+};
 
 }  // namespace
 
@@ -179,7 +228,10 @@ LoopSelection select_loops(const FleetGraph& fleet, const BackEndConfig& config)
     }
   }
   keep_revisits(fleet, selection);
-  if (config.checks_needed && config.cycles_needed) take_back(fleet, chains, config, selection);
+  if (!config.checks_needed) return selection;
+  Fleetwide fleetwide(fleet, chains, config, selection);
+  if (config.cycles_needed) fleetwide.take_back();
+  if (config.joint_evidence) fleetwide.join();
   return selection;
 }
 

@@ -4,40 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 
 #include "adit/core/format.hpp"
+#include "adit/fleet/merge_evidence.hpp"
 #include "adit/fleet/revisits.hpp"
 
 namespace adit {
 namespace {
 
-constexpr double kTrueCheck = 0.97;    // chance that scans do not differ where the alignment is true,
-constexpr double kTrueAtWorst = 0.95;  // and between two robots in whose case it is least
+constexpr double kTrueAtWorst = 0.95;  // least chance that scans do not differ where the alignment is true
 // A difference of three times the limit is a niche or a cabinet, not noise: in true alignments only a fit
 // that failed leaves it.
 constexpr double kGross = 3.0;
 constexpr double kTrueGross = 0.005;     // chance of that where the alignment is true
-constexpr double kSide = 3.0;            // metres between two keyframes that are compared
 constexpr double kSameAlignment = 3.0;   // metres between two hypotheses that say the same
 constexpr std::size_t kFirstChecks = 8;  // of each hypothesis, before the best ones get more
-
-// Places far apart first: the middle, the quarters, and so on.
-std::vector<PlannedCheck> coarse_to_fine(const std::vector<PlannedCheck>& plan) {
-  std::vector<PlannedCheck> out;
-  std::vector<bool> taken(plan.size(), false);
-  for (std::size_t parts = 2; out.size() < plan.size(); parts *= 2) {
-    for (std::size_t part = 1; part < 2 * parts; part += 2) {
-      const std::size_t i = part * plan.size() / (2 * parts);
-      if (!taken[i]) out.push_back(plan[i]);
-      taken[i] = true;
-    }
-    if (parts <= 2 * plan.size()) continue;
-    for (std::size_t i = 0; i < plan.size(); ++i)
-      if (!taken[i]) out.push_back(plan[i]);
-  }
-  return out;
-}
 
 // The chance of `k` or more out of `n` where each comes with chance `p`.
 double at_least(std::size_t k, std::size_t n, double p) {
@@ -133,41 +116,6 @@ Fields fields_of(MergeCheckConfig& c) {
   return fields;
 }
 
-std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryChain& theirs,
-                                      const std::vector<PcmLoop>& loops, double reach_m,
-                                      const MergeCheckConfig& config) {
-  const std::vector<double> own_way = way_along(own);
-  const std::vector<double> their_way = way_along(theirs);
-  std::vector<PlannedCheck> plan;
-  double last = -config.spacing_m;
-  for (std::uint32_t j = 0; j < theirs.size() && !loops.empty(); ++j) {
-    if (their_way[j] - last < config.spacing_m) continue;
-    const auto& loop = *std::ranges::min_element(
-        loops, {}, [&](const PcmLoop& l) { return std::abs(their_way[l.b] - their_way[j]); });
-    const double from_loop = std::abs(their_way[loop.b] - their_way[j]);
-    if (from_loop > reach_m) continue;
-    const Pose T_loop_theirs = loop.T_a_b * theirs.between(loop.b, j);
-    const Vector3 at = own.pose(loop.a) * T_loop_theirs.translation();
-    std::optional<std::uint32_t> nearest;
-    double best = kSide;
-    for (std::uint32_t i = 0; i < own.size(); ++i) {
-      if (std::abs(own_way[i] - own_way[loop.a]) > from_loop + 2.0 * kSide) continue;
-      if (&own == &theirs && their_way[j] - own_way[i] < kRevisitWay) continue;
-      const double distance = (own.pose(i).translation() - at).norm();
-      if (distance < best) {
-        best = distance;
-        nearest = i;
-      }
-    }
-    if (!nearest) continue;
-    plan.push_back({*nearest, j, own.between(*nearest, loop.a) * T_loop_theirs});
-    last = their_way[j];
-  }
-  plan = coarse_to_fine(plan);
-  plan.resize(std::min(plan.size(), static_cast<std::size_t>(config.max_checks)));
-  return plan;
-}
-
 MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
                      double reach_m, MeasuredWhenAsked measured, const MergeCheckConfig& config,
                      const std::vector<double>& known_before)
@@ -185,49 +133,48 @@ MergeTest::MergeTest(const OdometryChain& own, const OdometryChain& theirs, cons
       hypothesis.apart_m.push_back(apart(picked(loops, other.loops), agreeing, own, theirs));
     if (std::ranges::any_of(hypothesis.apart_m, [](double metres) { return metres <= kSameAlignment; }))
       continue;
-    hypothesis.plan = plan_checks(own, theirs, agreeing, reach_m, config);
+    const CheckPlanner planner(own, theirs, agreeing, reach_m);
+    hypothesis.plan = planner.plan(config.spacing_m, static_cast<std::size_t>(config.max_checks));
+    for (const PlannedCheck& check : hypothesis.plan)
+      hypothesis.second_looks.push_back(config.discernment.second_looks ? planner.again(check)
+                                                                        : std::nullopt);
     if (!known_before.empty()) {
       const auto known = [&](std::size_t l) { return known_before[l]; };
       hypothesis.known_before = known(*std::ranges::min_element(hypothesis.loops, {}, known));
     }
     hypotheses_.push_back(std::move(hypothesis));
   }
-  num_alignments_ = hypotheses_.size() + rest.size();
 }
 
 double MergeTest::needed() const { return std::log(1.0 / config_.error_rate); }
 
-double MergeTest::chance_to_go_on(std::size_t passed) const {
-  return std::min(measured_().look_alikes.chance_to_go_on(passed), kTrueCheck);
+double MergeTest::walls_evidence(const Hypothesis& hypothesis) const {
+  return config_.relief ? hypothesis.offsets.evidence(measured_().walls) : 0.0;
 }
 
 double MergeTest::evidence(const Hypothesis& hypothesis) const {
-  const double of_walls = config_.relief ? hypothesis.offsets.evidence(measured_().walls) : 0.0;
-  return evidence_along_the_way(hypothesis) + of_walls;
+  return evidence_along_the_way(hypothesis) + walls_evidence(hypothesis);
 }
 
 double MergeTest::evidence_along_the_way(const Hypothesis& hypothesis) const {
-  std::vector<std::size_t> along_the_way(hypothesis.checked.size());
-  for (std::size_t i = 0; i < along_the_way.size(); ++i) along_the_way[i] = i;
-  std::ranges::stable_sort(along_the_way, {}, [&](std::size_t i) { return hypothesis.plan[i].own; });
-  double sum = hypothesis.known_before - std::log(static_cast<double>(num_alignments_));
-  std::size_t passed = 0;  // since places differed
-  for (const std::size_t i : along_the_way) {
-    const CheckedPlace& place = hypothesis.checked[i];
-    const double goes_on = chance_to_go_on(passed);
-    if (place.differs()) {
-      sum += std::log((1.0 - kTrueCheck) / (1.0 - goes_on));
-      passed = 0;
-    } else if (place.is_distinctive || !config_.distinctive_only) {
-      sum += evidence_of_agreement(passed);
-      ++passed;
-    }
-  }
-  return sum;
+  const std::vector<double> at_places =
+      evidence_at_places(along_the_way(hypothesis), measured_().look_alikes.chances());
+  const double share = static_cast<double>(hypothesis.loops.size()) / static_cast<double>(loops_.size());
+  return hypothesis.known_before + std::log(share) + std::accumulate(at_places.begin(), at_places.end(), 0.0);
 }
 
-double MergeTest::evidence_of_agreement(std::size_t passed) const {
-  return std::log(kTrueCheck / chance_to_go_on(passed));
+std::vector<TestedPlace> MergeTest::along_the_way(const Hypothesis& hypothesis) const {
+  std::vector<TestedPlace> places;
+  for (std::size_t i = 0; i < hypothesis.checked.size(); ++i) {
+    const CheckedPlace& place = hypothesis.checked[i];
+    const bool tells = place.is_distinctive || !config_.distinctive_only;
+    places.push_back({hypothesis.plan[i].own, hypothesis.plan[i].theirs,
+                      place.differs() ? PlaceOutcome::differs
+                      : tells         ? PlaceOutcome::tells
+                                      : PlaceOutcome::agrees});
+  }
+  std::ranges::stable_sort(places, {}, &TestedPlace::a);
+  return places;
 }
 
 bool MergeTest::has_other_walls(const Hypothesis& h) const {
@@ -245,7 +192,16 @@ bool MergeTest::is_refuted(const Hypothesis& h) const {
          has_other_walls(h);
 }
 
-bool MergeTest::is_finished(const Hypothesis& h) const { return h.checked.size() == h.plan.size(); }
+bool MergeTest::is_finished(const Hypothesis& h) {
+  return h.checked.size() == h.plan.size() && to_look_at_again(h).empty();
+}
+
+std::vector<std::size_t> MergeTest::to_look_at_again(const Hypothesis& h) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < h.checked.size(); ++i)
+    if (h.checked[i].differs() && h.second_looks[i]) out.push_back(i);
+  return out;
+}
 
 std::optional<std::size_t> MergeTest::to_go_on_with() const {
   double best_finished = -std::numeric_limits<double>::infinity();
@@ -255,7 +211,9 @@ std::optional<std::size_t> MergeTest::to_go_on_with() const {
   const auto is_too_late = [&](const Hypothesis& h) {
     const auto num_left = static_cast<double>(h.plan.size() - h.checked.size());
     return std::isfinite(best_finished) &&
-           evidence_along_the_way(h) + num_left * evidence_of_agreement(0) < best_finished - needed();
+           evidence_along_the_way(h) +
+                   num_left * evidence_of_agreement(measured_().look_alikes.chances(), 0) <
+               best_finished - needed();
   };
   // By what needs no measuring of the own map: many a test ends with all refuted.
   const auto share_differing = [](const Hypothesis& h) {
@@ -277,6 +235,12 @@ std::vector<PlannedCheck> MergeTest::next(std::size_t num) const {
   if (!which) return {};
   const Hypothesis& h = hypotheses_[*which];
   const std::size_t from = h.checked.size();
+  if (from == h.plan.size()) {
+    std::vector<PlannedCheck> again;
+    for (const std::size_t i : to_look_at_again(h))
+      if (again.size() < num) again.push_back(*h.second_looks[i]);
+    return again;
+  }
   const std::size_t to = std::min(h.plan.size(), from + (from == 0 ? std::min(num, kFirstChecks) : num));
   return {h.plan.begin() + static_cast<std::ptrdiff_t>(from),
           h.plan.begin() + static_cast<std::ptrdiff_t>(to)};
@@ -284,12 +248,24 @@ std::vector<PlannedCheck> MergeTest::next(std::size_t num) const {
 
 void MergeTest::add(const std::vector<CheckedPlace>& places) {
   const auto which = to_go_on_with();
-  ADIT_CHECK(which && hypotheses_[*which].checked.size() + places.size() <= hypotheses_[*which].plan.size(),
-             "only what was asked for is added");
+  ADIT_CHECK(which, "only what was asked for is added");
   Hypothesis& h = hypotheses_[*which];
+  if (h.checked.size() == h.plan.size()) return add_second_looks(h, places);
+  ADIT_CHECK(h.checked.size() + places.size() <= h.plan.size(), "only what was asked for is added");
   for (const CheckedPlace& place : places) {
     h.offsets.add(place.offsets);
     h.checked.push_back({place.difference, place.is_distinctive});
+  }
+}
+
+void MergeTest::add_second_looks(Hypothesis& h, const std::vector<CheckedPlace>& places) {
+  const std::vector<std::size_t> again = to_look_at_again(h);
+  ADIT_CHECK(places.size() <= again.size(), "only what was asked for is added");
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    h.second_looks[again[i]].reset();
+    if (places[i].differs()) continue;
+    h.offsets.add(places[i].offsets);
+    h.checked[again[i]] = {places[i].difference, places[i].is_distinctive};
   }
 }
 
@@ -311,7 +287,8 @@ std::vector<std::size_t> MergeTest::best_first() const {
 
 std::string MergeTest::what_is_missing(const Hypothesis& h, std::size_t num_distinctive) const {
   constexpr double kFarthest = 1000.0;  // metres that it makes sense to ask for
-  const double num_places = std::ceil((needed() - evidence(h)) / evidence_of_agreement(num_distinctive));
+  const double num_places = std::ceil(
+      (needed() - evidence(h)) / evidence_of_agreement(measured_().look_alikes.chances(), num_distinctive));
   const double share = static_cast<double>(num_distinctive) / static_cast<double>(h.checked.size());
   const double metres = 10.0 * std::ceil(num_places * config_.spacing_m / share / 10.0);
   if (!(metres <= kFarthest))
@@ -370,6 +347,10 @@ MergeHypothesis MergeTest::described(std::size_t which, std::size_t best) const 
   for (const std::size_t l : h.loops)
     out.loops.emplace_back(static_cast<std::uint32_t>(loops_[l].a), static_cast<std::uint32_t>(loops_[l].b));
   const auto is_near = [&] { return evidence(hypotheses_[best]) - evidence(h) < needed(); };
+  if (!is_refuted(h)) {
+    out.places = along_the_way(h);
+    out.walls = walls_evidence(h);
+  }
   out.outcome = is_refuted(h)   ? HypothesisOutcome::refuted
                 : which == best ? HypothesisOutcome::unsure
                 : is_near()     ? HypothesisOutcome::rival
@@ -390,6 +371,7 @@ MergeCheck MergeTest::verdict(RobotId a, RobotId b) const {
   for (const std::size_t h : std::span(order).first(std::min(order.size(), kHypothesesPerCheck)))
     out.hypotheses.push_back(described(h, order.front()));
   MergeHypothesis& best = out.hypotheses.front();
+  if (best.outcome != HypothesisOutcome::refuted) out.goes_on = measured_().look_alikes.chances();
   const bool has_rival = out.hypotheses.size() > 1 && out.hypotheses[1].outcome == HypothesisOutcome::rival;
   out.accepted = best.outcome != HypothesisOutcome::refuted && !has_rival &&
                  std::ssize(best.loops) >= config_.min_loops && is_finished(hypotheses_[order.front()]) &&

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "adit/core/config.hpp"
+#include "adit/fleet/check_plan.hpp"
 #include "adit/fleet/discernment.hpp"
 #include "adit/fleet/protocol.hpp"
 #include "adit/posegraph/pcm.hpp"
@@ -42,19 +43,6 @@ struct MergeCheckConfig {
   DiscernmentConfig discernment;
 };
 Fields fields_of(MergeCheckConfig& config);
-
-/// Two keyframes that stand next to one another if the loops are true.
-struct PlannedCheck {
-  std::uint32_t own = 0;
-  std::uint32_t theirs = 0;
-  Pose T_own_theirs;
-};
-/// Along the whole stretch that both drove, up to `reach_m` along the way from the nearest of `loops` (which
-/// agree with one another); places far apart first, those between them later. With the same chain given
-/// twice: revisits, the earlier keyframe of the two as `own`.
-[[nodiscard]] std::vector<PlannedCheck> plan_checks(const OdometryChain& own, const OdometryChain& theirs,
-                                                    const std::vector<PcmLoop>& loops, double reach_m,
-                                                    const MergeCheckConfig& config);
 
 /// One place where two maps were compared.
 struct CheckedPlace {
@@ -86,6 +74,7 @@ class MergeTest {
   struct Hypothesis {
     std::vector<std::size_t> loops;
     std::vector<PlannedCheck> plan;
+    std::vector<std::optional<PlannedCheck>> second_looks;  ///< Of each place of the plan, until taken.
     std::vector<CheckedPlace> checked;
     StandingOffsets offsets;
     std::vector<double> apart_m;  ///< From each hypothesis before this one: where theirs would stand.
@@ -95,21 +84,22 @@ class MergeTest {
   [[nodiscard]] double evidence_along_the_way(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool has_other_walls(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool is_refuted(const Hypothesis& hypothesis) const;
-  [[nodiscard]] bool is_finished(const Hypothesis& hypothesis) const;
+  [[nodiscard]] static bool is_finished(const Hypothesis& hypothesis);
+  /// Places that differ, when all have been seen once. One fit in many fails.
+  [[nodiscard]] static std::vector<std::size_t> to_look_at_again(const Hypothesis& hypothesis);
   [[nodiscard]] std::optional<std::size_t> to_go_on_with() const;
+  static void add_second_looks(Hypothesis& hypothesis, const std::vector<CheckedPlace>& places);
   [[nodiscard]] std::vector<std::size_t> best_first() const;
   [[nodiscard]] double apart_m(std::size_t one, std::size_t other) const;
   [[nodiscard]] std::string reason(std::size_t hypothesis, std::optional<std::size_t> rival) const;
   [[nodiscard]] std::string what_is_missing(const Hypothesis& hypothesis, std::size_t num_distinctive) const;
   [[nodiscard]] MergeHypothesis described(std::size_t hypothesis, std::size_t best) const;
   [[nodiscard]] double needed() const;
-  /// At one more distinctive place after `passed` of them.
-  [[nodiscard]] double evidence_of_agreement(std::size_t passed) const;
-  [[nodiscard]] double chance_to_go_on(std::size_t passed) const;
+  [[nodiscard]] double walls_evidence(const Hypothesis& hypothesis) const;
+  [[nodiscard]] std::vector<TestedPlace> along_the_way(const Hypothesis& hypothesis) const;
 
   std::vector<PcmLoop> loops_;
   std::vector<Hypothesis> hypotheses_;
-  std::size_t num_alignments_ = 0;  ///< That loops speak for, those beyond max_hypotheses one a loop.
   MeasuredWhenAsked measured_;
   MergeCheckConfig config_;
 };

@@ -6,40 +6,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <set>
 #include <stdexcept>
 
 #include "adit/core/check.hpp"
 #include "adit/core/rng.hpp"
 #include "adit/fleet/fleet_graph.hpp"
+#include "adit/fleet/merge_evidence.hpp"
+#include "support/opposite_drives.hpp"
 
 namespace adit {
 namespace {
 
-// Half a metre between keyframes.
-OdometryChain along_x(std::size_t num, double variance = 1e-4) {
-  std::vector<Pose> poses;
-  for (std::size_t k = 0; k < num; ++k)
-    poses.push_back(Pose::translation_of(0.5 * static_cast<double>(k), 0, 0));
-  return {poses, std::vector<Matrix6>(num - 1, Matrix6::Identity() * variance)};
-}
-
-constexpr std::size_t kNum = 200;  // keyframes: 100 m
-
-// Robot b came towards a: it stands at 100 m - x of a, on a lane 1 m beside.
-Pose T_a_b_true(std::size_t a, std::size_t b, double off_m = 0.0) {
-  const double x_a = 0.5 * static_cast<double>(a);
-  const double x_b = 99.5 - 0.5 * static_cast<double>(b) + off_m;
-  return Pose::planar(x_b - x_a, 1.0, std::numbers::pi);
-}
-// Keyframes that stand side by side, if b is `off_m` farther on than it truly is.
-PcmLoop loop_at(std::size_t a, double off_m = 0.0) {
-  const auto b = static_cast<std::size_t>(static_cast<double>(kNum - 1 - a) + 2.0 * off_m);
-  return {a, b, T_a_b_true(a, b, off_m), loop_information({})};
-}
-
-const std::vector<PcmLoop> kTrueLoops = {loop_at(80), loop_at(90), loop_at(100)};
+using test::along_x;
+using test::kNum;
+using test::kTrueLoops;
+using test::loop_at;
+using test::T_a_b_true;
 
 // That go on with this chance, however long they have.
 LookAlikes look_alikes(double chance_to_go_on) {
@@ -76,45 +58,6 @@ constexpr CheckedPlace kAgrees{0.5, true};
 constexpr CheckedPlace kDiffers{1.5, true};
 constexpr CheckedPlace kSilent{0.5, false};
 constexpr CheckedPlace kHasANiche{5.0, true};
-
-TEST(PlanChecks, PutsNeighboursTogetherAllAlongTheStretch) {
-  const std::vector<PlannedCheck> plan = plan_checks(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, {});
-  // 50 m to each side of the loops and the 10 m between them, every 3 m; both drives end sooner.
-  ASSERT_GE(plan.size(), 30U);
-  std::set<std::uint32_t> theirs;
-  for (const PlannedCheck& check : plan) {
-    EXPECT_TRUE(theirs.insert(check.theirs).second) << "twice: " << check.theirs;
-    const Pose T_true = T_a_b_true(check.own, check.theirs);
-    EXPECT_LT((check.T_own_theirs.inverse() * T_true).log().norm(), 1e-9);
-    EXPECT_LT(T_true.translation().norm(), 1.1);  // the lane, and a quarter of a metre along it
-  }
-}
-
-TEST(PlanChecks, LooksFarApartFirst) {
-  const std::vector<PlannedCheck> plan = plan_checks(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, {});
-  std::vector<std::uint32_t> first;
-  for (std::size_t i = 0; i < 4; ++i) first.push_back(plan[i].theirs);
-  std::ranges::sort(first);
-  for (std::size_t i = 1; i < first.size(); ++i) EXPECT_GT(first[i] - first[i - 1], 20U);
-}
-
-TEST(PlanChecks, WithoutLoopsThereIsNothingToCheck) {
-  EXPECT_TRUE(plan_checks(along_x(kNum), along_x(kNum), {}, 50.0, {}).empty());
-}
-
-TEST(PlanChecks, WithinOneMapAKeyframeIsNotComparedWithItselfOrItsNeighbours) {
-  std::vector<Pose> poses;  // up a street of 100 m and back
-  for (int k = 0; k <= 200; ++k)
-    poses.push_back(k <= 100 ? Pose::planar(k, 0.0, 0.0) : Pose::planar(200 - k, 1.0, std::numbers::pi));
-  const OdometryChain chain(poses, std::vector<Matrix6>(200, odometry_covariance({}, 1.0)));
-  const std::vector<PlannedCheck> plan = plan_checks(
-      chain, chain, {{70, 130, chain.between(70, 130)}, {50, 150, chain.between(50, 150)}}, 50.0, {});
-  ASSERT_GE(plan.size(), 10U);
-  for (const PlannedCheck& check : plan) {
-    EXPECT_GE(check.theirs, check.own + 40);
-    EXPECT_LT((poses[check.own].translation() - poses[check.theirs].translation()).norm(), 3.0);
-  }
-}
 
 TEST(MergeTest, ALoopThatItsNeighboursContradictIsLeftOut) {
   std::vector<PcmLoop> loops;
@@ -189,17 +132,41 @@ TEST(MergeTest, AfterAPlaceThatDiffersTheCountStartsAnew) {
   for (int i = 0; i < 1000; ++i) rarely_begin.add(1, i < 950);
   const auto evidence = [&](std::uint32_t differs_at) {
     MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, measured(rarely_begin), {});
+    const std::uint32_t first =
+        test.next(1).front().own % 6;  // a place every six, looked at again two keyframes away
     return run(test,
-               [&](const PlannedCheck& check) { return check.own / 6 == differs_at ? kDiffers : kAgrees; })
+               [&](const PlannedCheck& check) {
+                 return (check.own + 3 - first) / 6 == differs_at ? kDiffers : kAgrees;
+               })
         .evidence;
   };
   const double never = evidence(1000);
   const double in_the_middle = evidence(15);
   // One place differs instead of going on, and the next one begins anew.
-  const double begins = std::log(0.97 / rarely_begin.chance_to_go_on(0));
-  const double goes_on = std::log(0.97 / rarely_begin.chance_to_go_on(1));
-  const double differs = std::log(0.03 / (1.0 - rarely_begin.chance_to_go_on(1)));
+  const double begins = std::log(0.99 / chance_to_go_on(rarely_begin.chances(), 0));
+  const double goes_on = std::log(0.99 / chance_to_go_on(rarely_begin.chances(), 1));
+  const double differs = std::log(0.01 / (1.0 - chance_to_go_on(rarely_begin.chances(), 1)));
   EXPECT_NEAR(in_the_middle - never, differs - goes_on + begins - goes_on, 0.05);
+}
+
+TEST(MergeTest, APlaceDiffersOnlyIfItDoesByASecondLook) {
+  const auto checked = [&](bool also_beside) {
+    MergeTest test = a_test(kTrueLoops);
+    const std::uint32_t at = test.next(1).front().own;
+    std::size_t num_asked = 0;
+    const MergeCheck check = run(test, [&](const PlannedCheck& asked) {
+      ++num_asked;
+      const bool is_beside = asked.own != at && asked.own < at + 4 && at < asked.own + 4;
+      return asked.own == at || (also_beside && is_beside) ? kDiffers : kAgrees;
+    });
+    EXPECT_EQ(num_asked, check.num_checked + 1) << "only that place is looked at again";
+    return check;
+  };
+  const MergeCheck agrees = checked(false);
+  EXPECT_EQ(agrees.num_passed, agrees.num_checked);
+  EXPECT_NEAR(agrees.evidence, agrees.num_checked * std::log(0.99 / 0.5), 1e-9);
+  const MergeCheck differs = checked(true);
+  EXPECT_EQ(differs.num_passed + 1, differs.num_checked);
 }
 
 TEST(MergeTest, PlacesThatAgreeJoinTheMaps) {
@@ -207,7 +174,7 @@ TEST(MergeTest, PlacesThatAgreeJoinTheMaps) {
   const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
   EXPECT_TRUE(check.accepted) << check.reason;
   EXPECT_EQ(check.num_passed, check.num_checked);
-  EXPECT_NEAR(check.evidence, check.num_checked * std::log(0.97 / 0.5), 1e-9);
+  EXPECT_NEAR(check.evidence, check.num_checked * std::log(0.99 / 0.5), 1e-9);
   EXPECT_NEAR(check.needed, std::log(1e3), 1e-9);
   const std::vector<std::pair<std::uint32_t, std::uint32_t>> loops = {{80, 119}, {90, 109}, {100, 99}};
   EXPECT_EQ(check.loops, loops);
@@ -274,15 +241,15 @@ TEST(MergeTest, WhereLookAlikesGoOnForLongALongerStretchIsNeeded) {
   const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
   EXPECT_FALSE(check.accepted);
   EXPECT_EQ(check.hypotheses.at(0).outcome, HypothesisOutcome::unsure);
-  // Every further 3 m bring log(0.97 / 0.9); what is missing, rounded up to 10 m.
-  const double metres = 3.0 * std::ceil((check.needed - check.evidence) / std::log(0.97 / 0.9));
+  // Every further 3 m bring log(0.99 / 0.9); what is missing, rounded up to 10 m.
+  const double metres = 3.0 * std::ceil((check.needed - check.evidence) / std::log(0.99 / 0.9));
   const std::string asked =
       "drive the same stretch for about another " + std::to_string(10 * std::lround(std::ceil(metres / 10)));
   EXPECT_NE(check.reason.find(asked + " m"), std::string::npos) << check.reason;
 }
 
 TEST(MergeTest, WhereTunnelsLookAlikeForeverNoDriveAlongThemIsAskedFor) {
-  MergeTest test = a_test(kTrueLoops, 0.9699);
+  MergeTest test = a_test(kTrueLoops, 0.9899);
   const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
   EXPECT_NE(check.reason.find("past a junction or a niche"), std::string::npos) << check.reason;
 }

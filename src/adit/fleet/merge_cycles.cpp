@@ -207,14 +207,15 @@ class MergeGraph {
     for (std::size_t i = 0; i + 1 < path.size(); ++i) out.push_back(merge_.at(path[i]).at(path[i + 1]));
     return out;
   }
-  /// From a to b over other robots, the fewest, b first; empty where there is no way.
-  [[nodiscard]] Robots shortest_path(RobotId a, RobotId b) const {
+  /// From a to b, the fewest robots, b first; empty where there is no way. Without the merge of both.
+  [[nodiscard]] Robots shortest_path(RobotId a, RobotId b, bool is_direct_allowed = false) const {
+    if (a == b) return {a};
     if (!merge_.contains(a) || !merge_.contains(b)) return {};
     std::map<RobotId, RobotId> towards_a{{a, a}};
     Robots reached{a};
     for (std::size_t i = 0; i < reached.size() && !towards_a.contains(b); ++i)  // grows on the way
       for (const auto& [next, merge] : merge_.at(reached[i])) {
-        if (reached[i] == a && next == b) continue;
+        if (reached[i] == a && next == b && !is_direct_allowed) continue;
         if (towards_a.emplace(next, reached[i]).second) reached.push_back(next);
       }
     if (!towards_a.contains(b)) return {};
@@ -347,6 +348,47 @@ std::vector<Contradiction> contradictions(const std::vector<Merge>& merges, cons
     contradiction.refuted.assign(guilty->second.begin(), guilty->second.end());
     graph = graph.without(merges[guilty->first]);
   }
+}
+
+struct CycleCheck::Known {
+  const std::vector<Merge>& merges;
+  const std::map<RobotId, OdometryChain>& chains;
+  MergeGraph graph;
+  double scale;
+};
+
+CycleCheck::CycleCheck(const std::vector<Merge>& merges, const std::map<RobotId, OdometryChain>& chains)
+    : known_(new Known{merges, chains, MergeGraph(merges), drift_scale(merges, chains)}) {}
+CycleCheck::~CycleCheck() = default;
+
+bool CycleCheck::say_the_same(const Merge& one, const Merge& other) const {
+  constexpr double kSamePlace = 3.0;  // metres
+  const auto& [merges, chains, graph, scale] = *known_;
+  const auto way = [&](RobotId from, RobotId to) {
+    Robots path = graph.shortest_path(from, to, true);
+    std::ranges::reverse(path);
+    return path;
+  };
+  // From a robot of one group over `one` into the other group, and back over `other`.
+  Robots there = way(one.b, other.b);
+  Robots back = way(other.a, one.a);
+  if (there.empty() || back.empty()) {
+    there = way(one.b, other.a);
+    back = way(other.b, one.a);
+  }
+  if (there.empty() || back.empty()) return false;
+  Robots around{one.a};
+  std::vector<const Merge*> legs{&one};
+  const auto go_along = [&](const Robots& path) {
+    around.insert(around.end(), path.begin(), path.end());
+    for (const std::size_t m : graph.along_path(path)) legs.push_back(&merges[m]);
+  };
+  go_along(there);
+  legs.push_back(&other);
+  go_along(back);
+  around.pop_back();  // where it began
+  const Round round = Cycle(around, legs, chains, scale).best();
+  return !round.contradicts() && round.miss_m <= kSamePlace;
 }
 
 }  // namespace adit

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <vector>
 
 #include "adit/core/ids.hpp"
@@ -49,5 +50,24 @@ struct Contradiction {
 [[nodiscard]] std::vector<Contradiction> contradictions(const std::vector<Merge>& merges,
                                                         const std::vector<Merge>& refuted,
                                                         const std::map<RobotId, OdometryChain>& chains);
+
+/// Whether hypotheses about other pairs agree with one another, given the merges that stand.
+class CycleCheck {
+ public:
+  /// Both must outlive it.
+  CycleCheck(const std::vector<Merge>& merges, const std::map<RobotId, OdometryChain>& chains);
+  ~CycleCheck();
+  CycleCheck(const CycleCheck&) = delete;
+  CycleCheck& operator=(const CycleCheck&) = delete;
+
+  /// `one` and `other` are about two pairs of robots, each from one of two groups that merges join: along
+  /// both and through the groups a cycle ends within three metres of where it began, and does not contradict
+  /// its merges.
+  [[nodiscard]] bool say_the_same(const Merge& one, const Merge& other) const;
+
+ private:
+  struct Known;
+  std::unique_ptr<const Known> known_;
+};
 
 }  // namespace adit

@@ -4,6 +4,7 @@
 /// arrive twice and may be lost: state is synchronised by asking "what do you have" and sending the rest.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -15,7 +16,7 @@
 
 namespace adit {
 
-inline constexpr std::uint8_t kProtocolVersion = 4;
+inline constexpr std::uint8_t kProtocolVersion = 5;
 inline constexpr std::size_t kPlacesPerMessage = 64;
 inline constexpr std::size_t kCloudsPerMessage = 16;
 inline constexpr std::size_t kNodesPerMessage = 512;
@@ -95,6 +96,23 @@ enum class HypothesisOutcome : std::uint8_t {
 };
 [[nodiscard]] std::string_view to_string(HypothesisOutcome outcome);
 
+/// What comparing two scans of one place, if it is one, has shown.
+enum class PlaceOutcome : std::uint8_t {
+  differs,
+  agrees,  ///< As it would some metres farther along the way, too: no evidence.
+  tells,   ///< Agrees, and a displacement along the way would have shown.
+};
+
+/// That tunnels which only look alike agree at one more place that tells, after 0, 1, 3, 7, ... of them.
+using ChancesToGoOn = std::array<double, 8>;
+
+/// Keyframes of the two robots that were compared.
+struct TestedPlace {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  PlaceOutcome outcome = PlaceOutcome::differs;
+};
+
 /// Loops that agree with one another lay one map over the other; this is one way to do so, as it was tested.
 struct MergeHypothesis {
   HypothesisOutcome outcome = HypothesisOutcome::refuted;
@@ -103,6 +121,8 @@ struct MergeHypothesis {
   std::uint32_t num_passed = 0;
   double from_best_m = 0.0;  ///< How far from the best one it puts the other robot.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> loops;  ///< Keyframes of a and b.
+  std::vector<TestedPlace> places{};  ///< Along the way of a; none of a refuted one, nobody asks for them.
+  double walls = 0.0;                 ///< The part of the evidence that is of walls.
 
   [[nodiscard]] std::uint32_t num_differing() const { return num_checked - num_passed; }
 };
@@ -120,6 +140,7 @@ struct MergeCheck {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> loops;  ///< Keyframes of a and b: those it speaks of.
   std::string reason;                         ///< One sentence: why, and what would resolve a refusal.
   std::vector<MergeHypothesis> hypotheses{};  ///< At most kHypothesesPerCheck, the best one first.
+  ChancesToGoOn goes_on{};                    ///< As robot a has measured them.
 };
 
 /// Number first, first + 1, ... of those that `author`, who need not be the sender, decided.

@@ -79,16 +79,19 @@ std::string session_toml(const Session& session) {
                               pair.refused_reason));
   }
   table.insert("refusals", refusals);
-  const auto is_merged = [&](const MergeCheck& check) {
-    return std::ranges::any_of(session.solution.pairs, [&](const PairOutcome& pair) {
-      return pair.a == check.a && pair.b == check.b && pair.merged;
+  const auto outcome_of = [&](const MergeCheck& check) {
+    return std::ranges::find_if(session.solution.pairs, [&](const PairOutcome& pair) {
+      return pair.a == check.a && pair.b == check.b;
     });
   };
   toml::array merges;
   toml::array revisits;
   for (const auto& [pair, check] : session.fleet.checks) {
     toml::table tested = merge_table(session.fleet, check);
-    if (check.a != check.b) tested.insert("merged", is_merged(check));  // an accepted one may be taken back
+    if (const auto outcome = outcome_of(check); outcome != session.solution.pairs.end()) {
+      tested.insert("merged", outcome->merged);  // an accepted one may be taken back
+      if (!outcome->joined_reason.empty()) tested.insert("joined", outcome->joined_reason);
+    }
     (check.a == check.b ? revisits : merges).push_back(std::move(tested));
   }
   table.insert("merges", merges);

@@ -278,6 +278,18 @@ void get(Reader& in, std::pair<std::uint32_t, std::uint32_t>& ends) {
   ends.second = in.scalar<std::uint32_t>();
 }
 
+void put(Writer& out, const TestedPlace& place) {
+  out.scalar(place.a);
+  out.scalar(place.b);
+  out.scalar(place.outcome);
+}
+void get(Reader& in, TestedPlace& place) {
+  place.a = in.scalar<std::uint32_t>();
+  place.b = in.scalar<std::uint32_t>();
+  place.outcome = in.scalar<PlaceOutcome>();
+  if (place.outcome > PlaceOutcome::tells) in.refuse();
+}
+
 void put(Writer& out, const MergeHypothesis& hypothesis) {
   out.scalar(hypothesis.outcome);
   out.scalar(hypothesis.evidence);
@@ -285,6 +297,8 @@ void put(Writer& out, const MergeHypothesis& hypothesis) {
   out.scalar(hypothesis.num_passed);
   out.scalar(hypothesis.from_best_m);
   out.vector(hypothesis.loops);
+  out.vector(hypothesis.places);
+  out.scalar(hypothesis.walls);
 }
 void get(Reader& in, MergeHypothesis& hypothesis) {
   hypothesis.outcome = in.scalar<HypothesisOutcome>();
@@ -293,8 +307,11 @@ void get(Reader& in, MergeHypothesis& hypothesis) {
   hypothesis.num_passed = in.scalar<std::uint32_t>();
   hypothesis.from_best_m = in.scalar<double>();
   in.vector(hypothesis.loops);
+  in.vector(hypothesis.places);
+  hypothesis.walls = in.scalar<double>();
   if (hypothesis.outcome > HypothesisOutcome::behind || !std::isfinite(hypothesis.evidence) ||
-      !std::isfinite(hypothesis.from_best_m) || hypothesis.num_passed > hypothesis.num_checked)
+      !std::isfinite(hypothesis.walls) || !std::isfinite(hypothesis.from_best_m) ||
+      hypothesis.num_passed > hypothesis.num_checked)
     in.refuse();
 }
 
@@ -309,6 +326,7 @@ void put(Writer& out, const MergeCheck& check) {
   out.vector(check.loops);
   put(out, check.reason);
   out.vector(check.hypotheses);
+  for (const double chance : check.goes_on) out.scalar(chance);
 }
 void get(Reader& in, MergeCheck& check) {
   check.a.value = in.scalar<std::uint8_t>();
@@ -321,6 +339,10 @@ void get(Reader& in, MergeCheck& check) {
   in.vector(check.loops);
   get(in, check.reason);
   in.vector(check.hypotheses);
+  for (double& chance : check.goes_on) {
+    chance = in.scalar<double>();
+    if (!(chance >= 0.0 && chance <= 1.0)) in.refuse();
+  }
   if (!std::isfinite(check.evidence) || !std::isfinite(check.needed) ||
       check.num_passed > check.num_checked || check.hypotheses.size() > kHypothesesPerCheck)
     in.refuse();

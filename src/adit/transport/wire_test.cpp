@@ -35,6 +35,9 @@ MergeCheck a_check() {
   MergeCheck check{{1}, {3}, 12.75, 9.25, 40, 39, true, {{5, 70000}, {6, 8}}, "39 of 40 places agree"};
   check.hypotheses = {{HypothesisOutcome::accepted, 12.75, 40, 39, 0.0, check.loops},
                       {HypothesisOutcome::refuted, -3.5, 20, 13, 21.5, {{7, 9}}}};
+  check.hypotheses[0].places = {{5, 70000, PlaceOutcome::tells}, {9, 70004, PlaceOutcome::differs}};
+  check.hypotheses[0].walls = 2.5;
+  check.goes_on = {0.25, 0.5, 0.5, 0.625, 0.75, 0.75, 0.75, 1.0};
   return check;
 }
 
@@ -102,6 +105,15 @@ TEST(Wire, DecisionsTravelExactly) {
   EXPECT_EQ(second.num_differing(), 7U);
   EXPECT_EQ(second.from_best_m, 21.5);
   EXPECT_EQ(second.loops, a_check().hypotheses[1].loops);
+  EXPECT_TRUE(second.places.empty());
+  const std::vector<TestedPlace>& places = check.hypotheses[0].places;
+  ASSERT_EQ(places.size(), 2U);
+  EXPECT_EQ(places[1].a, 9U);
+  EXPECT_EQ(places[1].b, 70004U);
+  EXPECT_EQ(places[0].outcome, PlaceOutcome::tells);
+  EXPECT_EQ(places[1].outcome, PlaceOutcome::differs);
+  EXPECT_EQ(check.hypotheses[0].walls, 2.5);
+  EXPECT_EQ(check.goes_on, a_check().goes_on);
 }
 
 TEST(Wire, DecisionsThatCannotBeAreRefused) {
@@ -118,6 +130,9 @@ TEST(Wire, DecisionsThatCannotBeAreRefused) {
       [&](MergeCheck& c) { c.hypotheses[1].from_best_m = nan; },
       [&](MergeCheck& c) { c.hypotheses[1].num_passed = c.hypotheses[1].num_checked + 1; },
       [&](MergeCheck& c) { c.hypotheses[0].outcome = static_cast<HypothesisOutcome>(5); },
+      [&](MergeCheck& c) { c.hypotheses[0].places[1].outcome = static_cast<PlaceOutcome>(3); },
+      [&](MergeCheck& c) { c.hypotheses[0].walls = nan; },
+      [&](MergeCheck& c) { c.goes_on[3] = 1.5; },
       [&](MergeCheck& c) { c.hypotheses.resize(kHypothesesPerCheck + 1); }};
   for (std::size_t i = 0; i < spoilers.size(); ++i) {
     MergeCheck check = a_check();
