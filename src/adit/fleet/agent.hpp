@@ -151,7 +151,8 @@ class Agent {
   Replies go_on_testing(RobotId peer_id);
   /// Whether they were what the test had asked for.
   bool compare_clouds_of(RobotId from, const Clouds& clouds);
-  /// Many loops, and all that they say is refuted: the true ones may not have been among the candidates.
+  /// Many loops, and all that they say, if anything, is refuted: the true ones may not have been among the
+  /// candidates.
   [[nodiscard]] bool leads_nowhere(const MergeCheck& check) const;
   Replies conclude_test(RobotId peer_id);
   void decide(MergeCheck check);

@@ -212,13 +212,17 @@ bool Agent::compare_clouds_of(RobotId from, const Clouds& clouds) {
 }
 
 bool Agent::leads_nowhere(const MergeCheck& check) const {
-  constexpr std::size_t kMany = 4;  // one loop of so many candidates: where places differ there are fewer
-  std::size_t num_loops = 0;
-  for (const MergeHypothesis& hypothesis : check.hypotheses) {
-    if (hypothesis.outcome != HypothesisOutcome::refuted) return false;
-    num_loops += hypothesis.loops.size();
-  }
-  return kMany * num_loops >= static_cast<std::size_t>(config_.adaptive.candidates);
+  constexpr std::ptrdiff_t kMany = 4;  // one loop of so many candidates: where places differ there are fewer
+  const bool is_all_refuted = std::ranges::all_of(check.hypotheses, [](const MergeHypothesis& hypothesis) {
+    return hypothesis.outcome == HypothesisOutcome::refuted;
+  });
+  // Those that slide along a smooth tube, too: they fill a search that should have gone elsewhere.
+  const auto num_loops = std::ranges::count_if(known_.loops, [&](const auto& entry) {
+    const auto& [ends, loop] = entry;
+    return ends.first.robot == check.a && ends.second.robot == check.b &&
+           loop.verdict == LoopVerdict::accepted;
+  });
+  return is_all_refuted && kMany * num_loops >= config_.adaptive.candidates;
 }
 
 Agent::Replies Agent::conclude_test(RobotId peer_id) {

@@ -86,9 +86,8 @@ TEST(AdaptiveAgent, SearchesOnWhereManyLoopsAreAllRefuted) {
   EXPECT_EQ(num_tried_between_two_streets(config), 4U);
   config.adaptive.further_candidates = 9;
   EXPECT_EQ(num_tried_between_two_streets(config), 13U);
-  config.adaptive.candidates = 24;  // of which too few are loops
-  config.adaptive.further_candidates = 9;
-  EXPECT_EQ(num_tried_between_two_streets(config), 24U);
+  config.adaptive.registration.min_inliers = 1000;  // no loops
+  EXPECT_EQ(num_tried_between_two_streets(config), 4U);
 }
 
 /// A robot that drives up the street and back again, on the other lane.
