@@ -62,7 +62,8 @@ LoopMap loop_map(const FleetGraph& fleet, const FleetSolution& solution) {
 
 std::vector<MergePicture> merge_pictures(const FleetGraph& fleet, const FleetSolution& solution) {
   std::vector<MergePicture> pictures;
-  for (const auto& [robots, check] : fleet.checks) {
+  for (const auto& entry : fleet.checks) {
+    const MergeCheck& check = entry.second;
     const auto pair = std::ranges::find_if(solution.pairs, [&](const PairOutcome& outcome) {
       return outcome.a == check.a && outcome.b == check.b;
     });

@@ -130,7 +130,9 @@ Agent::Replies Agent::on(RobotId from, const Hello& theirs) {
 
 Agent::Replies Agent::graph_news(RobotId peer, const Hello& theirs) const {
   Replies replies;
-  for (const auto& [robot, graph] : known_.robots) {
+  for (const auto& entry : known_.robots) {
+    const RobotId robot = entry.first;
+    const RobotGraph& graph = entry.second;
     const auto known = std::ranges::find(theirs.known, robot, &Hello::Known::robot);
     if (known == theirs.known.end() && graph.nodes.empty()) {  // nothing to send but that it exists
       replies.push_back(to(peer, GraphPart{robot, graph.name, 0, {}}));

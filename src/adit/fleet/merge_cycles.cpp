@@ -363,7 +363,8 @@ CycleCheck::~CycleCheck() = default;
 
 bool CycleCheck::say_the_same(const Merge& one, const Merge& other) const {
   constexpr double kSamePlace = 3.0;  // metres
-  const auto& [merges, chains, graph, scale] = *known_;
+  const std::vector<Merge>& merges = known_->merges;
+  const MergeGraph& graph = known_->graph;
   const auto way = [&](RobotId from, RobotId to) {
     Robots path = graph.shortest_path(from, to, true);
     std::ranges::reverse(path);
@@ -387,7 +388,7 @@ bool CycleCheck::say_the_same(const Merge& one, const Merge& other) const {
   legs.push_back(&other);
   go_along(back);
   around.pop_back();  // where it began
-  const Round round = Cycle(around, legs, chains, scale).best();
+  const Round round = Cycle(around, legs, known_->chains, known_->scale).best();
   return !round.contradicts() && round.miss_m <= kSamePlace;
 }
 
