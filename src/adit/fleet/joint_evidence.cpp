@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <set>
 
@@ -172,9 +171,23 @@ std::map<RobotPair, Between> between_groups(const FleetGraph& fleet, const Group
   return out;
 }
 
+/// Whether all that was not refuted would be enough if it agreed: going around cycles takes time in large
+/// fleets.
+bool can_be_enough(const FleetGraph& fleet, const Groups& groups, RobotId group, const Between& between) {
+  std::set<RobotPair> pairs;
+  double most = 0.0;
+  for (const Candidate& candidate : between.candidates) {
+    if (candidate.is_refuted()) continue;
+    pairs.emplace(candidate.merge.a, candidate.merge.b);
+    most += std::max(0.0, evidence_of(fleet, groups, group, {&candidate}));
+  }
+  return pairs.size() > 1 && most >= between.needed;
+}
+
 /// The likeliest way to lay two groups over one another, where it is likely enough and no other one is.
 std::optional<JointMerge> likeliest(const FleetGraph& fleet, const Groups& groups, RobotId group,
                                     const Between& between, const CycleCheck& cycles) {
+  if (!can_be_enough(fleet, groups, group, between)) return {};
   struct Way {
     std::vector<const Candidate*> members;
     double evidence;

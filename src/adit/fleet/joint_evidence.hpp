@@ -4,6 +4,7 @@
 /// sides; each pair alone may have too little to go by, and all together enough.
 #pragma once
 
+#include <map>
 #include <utility>
 #include <vector>
 
