@@ -184,6 +184,7 @@ void decide_merges(const FleetGraph& fleet, const BackEndConfig& config, const L
         std::ranges::count_if(of_pair, [&](std::size_t l) { return solution.loops[l].in_use(); }));
     pair.merged = num_used >= static_cast<std::size_t>(config.min_loops);
     if (pair.merged) continue;
+    pair.joined_reason.clear();
     if (pair.refused_reason.empty())
       pair.refused_reason = refusal(fleet, config, pair, tried[{pair.a, pair.b}], num_used);
     // Too few loops are no bridge: they must not join the maps through the back door either.
