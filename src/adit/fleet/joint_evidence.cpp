@@ -136,17 +136,20 @@ double evidence_of(const FleetGraph& fleet, const Groups& groups, RobotId group,
   return sum;
 }
 
-bool is_known(const FleetGraph& fleet, const MergeCheck& check, const MergeHypothesis& hypothesis) {
-  const auto has = [&](RobotId robot, std::uint32_t index) {
-    const auto graph = fleet.robots.find(robot);
-    return graph != fleet.robots.end() && index < graph->second.nodes.size();
-  };
-  return !hypothesis.loops.empty() && std::ranges::all_of(hypothesis.loops, [&](const auto& loop) {
-    return fleet.loops.contains({{check.a, loop.first}, {check.b, loop.second}}) &&
-           has(check.a, loop.first) && has(check.b, loop.second);
-  }) && std::ranges::all_of(hypothesis.places, [&](const TestedPlace& place) {
-    return has(check.a, place.a) && has(check.b, place.b);
-  });
+bool has_node(const FleetGraph& fleet, RobotId robot, std::uint32_t index) {
+  const auto graph = fleet.robots.find(robot);
+  return graph != fleet.robots.end() && index < graph->second.nodes.size();
+}
+
+/// Messages about its keyframes and loops may still be on their way.
+bool is_known(const FleetGraph& fleet, const Candidate& candidate) {
+  const auto& [check, hypothesis, merge] = candidate;
+  const RobotId a = check->a;
+  const RobotId b = check->b;
+  return !merge.loops.empty() && merge.loops.size() == hypothesis->loops.size() &&
+         std::ranges::all_of(hypothesis->places, [&](const TestedPlace& place) {
+           return has_node(fleet, a, place.a) && has_node(fleet, b, place.b);
+         });
 }
 
 std::map<RobotPair, Between> between_groups(const FleetGraph& fleet, const Groups& groups,
@@ -161,11 +164,8 @@ std::map<RobotPair, Between> between_groups(const FleetGraph& fleet, const Group
     Between& between = out[std::minmax(x, y)];
     between.needed = std::max(between.needed, check.needed);
     for (const MergeHypothesis& hypothesis : check.hypotheses) {
-      if (!is_known(fleet, check, hypothesis)) continue;
-      Candidate candidate{&check, &hypothesis, {check.a, check.b, hypothesis.evidence, {}}};
-      for (const auto& [a, b] : hypothesis.loops)
-        candidate.merge.loops.push_back(pcm_loop_of(fleet.loops.at({{check.a, a}, {check.b, b}}), config));
-      between.candidates.push_back(std::move(candidate));
+      Candidate candidate{&check, &hypothesis, merge_of(fleet, check, hypothesis, config)};
+      if (is_known(fleet, candidate)) between.candidates.push_back(std::move(candidate));
     }
   }
   return out;
@@ -214,6 +214,17 @@ std::optional<JointMerge> likeliest(const FleetGraph& fleet, const Groups& group
 }
 
 }  // namespace
+
+Merge merge_of(const FleetGraph& fleet, const MergeCheck& check, const MergeHypothesis& hypothesis,
+               const BackEndConfig& config) {
+  Merge merge{check.a, check.b, hypothesis.evidence, {}};
+  for (const auto& [a, b] : hypothesis.loops) {
+    const auto loop = fleet.loops.find({{check.a, a}, {check.b, b}});
+    if (loop != fleet.loops.end() && has_node(fleet, check.a, a) && has_node(fleet, check.b, b))
+      merge.loops.push_back(pcm_loop_of(loop->second, config));
+  }
+  return merge;
+}
 
 std::vector<JointMerge> joint_merges(const FleetGraph& fleet, std::vector<Merge> merges,
                                      const std::map<RobotId, OdometryChain>& chains,

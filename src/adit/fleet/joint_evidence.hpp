@@ -13,6 +13,10 @@
 
 namespace adit {
 
+/// The hypothesis with those of its loops that are known, as are their keyframes.
+[[nodiscard]] Merge merge_of(const FleetGraph& fleet, const MergeCheck& check,
+                             const MergeHypothesis& hypothesis, const BackEndConfig& config);
+
 /// Hypotheses of several pairs that say the same about two groups of robots.
 struct JointMerge {
   std::vector<Merge> merges;  ///< At least two, each with the evidence that its own test gave it.

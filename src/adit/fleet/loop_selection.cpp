@@ -137,22 +137,17 @@ std::vector<Merge> refuted_hypotheses(const FleetGraph& fleet, const BackEndConf
     if (check.accepted || check.a == check.b) continue;
     for (const MergeHypothesis& hypothesis : check.hypotheses) {
       if (hypothesis.outcome != HypothesisOutcome::refuted) continue;
-      Merge merge{check.a, check.b, hypothesis.evidence, {}};
-      for (const auto& [a, b] : hypothesis.loops) {
-        const auto loop = fleet.loops.find({{check.a, a}, {check.b, b}});
-        if (loop != fleet.loops.end() && knows(fleet, loop->second.from) && knows(fleet, loop->second.to))
-          merge.loops.push_back(pcm_loop_of(loop->second, config));
-      }
+      Merge merge = merge_of(fleet, check, hypothesis, config);
       if (!merge.loops.empty()) out.push_back(std::move(merge));
     }
   }
   return out;
 }
 
-/// Looks at what pairs of robots say together.
-class Fleetwide {
+/// The merges of all pairs, judged by one another.
+class MergeReview {
  public:
-  Fleetwide(const FleetGraph& fleet, Chains& chains, const BackEndConfig& config, LoopSelection& selection)
+  MergeReview(const FleetGraph& fleet, Chains& chains, const BackEndConfig& config, LoopSelection& selection)
       : fleet_(fleet), config_(config), selection_(selection) {
     for (const PairOutcome& pair : selection.pairs) {
       for (const RobotId robot : {pair.a, pair.b})
@@ -229,9 +224,9 @@ LoopSelection select_loops(const FleetGraph& fleet, const BackEndConfig& config)
   }
   keep_revisits(fleet, selection);
   if (!config.checks_needed) return selection;
-  Fleetwide fleetwide(fleet, chains, config, selection);
-  if (config.cycles_needed) fleetwide.take_back();
-  if (config.joint_evidence) fleetwide.join();
+  MergeReview review(fleet, chains, config, selection);
+  if (config.cycles_needed) review.take_back();
+  if (config.joint_evidence) review.join();
   return selection;
 }
 

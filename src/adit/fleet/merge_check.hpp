@@ -10,10 +10,10 @@
 ///
 /// The decision is Wald's sequential probability ratio test ("Sequential tests of statistical hypotheses",
 /// 1945) in two directions. Against chance: the logarithms of likelihood ratios add up over the places that
-/// are distinctive, less that of the number of alignments that loops speak for, and have to reach
-/// log(1 / error_rate), together with what walls say (StandingOffsets). Against copies: scans that differ may
-/// not be more than true places would leave, nor may walls stand off one another more often than one wall
-/// does. And against every other hypothesis: it must stay behind by as much.
+/// are distinctive, and have to reach log(1 / error_rate) together with what walls say (StandingOffsets) and
+/// the logarithm of the alignment's prior: the share of all loops that speak for it. Against copies: scans
+/// that differ may not be more than true places would leave, nor may walls stand off one another more often
+/// than one wall does. And against every other hypothesis: it must stay behind by as much.
 #pragma once
 
 #include <cstdint>

@@ -189,10 +189,11 @@ class MergeGraph {
   explicit MergeGraph(const std::vector<Merge>& merges) {
     for (std::size_t m = 0; m < merges.size(); ++m) add(merges[m].a, merges[m].b, m);
   }
-  [[nodiscard]] MergeGraph without(const Merge& merge) const {
+  [[nodiscard]] MergeGraph without(const Merge& merge) const { return without(merge.a, merge.b); }
+  [[nodiscard]] MergeGraph without(RobotId a, RobotId b) const {
     MergeGraph rest = *this;
-    rest.merge_.at(merge.a).erase(merge.b);
-    rest.merge_.at(merge.b).erase(merge.a);
+    rest.merge_.at(a).erase(b);
+    rest.merge_.at(b).erase(a);
     return rest;
   }
   /// From each robot to the next, and from the last to the first.
@@ -207,17 +208,15 @@ class MergeGraph {
     for (std::size_t i = 0; i + 1 < path.size(); ++i) out.push_back(merge_.at(path[i]).at(path[i + 1]));
     return out;
   }
-  /// From a to b, the fewest robots, b first; empty where there is no way. Without the merge of both.
-  [[nodiscard]] Robots shortest_path(RobotId a, RobotId b, bool is_direct_allowed = false) const {
+  /// From a to b, the fewest robots, b first; empty where there is no way.
+  [[nodiscard]] Robots shortest_path(RobotId a, RobotId b) const {
     if (a == b) return {a};
     if (!merge_.contains(a) || !merge_.contains(b)) return {};
     std::map<RobotId, RobotId> towards_a{{a, a}};
     Robots reached{a};
     for (std::size_t i = 0; i < reached.size() && !towards_a.contains(b); ++i)  // grows on the way
-      for (const auto& [next, merge] : merge_.at(reached[i])) {
-        if (reached[i] == a && next == b && !is_direct_allowed) continue;
+      for (const auto& [next, merge] : merge_.at(reached[i]))
         if (towards_a.emplace(next, reached[i]).second) reached.push_back(next);
-      }
     if (!towards_a.contains(b)) return {};
     Robots path{b};
     while (path.back() != a) path.push_back(towards_a.at(path.back()));
@@ -238,7 +237,8 @@ class MergeGraph {
           out.insert(in_order({a, b, c}));
         }
         if (in_triangle) continue;
-        if (const Robots around = shortest_path(a, b); !around.empty()) out.insert(in_order(around));
+        if (const Robots around = without(a, b).shortest_path(a, b); !around.empty())
+          out.insert(in_order(around));
       }
     return out;
   }
@@ -366,7 +366,7 @@ bool CycleCheck::say_the_same(const Merge& one, const Merge& other) const {
   const std::vector<Merge>& merges = known_->merges;
   const MergeGraph& graph = known_->graph;
   const auto way = [&](RobotId from, RobotId to) {
-    Robots path = graph.shortest_path(from, to, true);
+    Robots path = graph.shortest_path(from, to);
     std::ranges::reverse(path);
     return path;
   };
