@@ -17,7 +17,7 @@ Result<T> parse_number(std::string_view text) {
   T value{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size())
-    return fail(format("'{}' is no number", text));
+    return fail(format("'{}' is not a number", text));
   return value;
 }
 
@@ -29,7 +29,7 @@ Result<> check_range(const Field& field, double value) {
 
 Result<> check_choice(const Field& field, std::string_view value) {
   if (field.choices.empty() || std::ranges::find(field.choices, value) != field.choices.end()) return {};
-  return fail(format("{} = '{}' is none of {}", field.key, value, fmt::join(field.choices, ", ")));
+  return fail(format("{} = '{}' is not one of {}", field.key, value, fmt::join(field.choices, ", ")));
 }
 
 Result<> assign(const Field& field, std::string_view text, double* target) {
@@ -56,6 +56,28 @@ Result<> assign(const Field& field, std::string_view text, std::string* target) 
   return check_choice(field, text).map([&] { *target = std::string(text); });
 }
 
+Result<> assign(const Field& field, std::string_view text, const EnumTarget& target) {
+  return check_choice(field, text).map([&] {
+    target.set(static_cast<std::size_t>(std::ranges::find(field.choices, text) - field.choices.begin()));
+  });
+}
+
+Result<> check_value(const Field&, const bool*) { return {}; }
+Result<> check_value(const Field& field, const std::string* text) { return check_choice(field, *text); }
+Result<> check_value(const Field& field, const EnumTarget& target) {
+  return check_choice(field, target.name());
+}
+template <class Number>
+Result<> check_value(const Field& field, const Number* number) {
+  return check_range(field, static_cast<double>(*number));
+}
+
+template <class Value>
+std::string text_of(const Value* value) {
+  return format("{}", *value);
+}
+std::string text_of(const EnumTarget& target) { return std::string(target.name()); }
+
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -80,6 +102,10 @@ void append(Fields& fields, const std::string& prefix, Fields nested) {
 }
 
 std::string nearest_key(const std::vector<std::string>& known, std::string_view key) {
+  const auto is_longer_form = [end = format(".{}", key)](const std::string& candidate) {
+    return candidate.ends_with(end);
+  };
+  if (std::ranges::count_if(known, is_longer_form) == 1) return *std::ranges::find_if(known, is_longer_form);
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(3, key.size() / 3);
   for (const std::string& candidate : known) {
@@ -105,29 +131,17 @@ Result<> set_field(const Fields& fields, std::string_view key, std::string_view 
         "unknown configuration key '{}'{}", key,
         nearest.empty() ? "; docs/configuration.md lists them all" : "; did you mean '" + nearest + "'?"));
   }
-  return std::visit([&](auto* target) { return assign(*field, value, target); }, field->target);
+  return std::visit([&](const auto& target) { return assign(*field, value, target); }, field->target);
 }
 
 std::string value_text(const Field& field) {
-  return std::visit([](const auto* value) { return format("{}", *value); }, field.target);
+  return std::visit([](const auto& target) { return text_of(target); }, field.target);
 }
 
 Result<> check_fields(const Fields& fields) {
   for (const Field& field : fields) {
-    Result<> checked;
-    if (const auto* text = std::get_if<std::string*>(&field.target)) {
-      checked = check_choice(field, **text);
-    } else if (!std::holds_alternative<bool*>(field.target)) {
-      checked = std::visit(
-          [&](auto* value) -> Result<> {
-            if constexpr (std::is_arithmetic_v<std::remove_pointer_t<decltype(value)>>) {
-              return check_range(field, static_cast<double>(*value));
-            } else {
-              return {};
-            }
-          },
-          field.target);
-    }
+    Result<> checked =
+        std::visit([&](const auto& target) { return check_value(field, target); }, field.target);
     if (!checked) return checked;
   }
   return {};

@@ -9,19 +9,25 @@
 namespace adit {
 namespace {
 
+enum class Loss { square, huber };
+constexpr std::array kLosses{Loss::huber, Loss::square};  // not in the order of their values
+std::string_view to_string(Loss loss) { return loss == Loss::square ? "square" : "huber"; }
+
 struct SampleConfig {
   double voxel_size = 1.0;
   int max_iterations = 500;
   bool deskew = true;
   std::uint64_t seed = 1;
   std::string method = "kiss";
+  Loss loss = Loss::square;
 };
 Fields fields_of(SampleConfig& c) {
   return {{"voxel_size", &c.voxel_size, "m", 0.01, 10.0, "edge of a voxel"},
           {"max_iterations", &c.max_iterations, "", 1, 10000, "at most"},
           {"deskew", &c.deskew, "", 0, 0, "undo the motion within the sweep"},
           {"seed", &c.seed, "", 0, 1e18, "of the noise"},
-          {"method", &c.method, "", 0, 0, "which", {"kiss", "kinematic"}}};
+          {"method", &c.method, "", 0, 0, "which", {"kiss", "kinematic"}},
+          enum_field("loss", &c.loss, kLosses, "how residuals count")};
 }
 
 std::string error_of(const Result<>& result) { return result ? "" : result.error().message; }
@@ -34,11 +40,34 @@ TEST(Config, SetsEachKindOfField) {
   EXPECT_TRUE(set_field(fields, "deskew", "false"));
   EXPECT_TRUE(set_field(fields, "seed", "123456789012345678"));
   EXPECT_TRUE(set_field(fields, "method", "kinematic"));
+  EXPECT_TRUE(set_field(fields, "loss", "huber"));
   EXPECT_EQ(config.voxel_size, 0.25);
   EXPECT_EQ(config.max_iterations, 7);
   EXPECT_FALSE(config.deskew);
   EXPECT_EQ(config.seed, 123456789012345678U);
   EXPECT_EQ(config.method, "kinematic");
+  EXPECT_EQ(config.loss, Loss::huber);
+}
+
+TEST(Config, AnEnumerationIsReadAndWrittenByName) {
+  SampleConfig config;
+  const Fields fields = fields_of(config);
+  EXPECT_EQ(fields.back().choices, (std::vector<std::string>{"huber", "square"}));
+  EXPECT_TRUE(fields.back().is_text());
+  for (const Loss loss : kLosses) {
+    EXPECT_TRUE(set_field(fields, "loss", to_string(loss)));
+    EXPECT_EQ(config.loss, loss);
+    EXPECT_EQ(value_text(fields.back()), to_string(loss));
+  }
+  EXPECT_NE(error_of(set_field(fields, "loss", "cubic")).find("huber, square"), std::string::npos);
+  EXPECT_EQ(config.loss, Loss::square);
+  EXPECT_TRUE(check_fields(fields));
+}
+
+TEST(Config, AKeyWithoutItsFirstPartsIsNearTheOnlyOneThatEndsInIt) {
+  const std::vector<std::string> known = {"robot.odometry.method", "back_end.gnc.mu_step", "loops.mu_step"};
+  EXPECT_EQ(nearest_key(known, "odometry.method"), "robot.odometry.method");
+  EXPECT_EQ(nearest_key(known, "gnc.mu_step"), "back_end.gnc.mu_step");
 }
 
 TEST(Config, BadValuesChangeNothingAndSayWhatIsAllowed) {

@@ -21,12 +21,12 @@ std::optional<std::string> text_of(const toml::node& node) {
   return std::nullopt;
 }
 
-/// A quoted number is no number: `set_field` alone, which sees text only, would take it.
+/// A quoted number is not a number: `set_field` alone, which sees text only, would take it.
 Result<> check_type(const Field& field, const toml::node& node) {
-  const bool wants_text = std::holds_alternative<std::string*>(field.target);
-  if (wants_text == node.is_string()) return {};
-  return fail(format("{}: {}", field.key,
-                     wants_text ? "a string in quotes is needed" : "a bare value, no string, is needed"));
+  if (field.is_text() == node.is_string()) return {};
+  return fail(
+      format("{}: {}", field.key,
+             field.is_text() ? "a string in quotes is needed" : "a bare value, not a string, is needed"));
 }
 
 Result<> set_node(const Fields& fields, const std::string& key, const toml::node& node) {
@@ -102,7 +102,7 @@ Fields fields_of_table(const Fields& fields, const std::string& table) {
 
 std::string range_text(const Field& field) {
   if (std::holds_alternative<bool*>(field.target)) return "true, false";
-  if (std::holds_alternative<std::string*>(field.target)) {
+  if (field.is_text()) {
     return field.choices.empty() ? "any text" : format("{}", fmt::join(field.choices, ", "));
   }
   return format("{} to {}", field.min, field.max);
@@ -110,12 +110,12 @@ std::string range_text(const Field& field) {
 
 std::string toml_value(const Field& field) {
   const std::string text = value_text(field);
-  if (const auto* string = std::get_if<std::string*>(&field.target)) {
+  if (field.is_text()) {
     std::ostringstream quoted;
-    quoted << toml::value<std::string>(**string);
+    quoted << toml::value<std::string>(text);
     return quoted.str();
   }
-  // TOML tells real numbers by their point or exponent, and wants a digit behind the point.
+  // In TOML a real number has a point or an exponent, and a digit after the point.
   const bool is_real = std::holds_alternative<double*>(field.target);
   return is_real && text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
 }
