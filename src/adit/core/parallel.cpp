@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "adit/core/check.hpp"
+#include "adit/core/progress.hpp"
 
 namespace adit {
 namespace {
@@ -40,13 +41,20 @@ void parallel_for(std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body) {
   ADIT_CHECK(grain >= 1, "a part holds at least one item");
   const std::size_t num_parts = (n + grain - 1) / grain;
+  const auto run_part = [&](std::size_t part) {
+    throw_if_cancelled();
+    body(part * grain, std::min(n, (part + 1) * grain));
+  };
   if (num_parts <= 1 || num_threads() == 1) {
-    for (std::size_t part = 0; part < num_parts; ++part) body(part * grain, std::min(n, (part + 1) * grain));
+    for (std::size_t part = 0; part < num_parts; ++part) run_part(part);
     return;
   }
   tbb::parallel_for(
       std::size_t{0}, num_parts,
-      [&](std::size_t part) { body(part * grain, std::min(n, (part + 1) * grain)); },
+      [&, context = progress_context()](std::size_t part) {
+        const ProgressScope scope(context);
+        run_part(part);
+      },
       tbb::simple_partitioner{});
 }
 

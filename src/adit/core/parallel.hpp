@@ -14,6 +14,8 @@ void set_num_threads(int num_threads);
 
 /// Calls `body(begin, end)` for consecutive parts of [0, n) of `grain` items each (the last one shorter), on
 /// several threads in any order. The parts depend on n and grain only, never on the number of threads.
+/// The parts report to the caller's observer (core/progress.hpp); before each it is polled: may throw
+/// `Cancelled`.
 void parallel_for(std::size_t n, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body);
 
