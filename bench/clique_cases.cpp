@@ -288,6 +288,8 @@ const auto registered = [] {
     Case(
         {.name = c.name,
          .work = exact ? "largest clique" : "large clique, " + std::to_string(c.budget) + " branches at most",
+         .scene =
+             std::to_string(c.num_graphs) + " random graphs of that kind, " + std::to_string(n) + " vertices",
          .peer = "bitset-bnb",
          .aim = exact ? 3.0 : 0.0,
          .note = "least: the table of bits read once, " + std::to_string(n * n / 8 / 1000) +
@@ -311,7 +313,11 @@ const auto registered = [] {
         });
       };
     });
-    if (c.igraph) Side(c.name, "igraph", [c] { return igraph_work(c.graphs()); });
+    if (c.igraph)
+      Side(c.name, "igraph", [c] { return igraph_work(c.graphs()); },
+           {.version = "igraph " IGRAPH_VERSION,
+            .build = "Debian 12 package",
+            .timed = "the clique number; the graph in its own form in memory"});
   }
   return 0;
 }();

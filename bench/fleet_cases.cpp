@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 /// What a growing fleet costs each robot: 4 to 64 robots drive 1 km each through one mine, all meet all, and
-/// one of them solves. Keyframes are made up, but true to kind: clouds of a generated mine with their
+/// one of them solves. Keyframes are artificial but realistic: clouds of a generated mine with their
 /// descriptors.
 #include <malloc.h>
 
@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "adit/core/parallel.hpp"
 #include "adit/core/rng.hpp"
 #include "adit/transport/loopback_bus.hpp"
 #include "harness/bench_case.hpp"
@@ -173,7 +172,6 @@ double num_robots(double num_met) { return num_met + 1.0; }
 
 /// All robots meet all others twice, as `adit slam` lets them; then the first solves.
 Work fleet(double num_met) {
-  set_num_threads(1);
   const Mine mine;
   std::vector<std::shared_ptr<const RobotMap>> maps;
   for (int r = 0; r < static_cast<int>(num_robots(num_met)); ++r)

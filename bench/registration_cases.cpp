@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "adit/core/format.hpp"
-#include "adit/core/parallel.hpp"
 #include "adit/geometry/voxel_grid.hpp"
 #include "adit/io/cloud_files.hpp"
 #include "adit/registration/registration.hpp"
@@ -55,7 +54,7 @@ constexpr double kKeyframeVoxel = 0.15;
 CloudPairs tube_keyframes() {
   constexpr std::size_t kPairs = 6;
   const Tunnel tunnel("zab", 1, "os2-128");
-  const std::vector<Pose> poses = poses_along(tunnel.ways().front(), 4.0);
+  const std::vector<Pose> poses = poses_along(tunnel.paths().front(), 4.0);
   CloudPairs pairs;
   for (std::size_t k = 0; k < kPairs; ++k) {
     const std::size_t at = (k + 1) * poses.size() / (kPairs + 2);
@@ -82,7 +81,7 @@ PointCloud submap(const Tunnel& tunnel, const std::vector<Pose>& poses, std::siz
 
 CloudPairs submaps() {
   const Tunnel tunnel("zab", 1, "os2-128");
-  const std::vector<Pose> poses = poses_along(tunnel.ways().front(), 2.0);
+  const std::vector<Pose> poses = poses_along(tunnel.paths().front(), 2.0);
   CloudPairs pairs;
   for (const std::size_t at : {poses.size() / 4, poses.size() / 2}) {
     const Pose T_world_b = poses[at + 3] * Pose::planar(0.0, 0.0, std::numbers::pi / 2.0);
@@ -92,7 +91,7 @@ CloudPairs submaps() {
   return pairs;
 }
 
-/// Errors of the worst pair, and the share of pairs that came out right.
+/// Errors of the worst pair, and the share of pairs registered within 1 m and 5 degrees.
 Figures judged(const CloudPairs& pairs, const std::function<std::optional<Pose>(const CloudPair&)>& solve) {
   double worst_m = 0.0;
   double worst_deg = 0.0;
@@ -112,9 +111,8 @@ Figures judged(const CloudPairs& pairs, const std::function<std::optional<Pose>(
 
 using MakePairs = CloudPairs (*)();
 
-Prepare global(MakePairs make, int num_threads) {
+Prepare global(MakePairs make) {
   return [=]() -> Work {
-    set_num_threads(num_threads);
     return [pairs = make()] {
       return judged(
           pairs, [](const CloudPair& pair) { return register_clouds(pair.target, pair.source, {}).T_a_b; });
@@ -122,48 +120,63 @@ Prepare global(MakePairs make, int num_threads) {
   };
 }
 
-struct GlobalCase {
-  GlobalCase(const std::string& name, const std::string& what, MakePairs make, double num_pairs)
-      : one(info(name, what + ", one thread", num_pairs)),
-        one_adit(name, "adit", global(make, 1)),
-        two(info(name + "_2_threads", what + ", two threads", num_pairs)),
-        two_adit(name + "_2_threads", "adit", global(make, 2)) {}
-
-  static CaseInfo info(const std::string& name, const std::string& work, double num_pairs) {
-    return {name, work, "kiss-matcher", 2.0, "", num_pairs, "pair"};
+// With one thread and with two.
+void add_cases(CaseInfo info, const Prepare& adit, const About& about) {
+  const std::string name = info.name;
+  for (const int threads : {1, 2}) {
+    info.name = threads == 1 ? name : name + "_2_threads";
+    info.num_threads = threads;
+    Case(CaseInfo(info));
+    Side(info.name, "adit", adit, about);
   }
-  Case one;
-  Side one_adit;
-  Case two;
-  Side two_adit;
+}
+
+const About kGlobalTimed{.timed =
+                             "from two clouds in memory to the verified transform: voxels, features, "
+                             "matching, solving, refinement"};
+
+struct GlobalCase {
+  GlobalCase(const std::string& name, const std::string& scene, MakePairs make, double num_pairs) {
+    add_cases({.name = name,
+               .work = "global registration without a guess",
+               .scene = scene,
+               .peer = "kiss-matcher",
+               .aim = 2.0,
+               .per_run = num_pairs,
+               .unit = "pair"},
+              global(make), kGlobalTimed);
+  }
 };
 const GlobalCase kitti("registration/kitti_pair", "KITTI pair", kitti_pair, 1);
-const GlobalCase turned("registration/kitti_turned", "KITTI pair turned by 120 degrees, moved 5 m",
-                        kitti_turned, 1);
-const GlobalCase keyframes("registration/tube_keyframes", "keyframes of zab, 4 m and half a turn apart",
-                           tube_keyframes, 6);
-const GlobalCase maps("registration/submaps", "submaps of zab of ten scans each, 6 m apart", submaps, 2);
+const GlobalCase turned("registration/kitti_turned",
+                        "KITTI pair, one cloud turned by 120 degrees and moved 5 m", kitti_turned, 1);
+const GlobalCase keyframes("registration/tube_keyframes",
+                           "keyframes of zab, 4 m and half a turn apart, six pairs", tube_keyframes, 6);
+const GlobalCase maps("registration/submaps", "submaps of zab of ten scans each, 6 m apart, two pairs",
+                      submaps, 2);
 
 /// The peer's settings: voxels of 0.25 m, pairs up to 1 m apart, from no motion at all.
-Prepare refine(int num_threads) {
-  return [=]() -> Work {
-    set_num_threads(num_threads);
-    RegistrationConfig config;
-    config.voxel_size = 0.25;
-    config.refine_distance_voxels = 4.0;
-    return [config, pairs = kitti_pair()] {
-      return judged(pairs, [&](const CloudPair& pair) {
-        return align_clouds(pair.target, pair.source, Pose(), config);
-      });
-    };
+Work refine() {
+  RegistrationConfig config;
+  config.voxel_size = 0.25;
+  config.refine_distance_voxels = 4.0;
+  return [config, pairs = kitti_pair()] {
+    return judged(
+        pairs, [&](const CloudPair& pair) { return align_clouds(pair.target, pair.source, Pose(), config); });
   };
 }
-const Case refine_one({"registration/refine_kitti", "KITTI pair, refined from no motion, one thread",
-                       "small_gicp", 1.0, "", 1, "pair"});
-const Side refine_one_adit("registration/refine_kitti", "adit", refine(1));
-const Case refine_two({"registration/refine_kitti_2_threads",
-                       "KITTI pair, refined from no motion, two threads", "small_gicp", 1.0, "", 1, "pair"});
-const Side refine_two_adit("registration/refine_kitti_2_threads", "adit", refine(2));
+const auto refinements = [] {
+  add_cases(
+      {.name = "registration/refine_kitti",
+       .work = "refinement from no motion, voxels of 0.25 m on both sides",
+       .scene = "KITTI pair",
+       .peer = "small_gicp",
+       .aim = 1.0,
+       .unit = "pair"},
+      refine,
+      {.timed = "from two clouds in memory to the transform: voxels, normals, search trees, all iterations"});
+  return 0;
+}();
 
 // NAME_K_target.bin, NAME_K_source.bin: KITTI format. NAME_K_T_target_source.txt: 4 x 4, row by row.
 void write_pairs(const std::filesystem::path& folder) {

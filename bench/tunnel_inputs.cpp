@@ -21,7 +21,7 @@ Tunnel::Tunnel(const std::string& preset, std::uint64_t seed, const std::string&
 
 Tunnel::Tunnel(const World& world, const LidarConfig& lidar)
     : lidar_(lidar), raycaster_(needed(Raycaster::build(world.mesh))) {
-  for (const Route& route : world.routes) ways_.push_back(needed(drive(raycaster_, route, {}, Stamp{})));
+  for (const Route& route : world.routes) paths_.push_back(needed(drive(raycaster_, route, {}, Stamp{})));
 }
 
 PointCloud Tunnel::seen_from(const Pose& T_world_base, std::uint64_t noise_seed) const {
@@ -32,12 +32,12 @@ PointCloud Tunnel::seen_from(const Pose& T_world_base, std::uint64_t noise_seed)
       cast_scan(raycaster_, lidar_, {T_world_sensor, T_world_sensor, Stamp{}, noise_seed}).cloud);
 }
 
-std::vector<Pose> poses_along(const Trajectory& way, double spacing) {
+std::vector<Pose> poses_along(const Trajectory& path, double spacing) {
   std::vector<Pose> out;
   double to_next = 0.0;
-  for (std::size_t i = 0; i < way.size(); ++i) {
-    const Pose& T = way[i].T_world_body;
-    if (i > 0) to_next -= (T.translation() - way[i - 1].T_world_body.translation()).norm();
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const Pose& T = path[i].T_world_body;
+    if (i > 0) to_next -= (T.translation() - path[i - 1].T_world_body.translation()).norm();
     if (to_next > 0.0) continue;
     out.push_back(T);
     to_next += spacing;

@@ -13,13 +13,13 @@
 
 namespace adit::bench {
 
-/// A simulated tunnel network and the way of each of its robots through it.
+/// A simulated tunnel network and the path of each of its robots through it.
 class Tunnel {
  public:
   /// The world `preset` of `seed`, seen by a sensor of that name.
   Tunnel(const std::string& preset, std::uint64_t seed, const std::string& lidar);
 
-  [[nodiscard]] const std::vector<Trajectory>& ways() const { return ways_; }
+  [[nodiscard]] const std::vector<Trajectory>& paths() const { return paths_; }
   /// What the sensor sees from a robot that stands at T_world_base, in the base frame.
   [[nodiscard]] PointCloud seen_from(const Pose& T_world_base, std::uint64_t noise_seed) const;
 
@@ -28,10 +28,10 @@ class Tunnel {
 
   LidarConfig lidar_;
   Raycaster raycaster_;
-  std::vector<Trajectory> ways_;
+  std::vector<Trajectory> paths_;
 };
 
-/// Poses every `spacing` metres along a way.
-[[nodiscard]] std::vector<Pose> poses_along(const Trajectory& way, double spacing);
+/// Poses every `spacing` metres along a path.
+[[nodiscard]] std::vector<Pose> poses_along(const Trajectory& path, double spacing);
 
 }  // namespace adit::bench

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 /// What a benchmark is made of. A case is one piece of work that two or more sides do on the same input:
-/// adit, and a peer or a plain oracle. Each side runs in a process of its own (its peak memory is its own),
-/// does one untimed preparation, and then one timed run whenever the driver asks; the driver takes turns
-/// between the sides, so that both see the same noise.
+/// adit, and a peer or a plain oracle. Each side runs in a process of its own, on the same processors and
+/// with the same number of threads. It prepares once, untimed, and then does one timed run whenever the
+/// driver asks; the driver alternates between the sides, so that all see the same load of the machine.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@
 
 namespace adit::bench {
 
-/// What a run found beside the time: accuracy, costs, sizes. Names end in their unit (`ate_m`, `chi2`).
+/// What a run found besides the time: errors, costs, iterations. Names end in their unit (`rmse_m`, `chi2`).
 using Figures = std::map<std::string, double>;
 
 /// One timed run. It may be called many times and does the same work each time.
@@ -30,13 +30,24 @@ using Prepare = std::function<Work()>;
 
 /// A row of the table.
 struct CaseInfo {
-  std::string name;  ///< topic/what, e.g. "posegraph/sphere2500".
-  std::string work;  ///< What one run does, in a few words; shown in the table.
-  std::string peer;  ///< The side the ratio is taken against: "ceres", "embree", "reference", "kiss-icp", ...
-  double aim = 0.0;  ///< Wanted: time of the peer over time of adit. 0: no aim, growth or context only.
-  std::string note{};  ///< Roofline-style: least operations and bytes the work needs. May be empty.
-  double per_run = 1;  ///< Units (scans, queries) that one run handles; times are shown for one unit.
-  std::string unit{};  ///< Name of the unit; empty: the whole run.
+  std::string name;     ///< topic/what, e.g. "posegraph/sphere2500".
+  std::string work;     ///< What one run does, in a few words.
+  std::string scene;    ///< The input: which data, how large.
+  int num_threads = 1;  ///< Threads and processors that each side gets.
+  std::string peer;     ///< The side that the aim is about: "ceres", "embree", "kiss-icp", ...
+  double aim = 0.0;     ///< Wanted: time of the peer over time of adit. 0: no aim, context only.
+  std::string note;     ///< Least operations and bytes that the work needs. May be empty.
+  double per_run = 1;   ///< Units (scans, queries) that one run handles; times are shown for one unit.
+  std::string unit;     ///< Name of the unit; empty: the whole run.
+};
+
+/// What a reader has to know to judge a time. Each side states it; one that does not is left out.
+struct About {
+  std::string version;  ///< Of the program or library.
+  std::string build;    ///< Compiler and flags, or the package.
+  std::string timed;    ///< What happens between start and stop of the clock, and what does not.
+  int num_threads = 0;  ///< Threads that it uses; 0: those of the case.
+  std::map<std::string, std::string> environment;  ///< Set before the process starts, e.g. for its BLAS.
 };
 
 /// Static objects of these types in `*_cases.cpp` fill the table.
@@ -44,12 +55,13 @@ struct Case {
   explicit Case(CaseInfo info);
 };
 struct Side {
-  /// `side` is "adit" for ours.
-  Side(const std::string& case_name, const std::string& side, Prepare prepare);
+  /// `side` is "adit" for ours. Of sides in this repository an empty `version` is that of adit, an empty
+  /// `build` that of this program, and an empty `timed` stands for `work` alone, input in memory.
+  Side(const std::string& case_name, const std::string& side, Prepare prepare, About about = {});
 };
 
-/// A curve of cost over size: adit alone, one process a size, drawn into docs/figures/. With `shares`, the
-/// time is that of one of `shares(size)` equal parts of the work.
+/// A curve of cost over size: adit alone, one thread, one process per size, drawn into docs/figures/. With
+/// `shares`, the time is that of one of `shares(size)` equal parts of the work.
 struct Growth {
   Growth(const std::string& name, const std::string& title, const std::string& size_label,
          std::vector<double> sizes, std::function<Work(double size)> prepare,

@@ -61,31 +61,31 @@ struct Files {
   fs::path recorded;  // of the last recorded version
 };
 
-void run(const std::vector<std::string>& filters, const CompareConfig& config, const Files& files,
-         const std::string& version) {
+void run(const std::vector<std::string>& filters, const CompareConfig& config, const Files& files) {
   const Results recorded = read_results(files.recorded);
-  Results now{version, machine(), today(), {}, {}};
+  const Measured measured{config.version, machine(), today()};
+  Results now;
   std::cout << table_head() << std::flush;
   for (const auto& [name, info] : registry().cases) {
     if (!wanted(name, filters)) continue;
-    now.cases.push_back(compare(info, config));
-    std::cout << table_row(now.cases.back(), recorded) << std::flush;
+    CaseResult& result = now.cases.emplace_back(compare(info, config));
+    result.measured = measured;
+    std::cout << table_row(result, recorded) << std::flush;
   }
   for (const auto& [name, info] : registry().growths) {
-    if (wanted(name, filters)) now.growths.push_back(grow(info, config));
+    if (wanted(name, filters)) now.growths.emplace_back(grow(info, config)).measured = measured;
   }
   write(files.results, json_of(merged(now, read_results(files.results))).dump(1) + "\n");
 }
 
-void write_page(const Files& files, const fs::path& frame, const fs::path& page) {
-  const Results results = read_results(files.results);
-  for (const GrowthResult& growth : results.growths)
-    write(page.parent_path() / "figures" / figure_name(growth), plot_growth(growth));
-  std::string text = read(frame);
-  const std::string mark = "<!-- tables -->\n";
-  const std::size_t at = text.find(mark);
-  if (at == std::string::npos) throw std::runtime_error(frame.string() + " has no line " + mark);
-  write(page, text.replace(at, mark.size(), markdown(results, read_results(files.recorded))));
+void record(const Files& files) {
+  const Results kept = recordable(read_results(files.results), read_results(files.recorded));
+  write(files.recorded, json_of(kept).dump(1) + "\n");
+}
+
+void plot(const Files& files, const fs::path& folder) {
+  for (const GrowthResult& growth : read_results(files.results).growths)
+    write(folder / figure_name(growth), plot_growth(growth));
 }
 
 }  // namespace
@@ -108,23 +108,23 @@ int main(int argc, char** argv) try {
   server->callback([&] { status = serve(name, side); });
 
   std::vector<std::string> filters;
-  std::string version(adit::version());
   CompareConfig config;
+  config.version = adit::version();
   Files files;
   auto* runner = app.add_subcommand("run", "time the cases and growth curves, print the table");
   runner->add_option("filters", filters, "only those whose name holds one of these");
   runner->add_option("--rounds", config.rounds, "runs of each side")->check(CLI::PositiveNumber);
-  runner->add_option("--seconds", config.seconds_a_case, "time for one case, about");
+  runner->add_option("--seconds", config.seconds_per_case, "time for one case, about");
   runner->add_option("--peers", config.peers, "folder of further programs, see bench/README.md")
       ->check(CLI::ExistingDirectory);
   runner->add_option("--inputs", config.inputs, "folder that `export` has filled, for these programs");
   runner->add_option("--base", config.base, "an older adit_bench to run beside")->check(CLI::ExistingFile);
-  runner->add_option("--version-name", version, "name of what is measured");
+  runner->add_option("--version-name", config.version, "name of what is measured");
   runner->add_option("--results", files.results, "where the figures go")->required();
   runner->add_option("--recorded", files.recorded, "figures of the last recorded version");
   runner->callback([&] {
     config.program = fs::canonical("/proc/self/exe").string();
-    run(filters, config, files, version);
+    run(filters, config, files);
   });
 
   fs::path folder;
@@ -137,14 +137,16 @@ int main(int argc, char** argv) try {
     }
   });
 
-  fs::path frame;
-  fs::path page;
-  auto* pager = app.add_subcommand("page", "write the page of the figures");
-  pager->add_option("--results", files.results)->required()->check(CLI::ExistingFile);
-  pager->add_option("--recorded", files.recorded);
-  pager->add_option("--frame", frame, "text around the tables")->required()->check(CLI::ExistingFile);
-  pager->add_option("--out", page)->required();
-  pager->callback([&] { write_page(files, frame, page); });
+  auto* recorder = app.add_subcommand("record", "make figures of a committed version the recorded ones");
+  recorder->add_option("--results", files.results)->required()->check(CLI::ExistingFile);
+  recorder->add_option("--recorded", files.recorded)->required();
+  recorder->callback([&] { record(files); });
+
+  fs::path figures;
+  auto* plotter = app.add_subcommand("plot", "draw the growth curves");
+  plotter->add_option("--results", files.results)->required()->check(CLI::ExistingFile);
+  plotter->add_option("--out", figures, "folder for the pictures")->required();
+  plotter->callback([&] { plot(files, figures); });
 
   CLI11_PARSE(app, argc, argv);
   return status;

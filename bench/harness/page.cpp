@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "adit/core/format.hpp"
 #include "adit/report/palette.hpp"
@@ -18,9 +19,24 @@ using nlohmann::json;
 json json_of(const Spread& s) { return {s.min, s.median, s.max}; }
 Spread spread_from(const json& j) { return {j.at(0), j.at(1), j.at(2)}; }
 
+json json_of(const Measured& m) { return {{"version", m.version}, {"machine", m.machine}, {"date", m.date}}; }
+Measured measured_from(const json& j) { return {j.at("version"), j.at("machine"), j.at("date")}; }
+
+json json_of(const About& about) {
+  return {{"version", about.version},
+          {"build", about.build},
+          {"timed", about.timed},
+          {"threads", about.num_threads},
+          {"environment", about.environment}};
+}
+About about_from(const json& j) {
+  return {j.at("version"), j.at("build"), j.at("timed"), j.at("threads"), j.at("environment")};
+}
+
 json json_of(const SideResult& side) {
   if (!side.skipped.empty()) return {{"side", side.side}, {"skipped", side.skipped}};
   return {{"side", side.side},
+          {"about", json_of(side.about)},
           {"seconds", json_of(side.seconds)},
           {"ratio", json_of(side.ratio)},
           {"peak_mb", side.peak_mb},
@@ -31,6 +47,7 @@ SideResult side_from(const json& j) {
   side.side = j.at("side");
   side.skipped = j.value("skipped", "");
   if (!side.skipped.empty()) return side;
+  side.about = about_from(j.at("about"));
   side.seconds = spread_from(j.at("seconds"));
   side.ratio = spread_from(j.at("ratio"));
   side.peak_mb = j.at("peak_mb");
@@ -54,12 +71,6 @@ std::string time_text(double seconds) {
 
 std::string ratio_text(const Spread& ratio) {
   return format("{:.2f} ({:.2f}-{:.2f})", ratio.median, ratio.min, ratio.max);
-}
-
-std::string figures_text(const Figures& figures) {
-  std::string out;
-  for (const auto& [name, value] : figures) out += (out.empty() ? "" : ", ") + name + " " + digits(value);
-  return out;
 }
 
 const SideResult* measured(const CaseResult* result, const std::string& side) {
@@ -106,7 +117,7 @@ Row row_of(const CaseResult& result, const Results& recorded) {
   return row;
 }
 
-std::string topic_of(const std::string& name) { return name.substr(0, name.find('/')); }
+bool is_dirty(const Measured& m) { return m.version.ends_with("-dirty"); }
 
 }  // namespace
 
@@ -115,8 +126,11 @@ json json_of(const Results& results) {
   for (const CaseResult& c : results.cases) {
     json sides = json::array();
     for (const SideResult& side : c.sides) sides.push_back(json_of(side));
-    cases.push_back({{"name", c.info.name},
+    cases.push_back({{"measured", json_of(c.measured)},
+                     {"name", c.info.name},
                      {"work", c.info.work},
+                     {"scene", c.info.scene},
+                     {"threads", c.info.num_threads},
                      {"peer", c.info.peer},
                      {"aim", c.info.aim},
                      {"note", c.info.note},
@@ -128,28 +142,34 @@ json json_of(const Results& results) {
     json points = json::array();
     for (const GrowthPoint& point : g.points)
       points.push_back({{"size", point.size}, {"result", json_of(point.result)}});
-    growths.push_back(
-        {{"name", g.name}, {"title", g.title}, {"size_label", g.size_label}, {"points", points}});
+    growths.push_back({{"measured", json_of(g.measured)},
+                       {"name", g.name},
+                       {"title", g.title},
+                       {"size_label", g.size_label},
+                       {"points", points}});
   }
-  return {{"version", results.version},
-          {"machine", results.machine},
-          {"date", results.date},
-          {"cases", cases},
-          {"growths", growths}};
+  return {{"cases", cases}, {"growths", growths}};
 }
 
 Results results_from(const json& document) {
   Results out;
-  out.version = document.at("version");
-  out.machine = document.at("machine");
-  out.date = document.at("date");
   for (const json& c : document.at("cases")) {
     CaseResult& result = out.cases.emplace_back();
-    result.info = {c.at("name"), c.at("work"), c.at("peer"), c.at("aim"), c.at("note"), 1.0, c.at("unit")};
+    result.measured = measured_from(c.at("measured"));
+    result.info = {.name = c.at("name"),
+                   .work = c.at("work"),
+                   .scene = c.at("scene"),
+                   .num_threads = c.at("threads"),
+                   .peer = c.at("peer"),
+                   .aim = c.at("aim"),
+                   .note = c.at("note"),
+                   .per_run = 1.0,
+                   .unit = c.at("unit")};
     for (const json& side : c.at("sides")) result.sides.push_back(side_from(side));
   }
   for (const json& g : document.at("growths")) {
     GrowthResult& growth = out.growths.emplace_back();
+    growth.measured = measured_from(g.at("measured"));
     growth.name = g.at("name");
     growth.title = g.at("title");
     growth.size_label = g.at("size_label");
@@ -172,6 +192,34 @@ Results merged(Results now, const Results& before) {
   return now;
 }
 
+Results recordable(Results now, const Results& before) {
+  const auto known = [](const auto& row) {
+    if constexpr (requires { row.info; })
+      return registry().cases.contains(row.info.name);
+    else
+      return registry().growths.contains(row.name);
+  };
+  const auto keep = [&](auto& rows, const auto& kept) {
+    std::erase_if(rows, [&](const auto& row) { return !kept(row); });
+  };
+  const auto refuse_dirty = [](const auto& rows) {
+    for (const auto& row : rows) {
+      if (is_dirty(row.measured))
+        throw std::runtime_error("measured with uncommitted changes (" + row.measured.version +
+                                 "): commit them and run again; only a committed version is recorded");
+    }
+  };
+  keep(now.cases, known);
+  keep(now.growths, known);
+  refuse_dirty(now.cases);
+  refuse_dirty(now.growths);
+  const auto may_stay = [&](const auto& row) { return known(row) && !is_dirty(row.measured); };
+  Results old = before;
+  keep(old.cases, may_stay);
+  keep(old.growths, may_stay);
+  return merged(std::move(now), old);
+}
+
 std::string table_head() {
   return format("{:<36} {:>18}  {:<28} {:<20} {:<12} {:<13} {}\n", "case", "adit", "peer", "ratio (min-max)",
                 "aim", "MB ours/peer", "last recorded (ratio)");
@@ -181,56 +229,6 @@ std::string table_row(const CaseResult& result, const Results& recorded) {
   const Row row = row_of(result, recorded);
   return format("{:<36} {:>18}  {:<28} {:<20} {:<12} {:<13} {}\n", row.name, row.ours, row.peer, row.ratio,
                 row.aim, row.memory, row.last);
-}
-
-std::string markdown(const Results& results, const Results& recorded) {
-  std::string out =
-      format("Measured: version {}, {}, {}. Last recorded: version {}, {}.\n", results.version,
-             results.machine, results.date, recorded.version.empty() ? "none" : recorded.version,
-             recorded.machine.empty() ? "-" : recorded.machine);
-  std::string topic;
-  std::string notes;
-  const auto end_topic = [&] {
-    out += notes.empty() ? "" : "\n" + notes;
-    notes.clear();
-  };
-  for (const CaseResult& c : results.cases) {
-    if (topic_of(c.info.name) != topic) {
-      end_topic();
-      topic = topic_of(c.info.name);
-      out += "\n## " + topic +
-             "\n\n| case | adit | peer | peer / adit: median (min-max) | aim | peak MB, adit / peer | last "
-             "recorded (ratio) |\n| --- | --- | --- | --- | --- | --- | --- |\n";
-    }
-    const Row row = row_of(c, recorded);
-    out += format("| {} | {} | {} | {} | {} | {} | {} |\n", row.name.substr(topic.size() + 1), row.ours,
-                  row.peer, row.ratio, row.aim, row.memory, row.last);
-    notes += format("- **{}**: {}.", row.name.substr(topic.size() + 1), c.info.work);
-    if (!c.info.note.empty()) notes += " " + c.info.note;
-    for (const SideResult& side : c.sides) {
-      if (!side.skipped.empty()) continue;
-      const bool shown = side.side == "adit" || side.side == c.info.peer;
-      if (shown && side.figures.empty()) continue;
-      notes += format("\n  - {}", side.side);
-      if (!shown) notes += format(" {}, ratio {}", time_text(side.seconds.median), ratio_text(side.ratio));
-      notes += side.figures.empty() ? "" : ": " + figures_text(side.figures);
-    }
-    notes += "\n";
-  }
-  end_topic();
-  out += "\n## Growth\n";
-  for (const GrowthResult& g : results.growths) {
-    out += format("\n![{}](figures/{})\n\n| {} | time | peak MB | |\n| --- | --- | --- | --- |\n", g.title,
-                  figure_name(g), g.size_label);
-    for (const GrowthPoint& p : g.points) {
-      out +=
-          p.result.skipped.empty()
-              ? format("| {} | {} | {:.0f} | {} |\n", tick_text(p.size), time_text(p.result.seconds.median),
-                       p.result.peak_mb, figures_text(p.result.figures))
-              : format("| {} | SKIPPED: {} | | |\n", tick_text(p.size), p.result.skipped);
-    }
-  }
-  return out;
 }
 
 std::string figure_name(const GrowthResult& growth) {

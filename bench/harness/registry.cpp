@@ -3,6 +3,7 @@
 #include "harness/registry.hpp"
 
 #include "adit/core/check.hpp"
+#include "adit/core/version.hpp"
 
 namespace adit::bench {
 
@@ -16,9 +17,15 @@ Case::Case(CaseInfo info) {
   ADIT_CHECK(registry().cases.emplace(name, std::move(info)).second, "each case has a name of its own");
 }
 
-Side::Side(const std::string& case_name, const std::string& side, Prepare prepare) {
-  ADIT_CHECK(registry().sides.emplace(std::pair(case_name, side), std::move(prepare)).second,
-             "each side is given once");
+Side::Side(const std::string& case_name, const std::string& side, Prepare prepare, About about) {
+  if (about.version.empty()) about.version = "adit " + std::string(version());
+  if (about.build.empty()) about.build = ADIT_BENCH_BUILD;
+  if (about.timed.empty()) about.timed = "the work alone; input in memory, results not written";
+  ADIT_CHECK(
+      registry()
+          .sides.emplace(std::pair(case_name, side), RegisteredSide{std::move(prepare), std::move(about)})
+          .second,
+      "each side is given once");
 }
 
 Growth::Growth(const std::string& name, const std::string& title, const std::string& size_label,

@@ -20,9 +20,14 @@ struct GrowthInfo {
   std::function<double(double)> shares;
 };
 
+struct RegisteredSide {
+  Prepare prepare;
+  About about;  ///< Complete.
+};
+
 struct Registry {
   std::map<std::string, CaseInfo> cases;  ///< By name, which is also the order of the table.
-  std::map<std::pair<std::string, std::string>, Prepare> sides;  ///< By case and side.
+  std::map<std::pair<std::string, std::string>, RegisteredSide> sides;  ///< By case and side.
   std::map<std::string, GrowthInfo> growths;
   std::map<std::string, std::function<void(const std::filesystem::path&)>> exports;
 };

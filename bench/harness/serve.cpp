@@ -3,10 +3,12 @@
 #include "harness/serve.hpp"
 
 #include <chrono>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "adit/core/parallel.hpp"
 #include "harness/registry.hpp"
 
 namespace adit::bench {
@@ -18,7 +20,13 @@ Work prepared(const std::string& name, const std::string& side) {
     return growth->second.prepare(std::stod(side));
   const auto found = all.sides.find({name, side});
   if (found == all.sides.end()) throw Skipped{"no side " + side + " of " + name};
-  return found->second();
+  return found->second.prepare();
+}
+
+int num_threads_of(const std::string& name) {
+  if (const char* text = std::getenv("ADIT_BENCH_THREADS")) return std::atoi(text);
+  const auto found = registry().cases.find(name);
+  return found == registry().cases.end() ? 1 : found->second.num_threads;
 }
 
 }  // namespace
@@ -26,6 +34,7 @@ Work prepared(const std::string& name, const std::string& side) {
 int serve(const std::string& name, const std::string& side) {
   Work work;
   try {
+    set_num_threads(num_threads_of(name));
     work = prepared(name, side);
   } catch (const Skipped& skipped) {
     std::cout << "skip " << skipped.why << std::endl;
