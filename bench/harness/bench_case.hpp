@@ -30,24 +30,24 @@ using Prepare = std::function<Work()>;
 
 /// A row of the table.
 struct CaseInfo {
-  std::string name;     ///< topic/what, e.g. "posegraph/sphere2500".
-  std::string work;     ///< What one run does, in a few words.
-  std::string scene;    ///< The input: which data, how large.
+  std::string name{};   ///< topic/what, e.g. "posegraph/sphere2500".
+  std::string work{};   ///< What one run does, in a few words.
+  std::string scene{};  ///< The input: which data, how large.
   int num_threads = 1;  ///< Threads and processors that each side gets.
-  std::string peer;     ///< The side that the aim is about: "ceres", "embree", "kiss-icp", ...
+  std::string peer{};   ///< The side that the aim is about: "ceres", "embree", "kiss-icp", ...
   double aim = 0.0;     ///< Wanted: time of the peer over time of adit. 0: no aim, context only.
-  std::string note;     ///< Least operations and bytes that the work needs. May be empty.
+  std::string note{};   ///< Least operations and bytes that the work needs. May be empty.
   double per_run = 1;   ///< Units (scans, queries) that one run handles; times are shown for one unit.
-  std::string unit;     ///< Name of the unit; empty: the whole run.
+  std::string unit{};   ///< Name of the unit; empty: the whole run.
 };
 
 /// What a reader has to know to judge a time. Each side states it; one that does not is left out.
 struct About {
-  std::string version;  ///< Of the program or library.
-  std::string build;    ///< Compiler and flags, or the package.
-  std::string timed;    ///< What happens between start and stop of the clock, and what does not.
-  int num_threads = 0;  ///< Threads that it uses; 0: those of the case.
-  std::map<std::string, std::string> environment;  ///< Set before the process starts, e.g. for its BLAS.
+  std::string version{};  ///< Of the program or library.
+  std::string build{};    ///< Compiler and flags, or the package.
+  std::string timed{};    ///< What happens between start and stop of the clock, and what does not.
+  int num_threads = 0;    ///< Threads that it uses; 0: those of the case.
+  std::map<std::string, std::string> environment{};  ///< Set before the process starts, e.g. for its BLAS.
 };
 
 /// Static objects of these types in `*_cases.cpp` fill the table.

@@ -14,8 +14,8 @@ namespace adit::bench {
 
 /// How a program is started.
 struct Launch {
-  std::vector<std::string> command;
-  std::map<std::string, std::string> environment;  ///< Added to that of this process.
+  std::vector<std::string> command{};
+  std::map<std::string, std::string> environment{};  ///< Added to that of this process.
   int num_processors = 0;  ///< It may run on the first so many of those that this process may; 0: on all.
 };
 
