@@ -84,9 +84,10 @@ Table side_by_side(std::string title, std::string note, std::vector<std::string>
 Table summary_table(const std::vector<FalseLoopRun>& runs) {
   Table table = side_by_side(
       "False loops, in short",
-      "Loops of all graphs together that every method has an answer for. P: precision, true loops among "
-      "those kept; R: recall, true loops that are kept; both per cent. Clean: graphs of which no false "
-      "loop was kept.",
+      "Loops of all graphs for which every method has an answer. P: precision, the share of true loops among "
+      "those kept; R: recall, the share of true loops that are kept; both in per cent. Clean: graphs of "
+      "which "
+      "no false loop was kept.",
       {"Injection", "False (%)", "Graphs", "True loops", "False loops"}, {"P", "R", "Clean"});
   for (const auto& [key, sum] : sums_of(runs)) {
     std::vector<std::string> row = {key.first, format("{}", key.second), format("{}", sum.graphs),
@@ -101,12 +102,14 @@ Table summary_table(const std::vector<FalseLoopRun>& runs) {
 }
 
 Table graph_table(const std::vector<FalseLoopRun>& runs) {
-  Table table = side_by_side(
-      "False loops, each graph",
-      "P and R as above; off: the largest distance in metres of a position from the optimum of the true "
-      "loops, or the pieces that the kept loops leave where those are more than the true loops leave; CPU: "
-      "processor time in seconds. † The clique search stopped at its budget.",
-      {"Graph", "Injection", "False (%)", "True loops", "False loops"}, {"P", "R", "off", "CPU"});
+  Table table = side_by_side("False loops, each graph",
+                             "P and R as above; off: the largest distance in metres of a position from the "
+                             "optimum of the true loops, "
+                             "or the number of parts into which the kept loops divide the graph, where that "
+                             "is more than with the true "
+                             "loops; CPU: time in seconds. † The clique search stopped at its budget.",
+                             {"Graph", "Injection", "False (%)", "True loops", "False loops"},
+                             {"P", "R", "off", "CPU"});
   for (const FalseLoopRun& run : runs) {
     std::vector<std::string> row = {run.graph, run.injection, format("{}", run.share_pct),
                                     format("{}", run.num_true), format("{}", run.num_false)};
@@ -118,8 +121,11 @@ Table graph_table(const std::vector<FalseLoopRun>& runs) {
 
 /// One line a graph, method and reason.
 Table reason_table(const std::vector<FalseLoopRun>& runs) {
-  Table table{
-      "Methods without an answer", "As \"-\" in the table of graphs.", {}, {"Graph", "Method", "Reason"}, {}};
+  Table table{"Methods without an answer",
+              "Shown as \"-\" in the table of graphs.",
+              {},
+              {"Graph", "Method", "Reason"},
+              {}};
   for (const FalseLoopRun& run : runs)
     for (std::size_t m = 0; m < kLoopMethods.size(); ++m) {
       if (run.decisions[m]) continue;

@@ -72,12 +72,16 @@ std::vector<GroupAndPolicy> groups_of(const std::vector<MergeRun>& runs) {
 Table summary_table(const std::vector<MergeRun>& runs) {
   Table table{
       "Merging, in short",
-      "Mergeable pairs share at least 25 m and a place that is like no other in the scans of both. Bent: "
-      "merged in the right place, but with an ATE of 1 % of the path or more. Indistinct: merged rightly, of "
-      "the pairs that share 25 m and no such place. Kept apart: of the pairs that share less. Joint: all "
-      "robots of a world at once; merged: mergeable pairs that end in one right map; whole where all are in "
-      "one map that mergeable pairs join. CPU: processor "
-      "time of all threads from the robots' maps to the joint solution.",
+      "Mergeable pairs share at least 25 m and a place that is distinctive in the scans of both. Bent: "
+      "merged "
+      "in the correct place, but with an ATE of 1 % of the path or more. Indistinct: merged correctly, of "
+      "the "
+      "pairs that share 25 m but no such place. Kept apart: of the pairs that share less. Joint: all robots "
+      "of "
+      "a world at once; merged: mergeable pairs that end in one correct map; whole: worlds where all robots "
+      "that mergeable pairs connect share a map. CPU: time of all threads for merging alone, from the "
+      "robots' "
+      "maps to the joint solution.",
       {},
       {"Worlds", "Keyframes", "Number", "Merged well", "Bent", "Refused", "Indistinct", "Kept apart",
        "Wrong merges", "Wrong loops", "Joint: merged", "Joint: whole", "Joint: wrong", "Joint: wrong loops",
@@ -115,8 +119,9 @@ double worst_ate_pct(const MergeRun& run) {
 Table worlds_table(const std::vector<MergeRun>& runs) {
   Table table{
       "Each world",
-      "Maps: the robots that share one are joined by a plus; in brackets what mergeable pairs would "
-      "join, where that is more. ATE: the worst robot's, per cent of its path.",
+      "Maps: robots that share one are joined by a plus; in brackets the maps that mergeable pairs would "
+      "allow, "
+      "where that is more. ATE: of the worst robot, in per cent of its path.",
       {},
       {"World", "Keyframes", "Mergeable", "Well", "Bent", "Refused", "Indistinct", "Wrong", "Wrong loops",
        "Max ATE (%)", "Maps of all robots", "Joint max ATE (%)", "Registrations", "CPU (s)"},
@@ -140,12 +145,12 @@ Table worlds_table(const std::vector<MergeRun>& runs) {
 }
 
 Table refusals_table(const std::vector<MergeRun>& runs) {
-  Table table{"Pairs that share 25 m and were refused",
-              "With the number of places on the stretch that are like no other, and the reason that the "
-              "decision itself gave.",
-              {},
-              {"World", "Keyframes", "Robots", "Shared (m)", "Distinctive places", "Reason"},
-              {}};
+  Table table{
+      "Pairs that share 25 m and were refused",
+      "With the number of distinctive places on the shared stretch, and the reason given by the decision.",
+      {},
+      {"World", "Keyframes", "Robots", "Shared (m)", "Distinctive places", "Reason"},
+      {}};
   for (const MergeRun& run : runs)
     for (const MergePair& pair : run.pairs)
       if (!is_variant(run) && pair.shares_enough() && pair.outcome == MergeOutcome::refused)
