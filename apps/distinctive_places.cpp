@@ -57,8 +57,7 @@ std::vector<std::uint32_t> sampled(const Seen& seen) {
 class MostAlike {
  public:
   MostAlike(const std::vector<Seen>& all, const RunConfig& config)
-      : all_(all),
-        lanes_{config.loops.adaptive.lanes, config.loops.adaptive.lane_m, config.robot.scan_context} {
+      : all_(all), lanes_{config.loops.adaptive.lanes, config.loops.adaptive.lane_m} {
     PlaceIndexConfig search = config.loops.place;
     search.max_distance = 1.0;
     search.exclude_recent = 0;

@@ -29,8 +29,7 @@ Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps, 
   LoopbackBus bus(config.bus);
   meeting.agents.reserve(meeting.maps.size());  // the bus keeps addresses
   for (const auto& map : meeting.maps) {
-    meeting.agents.emplace_back(map, std::make_shared<FeatureStore>(map, config.loops.registration_in_use()),
-                                config.loops);
+    meeting.agents.emplace_back(map, config.loops);
     meeting.agents.back().find_revisits();
     bus.join(meeting.agents.back());
   }

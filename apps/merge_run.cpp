@@ -14,6 +14,7 @@ namespace {
 /// What two robots know of each other, as if there were no others.
 FleetGraph between(const FleetGraph& all, RobotId a, RobotId b) {
   FleetGraph pair;
+  pair.policy = all.policy;
   for (const RobotId robot : {a, b}) pair.robots[robot] = all.robots.at(robot);
   for (const auto& [ends, loop] : all.loops)
     if (pair.robots.contains(ends.first.robot) && pair.robots.contains(ends.second.robot))

@@ -11,10 +11,7 @@ RunConfig::RunConfig() {
 }
 
 RunConfig under(KeyframeSelection selection, RunConfig config) {
-  if (selection != KeyframeSelection::adaptive) return config;
-  config.loops.adaptive.on = true;
-  config.loops.adaptive.context = config.robot.scan_context;
-  config.back_end.checks_needed = true;
+  config.loops.policy = selection == KeyframeSelection::adaptive ? MergePolicy::adaptive : MergePolicy::paper;
   return config;
 }
 

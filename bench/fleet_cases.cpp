@@ -142,7 +142,7 @@ RobotMap drive(const Mine& mine, RobotId id) {
   RobotMap map;
   map.id = id;
   map.name = "robot_" + std::to_string(id.value);
-  const ScanContextConfig context{.max_radius_m = kSight};
+  map.scan_context.max_radius_m = kSight;
   Pose T_odom_base;
   for (std::uint32_t k = 0; k < truth.size(); ++k) {
     Matrix6 covariance = Matrix6::Zero();
@@ -156,7 +156,7 @@ RobotMap drive(const Mine& mine, RobotId id) {
     }
     const Stamp stamp{std::int64_t{k} * 1'000'000'000};
     auto cloud = std::make_shared<PointCloud>(mine.seen_from(truth[k], mix64(id.value, k)));
-    map.places.push_back(describe(*cloud, context));
+    map.places.push_back(describe(*cloud, map.scan_context));
     map.tunnel.push_back({});
     map.searchable.push_back(true);
     map.step_covariances.push_back(covariance);
@@ -179,6 +179,7 @@ Work fleet(double num_met) {
   return [maps] {
     const double before_mb = heap_mb();
     AgentConfig config;
+    config.policy = MergePolicy::paper;
     config.registration.voxel_size = 0.6;
     config.max_candidates = 128;
     config.candidates_per_peer = 2;
@@ -186,7 +187,7 @@ Work fleet(double num_met) {
     std::vector<Agent> agents;
     agents.reserve(maps.size());
     for (const auto& map : maps) {
-      agents.emplace_back(map, std::make_shared<FeatureStore>(map, config.registration), config);
+      agents.emplace_back(map, config);
       bus.join(agents.back());
     }
     for (int round = 0; round < 2; ++round) {

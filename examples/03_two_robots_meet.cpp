@@ -41,7 +41,7 @@ adit::Result<Maps> map_each(const std::vector<adit::Recording>& recordings) {
 
 adit::Agent agent_of(const std::shared_ptr<const adit::RobotMap>& map) {
   const adit::AgentConfig config;
-  return {map, std::make_shared<adit::FeatureStore>(map, config.registration), config};
+  return {map, config};
 }
 
 int failed(const adit::Error& error) {

@@ -36,10 +36,10 @@ std::string as_text(const test::Joint& joint, const std::filesystem::path& folde
   return text + graph.str();
 }
 
-TEST(EndToEnd, TwoRobotsMergeByCorrectLoopsIntoAnAccurateMap) {
+TEST(EndToEnd, UnderThePapersPolicyTwoRobotsMergeByCorrectLoopsIntoAnAccurateMap) {
   const std::vector<Recording> recordings = two_robots();
   ASSERT_EQ(recordings.size(), 2U);
-  const test::Joint joint = test::map_and_meet(recordings, RobotSlamConfig());
+  const test::Joint joint = test::map_and_meet(recordings, RobotSlamConfig(), test::paper());
   ASSERT_EQ(joint.solution.components.size(), 1U) << joint.solution.pairs.at(0).refused_reason;
   const LoopCounts loops = test::loops_in_use(joint, recordings);
   EXPECT_GE(loops.total, 5);
@@ -57,19 +57,15 @@ TEST(EndToEnd, TwoRobotsMergeByCorrectLoopsIntoAnAccurateMap) {
   const test::TemporaryFolder folder;
   const int threads_before = num_threads();
   set_num_threads(threads_before == 1 ? 2 : 1);
-  const test::Joint again = test::map_and_meet(recordings, RobotSlamConfig());
+  const test::Joint again = test::map_and_meet(recordings, RobotSlamConfig(), test::paper());
   set_num_threads(threads_before);
   EXPECT_EQ(as_text(joint, folder.path()), as_text(again, folder.path()));
 }
 
-TEST(EndToEnd, AdaptiveRobotsMergeByEvidenceAndSayIt) {
+TEST(EndToEnd, ByDefaultRobotsMergeByEvidenceAndSayIt) {
   const std::vector<Recording> recordings = two_robots();
   ASSERT_EQ(recordings.size(), 2U);
-  AgentConfig loops;
-  loops.adaptive.on = true;
-  BackEndConfig back_end;
-  back_end.checks_needed = true;
-  const test::Joint joint = test::map_and_meet(recordings, RobotSlamConfig(), loops, back_end);
+  const test::Joint joint = test::map_and_meet(recordings, RobotSlamConfig());
   ASSERT_EQ(joint.solution.components.size(), 1U) << joint.solution.pairs.at(0).refused_reason;
   EXPECT_EQ(test::loops_in_use(joint, recordings).wrong(), 0);
   const MergeCheck& check = joint.fleet.checks.begin()->second;

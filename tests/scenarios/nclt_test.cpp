@@ -41,10 +41,10 @@ TEST(Nclt, KissIcpFollowsUnevenStepsUnasked) {
   EXPECT_LT(error->rmse_m, 0.8);
 }
 
-TEST(Nclt, EvenAndOddScansAreTwoRobotsThatMergeByCorrectLoopsOnly) {
+TEST(Nclt, EvenAndOddScansAreTwoRobotsThatThePapersPolicyMergesByCorrectLoopsOnly) {
   ADIT_NEED_DATA("scans/nclt/groundtruth.tum");
   const std::vector<Recording> recordings = {nclt("@even"), nclt("@odd")};
-  const test::Joint joint = test::map_and_meet(recordings, lidar_alone());
+  const test::Joint joint = test::map_and_meet(recordings, lidar_alone(), test::paper());
   ASSERT_EQ(joint.solution.pairs.size(), 1U);
   ASSERT_TRUE(joint.solution.pairs[0].merged) << joint.solution.pairs[0].refused_reason;
   const LoopCounts loops = test::loops_in_use(joint, recordings);
@@ -67,14 +67,10 @@ TEST(Nclt, EvenAndOddScansAreTwoRobotsThatMergeByCorrectLoopsOnly) {
   EXPECT_LT(worst_joint, 1.5 * worst_alone);
 }
 
-TEST(Nclt, AdaptiveRobotsMergeThoughTheOdometryOfOneSlips) {
+TEST(Nclt, ByDefaultRobotsMergeThoughTheOdometryOfOneSlips) {
   ADIT_NEED_DATA("scans/nclt/groundtruth.tum");
   const std::vector<Recording> recordings = {nclt("@even"), nclt("@odd")};
-  AgentConfig loops;
-  loops.adaptive.on = true;
-  BackEndConfig back_end;
-  back_end.checks_needed = true;
-  const test::Joint joint = test::map_and_meet(recordings, lidar_alone(), loops, back_end);
+  const test::Joint joint = test::map_and_meet(recordings, lidar_alone());
   ASSERT_TRUE(joint.solution.pairs.at(0).merged) << joint.solution.pairs[0].refused_reason;
   const LoopCounts used = test::loops_in_use(joint, recordings);
   EXPECT_GE(used.total, 30);

@@ -70,6 +70,7 @@ inline RobotMap drive(const BoxWorld& world, RobotId id, const std::vector<Pose>
                       double yaw_drift) {
   RobotMap map;
   map.id = id;
+  map.scan_context.max_radius_m = 25.0;
   map.name = "robot_" + std::to_string(id.value);
   Pose T_odom_base;
   for (std::uint32_t k = 0; k < T_world_base.size(); ++k) {
@@ -81,7 +82,7 @@ inline RobotMap drive(const BoxWorld& world, RobotId id, const std::vector<Pose>
     }
     const Stamp stamp{static_cast<std::int64_t>(k) * 1'000'000'000};
     auto cloud = std::make_shared<PointCloud>(world.seen_from(T_world_base[k], mix64(id.value, k)));
-    map.places.push_back(describe(*cloud, ScanContextConfig{.max_radius_m = 25.0}));
+    map.places.push_back(describe(*cloud, map.scan_context));
     map.tunnel.push_back({});
     map.searchable.push_back(true);
     map.step_covariances.push_back(covariance);

@@ -22,8 +22,10 @@ inline Pose true_pose(RobotId robot, std::uint32_t k) {
                       0.0);
 }
 
-inline FleetGraph robots_without_loops(int num_robots) {
+/// Under MergePolicy::paper their loops join them without a merge check.
+inline FleetGraph robots_without_loops(int num_robots, MergePolicy policy = MergePolicy::adaptive) {
   FleetGraph fleet;
+  fleet.policy = policy;
   for (std::uint8_t r = 0; r < num_robots; ++r) {
     RobotGraph& graph = fleet.robots[{r}];
     graph.name = "robot_" + std::to_string(r);

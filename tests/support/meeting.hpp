@@ -20,6 +20,13 @@ struct Joint {
   FleetSolution solution;
 };
 
+/// Loops join maps without a merge check.
+inline AgentConfig paper() {
+  AgentConfig config;
+  config.policy = MergePolicy::paper;
+  return config;
+}
+
 /// Maps each recording, lets the two robots meet and solves what the first then knows.
 inline Joint map_and_meet(const std::vector<Recording>& recordings, const RobotSlamConfig& config,
                           const AgentConfig& loops = {}, const BackEndConfig& back_end = {}) {
@@ -32,9 +39,7 @@ inline Joint map_and_meet(const std::vector<Recording>& recordings, const RobotS
     EXPECT_TRUE(map.has_value()) << map.error().message;
     if (!map) return joint;
     joint.maps.push_back(std::make_shared<const RobotMap>(*map));
-    agents.emplace_back(joint.maps.back(),
-                        std::make_shared<FeatureStore>(joint.maps.back(), loops.registration_in_use()),
-                        loops);
+    agents.emplace_back(joint.maps.back(), loops);
     bus.join(agents.back());
   }
   EXPECT_TRUE(bus.meet({0}, {1}).has_value());
@@ -43,7 +48,6 @@ inline Joint map_and_meet(const std::vector<Recording>& recordings, const RobotS
   return joint;
 }
 
-/// The loops in use, judged by the true poses.
 /// The true T_from_to of a loop.
 inline Pose true_loop(const LoopClosure& loop, const Joint& joint, const std::vector<Recording>& recordings) {
   const auto truth_of = [&](KeyframeId id) {
@@ -53,6 +57,7 @@ inline Pose true_loop(const LoopClosure& loop, const Joint& joint, const std::ve
   return truth_of(loop.from).inverse() * truth_of(loop.to);
 }
 
+/// The loops in use, judged by the true poses.
 inline LoopCounts loops_in_use(const Joint& joint, const std::vector<Recording>& recordings) {
   LoopCounts counts;
   for (const LoopOutcome& outcome : joint.solution.loops)

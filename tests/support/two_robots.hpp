@@ -24,8 +24,10 @@ inline std::vector<Pose> street(double from, double to, double lane) {
   return poses;
 }
 
+/// The paper's policy, with thresholds that boxes pass.
 inline AgentConfig lenient() {
   AgentConfig config;
+  config.policy = MergePolicy::paper;
   config.place.max_distance = 0.4;
   config.registration.voxel_size = 0.6;  // coarse, for speed: boxes of metres
   return config;
@@ -43,7 +45,7 @@ struct TwoRobots {
     for (const auto& [id, truth] : {std::pair{0, &truth_0}, std::pair{1, &truth_1}}) {
       const auto map = std::make_shared<const RobotMap>(
           drive(world, {static_cast<std::uint8_t>(id)}, *truth, id == 0 ? 0.002 : -0.002));
-      agents.emplace_back(map, std::make_shared<FeatureStore>(map, config.registration_in_use()), config);
+      agents.emplace_back(map, config);
     }
   }
 

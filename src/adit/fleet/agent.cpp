@@ -75,9 +75,11 @@ Fields fields_of(AgentConfig& c) {
   return fields;
 }
 
-Agent::Agent(std::shared_ptr<const RobotMap> map, std::shared_ptr<FeatureStore> features,
-             const AgentConfig& config)
-    : map_(std::move(map)), features_(std::move(features)), config_(config) {
+Agent::Agent(std::shared_ptr<const RobotMap> map, const AgentConfig& config)
+    : map_(std::move(map)),
+      features_(std::make_shared<FeatureStore>(map_, config.registration_in_use())),
+      config_(config) {
+  known_.policy = config_.policy;
   known_.robots[map_->id] = graph_of(*map_);
 }
 
@@ -216,7 +218,7 @@ Agent::Replies Agent::on(RobotId from, const GraphPart& part) {
     graph.nodes.push_back(part.nodes[i]);
   }
   const auto peer = peers_.find(from);
-  if (!config_.adaptive.on || from != part.owner || peer == peers_.end() || !searches(from)) return {};
+  if (!is_adaptive() || from != part.owner || peer == peers_.end() || !searches(from)) return {};
   return search(from);  // which may have waited for this part
 }
 
@@ -253,7 +255,7 @@ Agent::Replies Agent::search(RobotId peer_id) {
 
 std::vector<LoopCandidate> Agent::best_candidates(RobotId peer_id) const {
   PlaceIndexConfig search = config_.place;
-  if (config_.adaptive.on) search.max_distance = 1.0;  // ranked, not cut off
+  if (is_adaptive()) search.max_distance = 1.0;  // ranked, not cut off
   PlaceIndex index(search);
   std::set<std::uint32_t> added;  // a confused peer may name a keyframe twice
   for (const Places::Place& place : peers_.at(peer_id).places) {
@@ -291,7 +293,7 @@ std::size_t Agent::num_tried() const {
 void Agent::find_candidates(RobotId peer_id) {
   std::vector<LoopCandidate> found = best_candidates(peer_id);
   Peer& peer = peers_[peer_id];
-  if (config_.adaptive.on) {
+  if (is_adaptive()) {
     Chosen chosen = promising(peer_id, std::move(found));
     found = std::move(chosen.first);
     peer.further = std::move(chosen.further);
@@ -351,7 +353,7 @@ LoopClosure Agent::verify(const LoopCandidate& candidate, const Features& match)
   loop.verdict = registration.verdict;
   loop.reason = registration.reason;
   if (const double apart = loop.T_from_to.translation().norm();
-      config_.adaptive.on && loop.verdict == LoopVerdict::accepted && apart > kOnePlace) {
+      is_adaptive() && loop.verdict == LoopVerdict::accepted && apart > kOnePlace) {
     loop.verdict = LoopVerdict::rejected;
     loop.reason = format("its ends would be {:.1f} m apart: not one place", apart);
   }
@@ -369,7 +371,7 @@ Agent::Replies Agent::on(RobotId from, const Clouds& clouds) {
       return {};
     register_clouds_of(from, clouds);
     replies = loops_from(from, map_->id, before);
-    if (!config_.adaptive.on || !peer.waiting.empty()) return with(std::move(replies), cloud_request(from));
+    if (!is_adaptive() || !peer.waiting.empty()) return with(std::move(replies), cloud_request(from));
     begin_test(from);
   } else if (peer.test && !peer.test->next(kCloudsPerMessage).empty()) {
     if (!compare_clouds_of(from, clouds)) return {};

@@ -18,10 +18,8 @@
 
 namespace adit {
 
-/// Of an agent that chooses candidates which agree along the way or stand out, and tests merges by evidence:
-/// in place of the thresholds of the paper's pipeline.
+/// Of an agent under MergePolicy::adaptive: how it chooses candidates, registers them and tests merges.
 struct AdaptiveConfig {
-  bool on = false;
   int candidates = 64;
   int further_candidates = 40;
   int segments = 7;
@@ -34,19 +32,19 @@ struct AdaptiveConfig {
   int revisit_candidates = 32;
   RegistrationConfig registration;
   MergeCheckConfig merge_check;
-  ScanContextConfig context;  ///< With which the keyframes were described; no setting of its own.
 };
 Fields fields_of(AdaptiveConfig& config);
 
 struct AgentConfig {
+  MergePolicy policy = MergePolicy::adaptive;
   PlaceIndexConfig place;
   RegistrationConfig registration;
   int max_candidates = 6000;
   int candidates_per_peer = 8;
-  AdaptiveConfig adaptive;
+  AdaptiveConfig adaptive;  ///< Read under MergePolicy::adaptive alone.
 
   [[nodiscard]] const RegistrationConfig& registration_in_use() const {
-    return adaptive.on ? adaptive.registration : registration;
+    return policy == MergePolicy::adaptive ? adaptive.registration : registration;
   }
 };
 Fields fields_of(AgentConfig& config);
@@ -72,9 +70,7 @@ Fields fields_of(AgentConfig& config);
 /// It stores no clouds of others: they are asked for a message at a time, registered and forgotten.
 class Agent {
  public:
-  /// `features` may be shared between agents that were made from the same map.
-  Agent(std::shared_ptr<const RobotMap> map, std::shared_ptr<FeatureStore> features,
-        const AgentConfig& config);
+  Agent(std::shared_ptr<const RobotMap> map, const AgentConfig& config);
 
   [[nodiscard]] RobotId id() const { return map_->id; }
   /// Looks for places of its own map to which the robot came back, and tests what it finds as it does with
@@ -90,6 +86,7 @@ class Agent {
   [[nodiscard]] FleetSolution solve(const BackEndConfig& config) const { return adit::solve(known_, config); }
 
  private:
+  [[nodiscard]] bool is_adaptive() const { return config_.policy == MergePolicy::adaptive; }
   using Replies = std::vector<Message>;
   using Ends = std::pair<KeyframeId, KeyframeId>;
   struct Peer {

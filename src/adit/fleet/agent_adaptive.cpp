@@ -18,7 +18,6 @@ namespace adit {
 
 Fields fields_of(AdaptiveConfig& c) {
   Fields fields = {
-      {"on", &c.on, "", 0, 0, "choose the candidates that agree along the way or stand out, and test merges"},
       {"candidates", &c.candidates, "", 1, 1e6, "candidates that are registered with each peer"},
       {"further_candidates", &c.further_candidates, "", 0, 1e6,
        "and so many more where these led to many loops, all of which are refuted"},
@@ -41,8 +40,8 @@ Fields fields_of(AdaptiveConfig& c) {
 }
 
 Lanes Agent::lanes() const {
-  if (!config_.adaptive.on) return {};
-  return {config_.adaptive.lanes, config_.adaptive.lane_m, config_.adaptive.context};
+  if (!is_adaptive()) return {};
+  return {config_.adaptive.lanes, config_.adaptive.lane_m};
 }
 
 OdometryChain Agent::chain_by(RobotId robot) const {
@@ -79,7 +78,7 @@ MergeTest Agent::test_of(const std::vector<PcmLoop>& loops, const OdometryChain&
 }
 
 void Agent::find_revisits() {
-  if (!config_.adaptive.on || !config_.adaptive.revisits || std::exchange(looked_for_revisits_, true)) return;
+  if (!is_adaptive() || !config_.adaptive.revisits || std::exchange(looked_for_revisits_, true)) return;
   const OdometryChain chain = own_chain();
   const std::vector<PcmLoop> loops = register_own(own_candidates(chain), chain);
   if (loops.empty()) return;
@@ -245,7 +244,7 @@ void Agent::decide(MergeCheck check) {
 bool Agent::has_way_of(RobotId peer_id) const {
   const auto graph = known_.robots.find(peer_id);
   const std::size_t num = graph == known_.robots.end() ? 0 : graph->second.nodes.size();
-  return !config_.adaptive.on ||
+  return !is_adaptive() ||
          std::ranges::all_of(peers_.at(peer_id).places, [&](const auto& place) { return place.index < num; });
 }
 

@@ -17,28 +17,20 @@ using test::TwoRobots;
 
 AgentConfig adaptive() {
   AgentConfig config;
-  config.adaptive.on = true;
   config.adaptive.registration.voxel_size = 0.6;
   config.adaptive.merge_check.error_rate = 0.3;  // a street of 25 m is short
   config.adaptive.merge_check.spacing_m = 2.0;
   config.adaptive.merge_check.discernment.samples = 8;
   // The boxes are transparent: faces mix within a voxel, and the surface hangs on the grid.
   config.adaptive.merge_check.relief = false;
-  config.adaptive.context = {.max_radius_m = 25.0};
-  return config;
-}
-
-BackEndConfig with_checks() {
-  BackEndConfig config;
-  config.checks_needed = true;
   return config;
 }
 
 TEST(AdaptiveAgent, MergesRobotsThatShareAStreetAndBothKnowWhy) {
   TwoRobots fleet(3, adaptive());
   fleet.meet();
-  const FleetSolution first = fleet.agents[0].solve(with_checks());
-  const FleetSolution second = fleet.agents[1].solve(with_checks());
+  const FleetSolution first = fleet.agents[0].solve({});
+  const FleetSolution second = fleet.agents[1].solve({});
   ASSERT_TRUE(first.pairs[0].merged) << first.pairs[0].refused_reason;
   const MergeCheck& check = fleet.agents[1].known().checks.at({{0}, {1}});
   EXPECT_TRUE(check.accepted);
@@ -57,10 +49,9 @@ TEST(AdaptiveAgent, KeepsRobotsOfTwoStreetsApartWithAReason) {
   TwoRobots fleet(3, adaptive());
   const test::BoxWorld elsewhere(77);
   const auto map = std::make_shared<const RobotMap>(test::drive(elsewhere, {1}, fleet.truth_1, -0.002));
-  fleet.agents[1] =
-      Agent(map, std::make_shared<FeatureStore>(map, adaptive().registration_in_use()), adaptive());
+  fleet.agents[1] = Agent(map, adaptive());
   fleet.meet();
-  const FleetSolution solution = fleet.agents[0].solve(with_checks());
+  const FleetSolution solution = fleet.agents[0].solve({});
   EXPECT_FALSE(solution.pairs[0].merged);
   EXPECT_FALSE(solution.pairs[0].refused_reason.empty());
   EXPECT_EQ(solution.components.size(), 2U);
@@ -71,7 +62,7 @@ std::size_t num_tried_between_two_streets(const AgentConfig& config) {
   TwoRobots fleet(3, config);
   const test::BoxWorld elsewhere(77);
   const auto map = std::make_shared<const RobotMap>(test::drive(elsewhere, {1}, fleet.truth_1, -0.002));
-  fleet.agents[1] = Agent(map, std::make_shared<FeatureStore>(map, config.registration_in_use()), config);
+  fleet.agents[1] = Agent(map, config);
   fleet.meet();
   const MergeCheck& check = fleet.agents[0].known().checks.at({{0}, {1}});
   EXPECT_FALSE(check.accepted);
@@ -99,9 +90,7 @@ struct ThereAndBack {
     for (const Pose& pose : street(50.0, 0.0, 0.5)) truth.push_back(pose);
     map = std::make_shared<const RobotMap>(test::drive(test::BoxWorld(3), {0}, truth, yaw_drift));
   }
-  [[nodiscard]] Agent agent(const AgentConfig& config = adaptive()) const {
-    return {map, std::make_shared<FeatureStore>(map, config.registration_in_use()), config};
-  }
+  [[nodiscard]] Agent agent(const AgentConfig& config = adaptive()) const { return {map, config}; }
   [[nodiscard]] double largest_error(const FleetSolution& solution) const {
     double worst = 0.0;
     for (std::size_t k = 0; k < truth.size(); ++k) {
@@ -115,9 +104,9 @@ struct ThereAndBack {
 TEST(AdaptiveAgent, FindsThatItCameBackAndMapsBetterAlone) {
   const ThereAndBack robot;
   Agent agent = robot.agent();
-  const double before = robot.largest_error(agent.solve(with_checks()));
+  const double before = robot.largest_error(agent.solve({}));
   agent.find_revisits();
-  const FleetSolution solution = agent.solve(with_checks());
+  const FleetSolution solution = agent.solve({});
   const MergeCheck& check = agent.known().checks.at({{0}, {0}});
   ASSERT_TRUE(check.accepted) << check.reason;
   EXPECT_LT(robot.largest_error(solution), 0.5 * before);
@@ -156,8 +145,8 @@ TEST(AdaptiveAgent, APeerLearnsOfRevisitsAndComputesTheSame) {
   fleet.agents[0].find_revisits();
   fleet.meet();
   ASSERT_TRUE(fleet.agents[1].known().checks.contains({{0}, {0}}));
-  const FleetSolution first = fleet.agents[0].solve(with_checks());
-  const FleetSolution second = fleet.agents[1].solve(with_checks());
+  const FleetSolution first = fleet.agents[0].solve({});
+  const FleetSolution second = fleet.agents[1].solve({});
   ASSERT_EQ(first.pairs.size(), 1U);
   const auto within_one = [](const LoopOutcome& loop) {
     return loop.in_use() && loop.loop.from.robot == loop.loop.to.robot;

@@ -113,7 +113,7 @@ TEST(Agent, RobotWithoutKeyframesIsStillMadeKnown) {
   nothing.name = "robot_1";
   const auto map = std::make_shared<const RobotMap>(nothing);
   TwoRobots fleet;
-  fleet.agents[1] = Agent(map, std::make_shared<FeatureStore>(map, lenient().registration), lenient());
+  fleet.agents[1] = Agent(map, lenient());
   fleet.meet();
   for (const Agent& agent : fleet.agents) {
     const FleetSolution solution = agent.solve({});

@@ -166,7 +166,7 @@ std::string refusal(const FleetGraph& fleet, const BackEndConfig& config, const 
   }
   const auto check = fleet.checks.find({pair.a, pair.b});
   if (check != fleet.checks.end() && !check->second.accepted) return check->second.reason;
-  if (check == fleet.checks.end() && config.checks_needed)
+  if (check == fleet.checks.end() && fleet.policy == MergePolicy::adaptive)
     return format("{} loops, but scans along them were never compared; the robots have to meet again",
                   pair.num_loops);
   return format(
@@ -283,7 +283,6 @@ Fields fields_of(BackEndConfig& c) {
   Fields fields = {
       {"pcm_on", &c.pcm_on, "", 0, 0, "drop loops that disagree pairwise before the graph is solved"},
       {"gnc_on", &c.gnc_on, "", 0, 0, "let graduated non-convexity reject loops while the graph is solved"},
-      {"checks_needed", &c.checks_needed, "", 0, 0, "let only pairs share a map that passed the merge check"},
       {"cycles_needed", &c.cycles_needed, "", 0, 0,
        "take back merges that passed it and that merges with third robots contradict"},
       {"joint_evidence", &c.joint_evidence, "", 0, 0,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adit/core/config.hpp"
+#include "adit/fleet/merge_policy.hpp"
 #include "adit/fleet/protocol.hpp"
 #include "adit/posegraph/gnc.hpp"
 #include "adit/posegraph/optimizer.hpp"
@@ -26,6 +27,7 @@ struct RobotGraph {
 /// All that one agent knows: its own graph, the graphs and loops that messages brought. Ordered containers
 /// throughout, so that two agents that know the same compute the same, to the last bit.
 struct FleetGraph {
+  MergePolicy policy = MergePolicy::adaptive;
   std::map<RobotId, RobotGraph> robots;
   std::map<std::pair<KeyframeId, KeyframeId>, LoopClosure> loops;
   std::map<std::pair<RobotId, RobotId>, MergeCheck> checks;
@@ -34,9 +36,9 @@ struct FleetGraph {
 struct BackEndConfig {
   bool pcm_on = true;
   bool gnc_on = true;
-  bool checks_needed = false;     ///< Only pairs with an accepted MergeCheck may share a map.
-  bool cycles_needed = true;      ///< And only as long as the merges of others do not contradict it;
-  bool joint_evidence = true;     ///< or those that only several pairs together have enough evidence for.
+  /// Under MergePolicy::adaptive only pairs with an accepted MergeCheck share a map,
+  bool cycles_needed = true;      ///< as long as cycles of merges do not contradict it,
+  bool joint_evidence = true;     ///< and pairs whose evidence suffices only when it is added up.
   int min_loops = 1;              ///< Loops in use between two robots before they count as merged.
   double loop_translation = 0.1;  ///< Fixed sigmas of a loop, as in Swarm-SLAM's back-end.
   double loop_rotation_deg = 0.6;

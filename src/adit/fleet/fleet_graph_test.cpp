@@ -24,8 +24,20 @@ TEST(FleetGraph, RobotsWithoutLoopsStayApartWithAReason) {
   EXPECT_LT(largest_error(solution, solution.components[1]), 1e-9);
 }
 
+TEST(FleetGraph, ByDefaultLoopsThatNothingCheckedJoinNoMaps) {
+  FleetGraph fleet;  // as a user of the library makes it
+  fleet.robots = robots_without_loops(2).robots;
+  for (std::uint32_t k = 5; k < 35; k += 5) add_loop(fleet, {{0}, k}, {{1}, k});
+  const FleetSolution apart = solve(fleet, {});
+  EXPECT_FALSE(apart.pairs[0].merged);
+  EXPECT_EQ(apart.components.size(), 2U);
+  EXPECT_NE(apart.pairs[0].refused_reason.find("never compared"), std::string::npos);
+  fleet.policy = MergePolicy::paper;
+  EXPECT_TRUE(solve(fleet, {}).pairs[0].merged);
+}
+
 TEST(FleetGraph, ThreeRobotsInARowShareTheFrameOfTheSmallestId) {
-  FleetGraph fleet = robots_without_loops(4);
+  FleetGraph fleet = robots_without_loops(4, MergePolicy::paper);
   for (std::uint32_t k = 5; k < 35; k += 5) {
     add_loop(fleet, {{1}, k}, {{2}, k});
     add_loop(fleet, {{2}, k}, {{3}, k});
@@ -39,7 +51,7 @@ TEST(FleetGraph, ThreeRobotsInARowShareTheFrameOfTheSmallestId) {
 }
 
 TEST(FleetGraph, LoopsThatAreTooFewDoNotJoinMaps) {
-  FleetGraph fleet = robots_without_loops(2);
+  FleetGraph fleet = robots_without_loops(2, MergePolicy::paper);
   add_loop(fleet, {{0}, 10}, {{1}, 10});
   BackEndConfig config;
   config.min_loops = 2;
@@ -52,7 +64,7 @@ TEST(FleetGraph, LoopsThatAreTooFewDoNotJoinMaps) {
 }
 
 TEST(FleetGraph, RobotWithoutKeyframesStopsNobody) {
-  FleetGraph fleet = robots_without_loops(3);
+  FleetGraph fleet = robots_without_loops(3, MergePolicy::paper);
   fleet.robots[{1}].nodes.clear();
   for (std::uint32_t k = 5; k < 35; k += 5) add_loop(fleet, {{0}, k}, {{2}, k});
   const FleetSolution solution = solve(fleet, {});

@@ -56,11 +56,7 @@ FleetGraph two_and_one() {
   return fleet;
 }
 
-FleetSolution solved(const FleetGraph& fleet) {
-  BackEndConfig config;
-  config.checks_needed = true;
-  return solve(fleet, config);
-}
+FleetSolution solved(const FleetGraph& fleet) { return solve(fleet, {}); }
 
 constexpr HypothesisOutcome kUnsure = HypothesisOutcome::unsure;
 const Pose kElsewhere = Pose::translation_of(9.0, 5.0, 0.0);
@@ -88,7 +84,6 @@ TEST(JointEvidence, CanBeSwitchedOff) {
   add_hypothesis(fleet, {0}, {2}, 0.9, kUnsure);
   add_hypothesis(fleet, {1}, {2}, 2.0, kUnsure);
   BackEndConfig config;
-  config.checks_needed = true;
   config.joint_evidence = false;
   EXPECT_EQ(solve(fleet, config).components.size(), 2U);
 }

@@ -19,7 +19,6 @@ namespace adit {
 struct Lanes {
   int on_each_side = 0;
   double apart_m = 1.0;
-  ScanContextConfig context;  ///< With which the keyframes were described.
 };
 
 /// What keyframe `k` looks like from each of them, the driven one first.

@@ -9,6 +9,8 @@
 namespace adit {
 namespace {
 
+constexpr ScanContextConfig kContext{.max_radius_m = 25.0};
+
 // In a tube with a block on its left side, from the middle and from one metre to the left of it.
 ScanContext seen_from(double y, std::shared_ptr<const PointCloud>* cloud = nullptr) {
   test::Scene scene = test::smooth_tube();
@@ -17,18 +19,19 @@ ScanContext seen_from(double y, std::shared_ptr<const PointCloud>* cloud = nullp
       test::scan_of(scene, {32, 256, 0.6, 40.0, 0.0}, Pose(), {Pose::planar(0.0, y, 0.0), Vector6::Zero()}, 0)
           .cloud;
   if (cloud != nullptr) *cloud = std::make_shared<const PointCloud>(scan);
-  return describe(scan, {.max_radius_m = 25.0});
+  return describe(scan, kContext);
 }
 
 RobotMap one_keyframe() {
   RobotMap map;
+  map.scan_context = kContext;
   std::shared_ptr<const PointCloud> cloud;
   map.places.push_back(seen_from(0.0, &cloud));
   map.keyframes.push_back({{{0}, 0}, {0}, Pose(), cloud});
   return map;
 }
 
-const Lanes kLanes{1, 1.0, {.max_radius_m = 25.0}};
+const Lanes kLanes{1, 1.0};
 
 TEST(Lanes, AContextFromBesideIsNearerToWhatIsSeenThere) {
   const std::vector<ScanContext> contexts = contexts_from(kLanes, one_keyframe(), 0);

@@ -209,12 +209,13 @@ class MergeReview {
 }  // namespace
 
 LoopSelection select_loops(const FleetGraph& fleet, const BackEndConfig& config) {
+  const bool is_adaptive = fleet.policy == MergePolicy::adaptive;
   LoopSelection selection = nothing_selected(fleet);
   Chains chains(fleet);
   for (PairOutcome& pair : selection.pairs) {
     const std::vector<std::size_t>& of_pair = selection.of_pairs.at({pair.a, pair.b});
     pair.num_loops = of_pair.size();
-    if (config.checks_needed) {
+    if (is_adaptive) {
       pair.clique = keep_checked(fleet, {pair.a, pair.b}, of_pair, selection.loops);
     } else if (!config.pcm_on || of_pair.empty()) {
       for (const std::size_t l : of_pair) selection.loops[l].in_clique = true;
@@ -223,7 +224,7 @@ LoopSelection select_loops(const FleetGraph& fleet, const BackEndConfig& config)
     }
   }
   keep_revisits(fleet, selection);
-  if (!config.checks_needed) return selection;
+  if (!is_adaptive) return selection;
   MergeReview review(fleet, chains, config, selection);
   if (config.cycles_needed) review.take_back();
   if (config.joint_evidence) review.join();

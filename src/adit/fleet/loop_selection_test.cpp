@@ -17,7 +17,7 @@ using test::robots_without_loops;
 using test::true_pose;
 
 TEST(LoopSelection, SortsLoopsByPairsAndChoosesNoneThatWasNeverTestedWithinARobot) {
-  FleetGraph fleet = robots_without_loops(3);
+  FleetGraph fleet = robots_without_loops(3, MergePolicy::paper);
   add_loop(fleet, {{0}, 10}, {{1}, 10});
   add_loop(fleet, {{2}, 0}, {{2}, 39});
   const LoopSelection selection = select_loops(fleet, {});
@@ -37,7 +37,6 @@ TEST(LoopSelection, WhereChecksAreNeededOnlyTheLoopsOfAnAcceptedOneCount) {
   for (std::uint32_t k = 4; k < 36; k += 2)
     add_loop(fleet, {{0}, k}, {{1}, k + 1}, true_pose({1}, k + 1).inverse() * off * true_pose({1}, k + 1));
   BackEndConfig config;
-  config.checks_needed = true;
   const PairOutcome untested = solve(fleet, config).pairs[0];
   EXPECT_FALSE(untested.merged);
   EXPECT_NE(untested.refused_reason.find("have to meet again"), std::string::npos) << untested.refused_reason;
@@ -78,7 +77,6 @@ void expect_same_poses(const FleetSolution& first, const FleetSolution& second) 
 
 TEST(LoopSelection, AMergeThatLaterOnesContradictIsTakenBack) {
   BackEndConfig config;
-  config.checks_needed = true;
   FleetGraph fleet = robots_without_loops(3);
   add_merge(fleet, {0}, {2}, 10.0, Pose::translation_of(25.0, 10.0, 0.0));
   add_merge(fleet, {0}, {1}, 20.0);
@@ -110,7 +108,6 @@ TEST(LoopSelection, AMergeThatLaterOnesContradictIsTakenBack) {
 
 TEST(LoopSelection, OfTwoMapsThatOneTakenBackMergeJoinedBothStayAsTheyWere) {
   BackEndConfig config;
-  config.checks_needed = true;
   FleetGraph fleet = robots_without_loops(4);
   add_merge(fleet, {0}, {1}, 20.0);
   add_merge(fleet, {2}, {3}, 20.0);
@@ -148,7 +145,7 @@ TEST(LoopSelection, LoopsWithinARobotCountWhereAnAcceptedCheckSpeaksOfThem) {
 }
 
 TEST(LoopSelection, FalseLoopsAreDroppedByPcm) {
-  FleetGraph fleet = robots_without_loops(2);
+  FleetGraph fleet = robots_without_loops(2, MergePolicy::paper);
   for (std::uint32_t k = 5; k < 35; k += 5) add_loop(fleet, {{0}, k}, {{1}, k});
   Rng rng(5);
   for (std::uint32_t k = 6; k < 35; k += 6) {
@@ -167,7 +164,7 @@ TEST(LoopSelection, FalseLoopsAreDroppedByPcm) {
 }
 
 TEST(LoopSelection, LoopsOfKeyframesThatAreNotKnownYetWaitForThem) {
-  FleetGraph whole = robots_without_loops(3);
+  FleetGraph whole = robots_without_loops(3, MergePolicy::paper);
   for (std::uint32_t k = 5; k < 35; k += 5) {
     add_loop(whole, {{0}, k}, {{1}, k});
     add_loop(whole, {{1}, k}, {{2}, k});

@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers stand in the file as they do in memory");
 
 /// Its last digit counts the layouts that there have been.
-constexpr std::string_view kMagic = "adit map 2\n";
+constexpr std::string_view kMagic = "adit map 3\n";
 
 /// Appends what `transfer` names.
 class Writer {
@@ -147,6 +147,14 @@ void bits(Archive& archive, Bits& value) {
   }
 }
 
+template <class Archive, class Config>
+void scan_context_config(Archive& archive, Config& value) {
+  archive.number(value.num_rings);
+  archive.number(value.num_sectors);
+  archive.number(value.max_radius_m);
+  archive.number(value.height_offset_m);
+}
+
 template <class Archive, class Map>
 void transfer(Archive& archive, Map& map) {
   archive.number(map.id.value);
@@ -158,6 +166,7 @@ void transfer(Archive& archive, Map& map) {
     for (auto& entry : map.keyframes) keyframe(archive, entry);
   if (size_of_vector(archive, map.step_covariances, sizeof(Matrix6)))
     for (auto& covariance : map.step_covariances) archive.raw(covariance.data(), sizeof(Matrix6));
+  scan_context_config(archive, map.scan_context);
   if (size_of_vector(archive, map.places, 1))
     for (auto& entry : map.places) place(archive, entry);
   if (size_of_vector(archive, map.tunnel, 3 * sizeof(double)))

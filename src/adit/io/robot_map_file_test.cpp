@@ -30,6 +30,7 @@ RobotMap random_map() {
   RobotMap map;
   map.id = {3};
   map.name = "robot_3";
+  map.scan_context.max_radius_m = 30.0;
   map.num_degenerate = 4;
   map.num_refused = 1;
   for (std::uint32_t k = 0; k < 5; ++k) {
@@ -54,6 +55,7 @@ TEST(RobotMapFile, ReadsBackBitForBit) {
   ASSERT_TRUE(again) << again.error().message;
   EXPECT_EQ(robot_map_bytes(*again), robot_map_bytes(map));
   EXPECT_EQ(again->name, map.name);
+  EXPECT_EQ(again->scan_context.max_radius_m, 30.0);
   ASSERT_EQ(again->keyframes.size(), 5U);
   EXPECT_EQ(again->keyframes[4].id, map.keyframes[4].id);
   EXPECT_EQ(again->keyframes[4].stamp, map.keyframes[4].stamp);

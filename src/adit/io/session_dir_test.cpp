@@ -59,9 +59,7 @@ Session two_robots() {
   for (const auto& [a, b] : check.hypotheses[1].loops)
     add_loop(session.fleet, a, b, 0.0, LoopVerdict::accepted);
   add_loop(session.fleet, 11, 3, 0.0, LoopVerdict::rejected);
-  BackEndConfig config;
-  config.checks_needed = true;
-  session.solution = solve(session.fleet, config);
+  session.solution = solve(session.fleet, {});
   return session;
 }
 

@@ -32,6 +32,8 @@ RobotMap without_tunnel_keyframes(const RobotMap& map) {
   RobotMap kept;
   kept.id = map.id;
   kept.name = map.name;
+  kept.viewpoint = map.viewpoint;
+  kept.scan_context = map.scan_context;
   kept.odometry = map.odometry;
   kept.num_degenerate = map.num_degenerate;
   kept.num_refused = map.num_refused;

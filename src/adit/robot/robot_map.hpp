@@ -40,6 +40,7 @@ struct RobotMap {
   Vector3 viewpoint = Vector3::Zero();  ///< Where the LiDAR stands, in the frame of the robot's body.
   std::vector<Keyframe> keyframes;
   std::vector<Matrix6> step_covariances;  ///< Of T_{k-1}_{k}; entry 0 is zero.
+  ScanContextConfig scan_context;         ///< With which `places` were described.
   std::vector<ScanContext> places;
   std::vector<TunnelVerdict> tunnel;
   std::vector<bool> searchable;  ///< Takes part in loop search.
@@ -53,7 +54,7 @@ struct RobotMap {
 enum class KeyframeSelection {
   all,                 ///< Every keyframe in the graph and in the loop search.
   tunnel_filter,       ///< Tunnel-like keyframes leave graph and search, as in the paper.
-  adaptive,            ///< All in the graph; candidates and merges by evidence (AgentConfig::adaptive).
+  adaptive,            ///< All in the graph; candidates and merges by evidence (MergePolicy::adaptive).
   tunnel_filter_keep,  ///< Tunnel-like keyframes stay in the graph and are barred from the search only.
 };
 [[nodiscard]] std::string_view to_string(KeyframeSelection selection);

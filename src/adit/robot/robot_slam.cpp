@@ -34,6 +34,7 @@ RobotSlam::RobotSlam(RobotId id, const std::string& name, const RobotSlamConfig&
   map_.id = id;
   map_.name = name;
   map_.viewpoint = T_base_lidar.translation();
+  map_.scan_context = config_.scan_context;
 }
 
 RobotStep RobotSlam::process(const Scan& scan, const std::optional<WheelDelta>& wheel) {

@@ -17,6 +17,7 @@ namespace {
 std::vector<Agent> robots_on_a_street(int num) {
   const test::BoxWorld world(11);
   AgentConfig config;
+  config.policy = MergePolicy::paper;
   config.place.max_distance = 0.4;
   config.registration.voxel_size = 0.6;  // coarse, for speed: boxes of metres
   std::vector<Agent> agents;
@@ -26,7 +27,7 @@ std::vector<Agent> robots_on_a_street(int num) {
     for (double x = 4.0 * r; x < 4.0 * r + 24.0; x += 2.0) truth.push_back(Pose::planar(x, 0.3 * r, 0.0));
     const auto map =
         std::make_shared<const RobotMap>(test::drive(world, {static_cast<std::uint8_t>(r)}, truth, 0.0));
-    agents.emplace_back(map, std::make_shared<FeatureStore>(map, config.registration), config);
+    agents.emplace_back(map, config);
   }
   return agents;
 }
