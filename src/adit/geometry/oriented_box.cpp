@@ -52,11 +52,11 @@ Span span_along(const Matrix3& axes, const std::vector<Vector3>& corners) {
 }  // namespace
 
 Result<OrientedBox> oriented_box(std::span<const Eigen::Vector3f> points) {
-  const ConvexHull hull = convex_hull(points);
-  if (hull.shape == HullShape::empty) return fail("no box around a cloud without a finite point");
+  const Result<ConvexHull> hull = convex_hull(points);
+  if (!hull) return fail("no oriented box", hull.error());
   std::vector<Vector3> corners;
   Vector3 mean = Vector3::Zero();
-  for (const std::uint32_t vertex : hull.vertices) {
+  for (const std::uint32_t vertex : hull->vertices) {
     corners.emplace_back(points[vertex].cast<double>());
     mean += corners.back();
   }
