@@ -20,9 +20,6 @@ constexpr std::size_t words_for(std::size_t n) { return (n + kWordBits - 1) / kW
 constexpr Word bit(std::size_t i) { return Word{1} << (i % kWordBits); }
 /// Of a word that is not 0.
 constexpr std::size_t lowest(Word word) { return static_cast<std::size_t>(std::countr_zero(word)); }
-constexpr std::size_t highest(Word word) {
-  return kWordBits - 1 - static_cast<std::size_t>(std::countl_zero(word));
-}
 constexpr std::size_t count(Word word) { return static_cast<std::size_t>(std::popcount(word)); }
 constexpr std::size_t count(std::span<const Word> words) {
   std::size_t sum = 0;

@@ -9,7 +9,6 @@ extern "C" {
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <string>
@@ -69,7 +68,7 @@ Frame frame_of(const FiniteCloud& cloud) {
   return frame;
 }
 
-/// One run of Qhull with what it allocates.
+/// One run of Qhull with what it allocates. Its messages go to a stream in memory.
 class QhullRun {
  public:
   QhullRun() : log_(open_memstream(&message_, &message_size_)) { qh_zero(&qh_, log_); }
@@ -80,7 +79,7 @@ class QhullRun {
     int bytes_long = 0;
     qh_freeqhull(&qh_, !qh_ALL);
     qh_memfreeshort(&qh_, &num_long, &bytes_long);
-    std::fclose(log_);
+    fclose(log_);
     std::free(message_);  // NOLINT(cppcoreguidelines-no-malloc): open_memstream allocates it so
   }
 
@@ -90,7 +89,7 @@ class QhullRun {
     std::string options = "qhull Pp";  // Pp: what it thinks of the precision is of no use to anybody here
     if (qh_new_qhull(&qh_, dimension, num_points, coordinates.data(), False, options.data(), nullptr, log_) !=
         qh_ERRnone) {
-      std::fflush(log_);
+      fflush(log_);
       return fail(
           format("no convex hull of {} points in {} dimensions: {}", num_points, dimension, message_));
     }

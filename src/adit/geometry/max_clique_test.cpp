@@ -6,11 +6,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <ranges>
 
 #include "adit/core/rng.hpp"
-#include "adit/geometry/clique_local_search.hpp"
-#include "adit/geometry/packed_subgraph.hpp"
 
 namespace adit {
 namespace {
@@ -86,7 +83,7 @@ TEST(MaxClique, EqualsBruteForce) {
   }
 }
 
-/// Of all widths that the search is compiled for, and wider.
+/// Graphs that fill one word per row to many, and words to the last bit.
 TEST(MaxClique, EqualsEnumerationOfLargerGraphs) {
   Rng rng(4);
   for (const auto& [n, density] : {std::pair{60, 0.6},
@@ -110,25 +107,25 @@ TEST(MaxClique, EqualsEnumerationOfLargerGraphs) {
   }
 }
 
-/// A large graph of so many groups, any two vertices of different groups joined, draws greedy choices and
-/// local search to itself; only branch and bound sees that a few vertices beside it are all joined.
-TEST(MaxClique, FindsASmallDenseSpotBesideALargeGraph) {
+/// A large graph of `num_groups` groups, any two vertices of different groups joined, attracts greedy
+/// choices; only branch and bound sees that a few vertices beside it are all joined.
+TEST(MaxClique, FindsASmallCliqueBesideALargeGraph) {
   for (const std::uint32_t num_groups : {2U, 3U, 5U, 8U}) {
     for (const std::uint32_t more : {1U, 2U, 4U}) {
       for (const std::uint32_t n : {60U, 100U, 180U, 250U, 420U}) {
         BitGraph graph(n);
-        std::vector<std::uint32_t> spot;
-        for (std::uint32_t k = 0; k < num_groups + more; ++k) spot.push_back(2 + 4 * k);
+        std::vector<std::uint32_t> planted;
+        for (std::uint32_t k = 0; k < num_groups + more; ++k) planted.push_back(2 + 4 * k);
         for (std::uint32_t a = 0; a < n; ++a) {
           for (std::uint32_t b = 0; b < a; ++b) {
-            const bool in_spot = std::ranges::count(spot, a) + std::ranges::count(spot, b) > 0;
-            if (!in_spot && a % num_groups != b % num_groups) graph.add_edge(a, b);
+            const bool in_clique = std::ranges::count(planted, a) + std::ranges::count(planted, b) > 0;
+            if (!in_clique && a % num_groups != b % num_groups) graph.add_edge(a, b);
           }
         }
-        join_all(spot, graph);
+        join_all(planted, graph);
         const Clique clique = max_clique(graph);
         EXPECT_TRUE(clique.optimal);
-        EXPECT_EQ(clique.vertices, spot);
+        EXPECT_EQ(clique.vertices, planted);
       }
     }
   }
@@ -163,98 +160,6 @@ TEST(MaxClique, TakesDegenerateGraphs) {
   BitGraph complete(130);
   join_all(all_of(complete), complete);
   EXPECT_EQ(max_clique(complete, 1).vertices.size(), 130U);
-}
-
-TEST(CliqueLocalSearch, WalksFromCliqueToClique) {
-  Rng rng(5);
-  BitGraph graph = random_graph(150, 0.5, rng);
-  const std::vector<std::uint32_t> planted = {5, 17, 40, 63, 64, 65, 80, 99, 100, 101, 120, 127, 128, 149};
-  join_all(planted, graph);
-  CliqueLocalSearch search(graph, {3});
-  std::vector<std::uint32_t> best;
-  for (int k = 0; k < 2000; ++k) {
-    search.run(5, best);
-    ASSERT_TRUE(is_clique(graph, best));
-  }
-  EXPECT_EQ(best, planted);
-}
-
-TEST(GreedyClique, IsAClique) {
-  Rng rng(7);
-  for (int trial = 0; trial < 20; ++trial) {
-    const BitGraph graph = random_graph(1 + rng.below(150), rng.uniform(), rng);
-    const std::vector<std::uint32_t> clique = greedy_clique(graph);
-    EXPECT_TRUE(is_clique(graph, clique));
-    EXPECT_FALSE(clique.empty());
-  }
-}
-
-/// By taking vertices of too small degree away until none is left.
-std::vector<std::uint32_t> core_by_brute_force(const BitGraph& graph, std::size_t k) {
-  std::vector<std::uint32_t> core = all_of(graph);
-  const auto is_weak = [&](std::uint32_t v) {
-    return static_cast<std::size_t>(
-               std::ranges::count_if(core, [&](std::uint32_t w) { return graph.has_edge(v, w); })) < k;
-  };
-  for (auto weak = std::ranges::find_if(core, is_weak); weak != core.end();
-       weak = std::ranges::find_if(core, is_weak)) {
-    core.erase(weak);
-  }
-  return core;
-}
-
-TEST(DegeneracyOrder, HoldsTheCoreAndEndsWithItsWeakest) {
-  Rng rng(8);
-  for (int trial = 0; trial < 20; ++trial) {
-    const BitGraph graph = random_graph(1 + rng.below(150), 0.3 * rng.uniform(), rng);
-    const std::size_t k = rng.below(20);
-    std::vector<std::uint32_t> order = degeneracy_order(graph, k);
-    std::vector<std::uint32_t> sorted = order;
-    std::ranges::sort(sorted);
-    EXPECT_EQ(sorted, core_by_brute_force(graph, k));
-    for (; !order.empty(); order.pop_back()) {
-      const auto degree = [&](std::uint32_t v) {
-        return std::ranges::count_if(order, [&](std::uint32_t w) { return graph.has_edge(v, w); });
-      };
-      EXPECT_EQ(degree(order.back()), std::ranges::min(order | std::views::transform(degree)));
-    }
-  }
-}
-
-void expect_same_edges(const PackedSubgraph& part, const BitGraph& graph) {
-  for (std::size_t a = 0; a < part.size(); ++a) {
-    for (std::size_t b = 0; b < part.size(); ++b) {
-      const bool apart = (part.strangers(a)[b / 64] >> (b % 64) & 1U) != 0;
-      EXPECT_EQ(apart, a != b && !graph.has_edge(part.name(a), part.name(b)));
-    }
-  }
-}
-
-TEST(PackedSubgraph, KeepsTheEdgesOfItsVertices) {
-  Rng rng(9);
-  for (const std::size_t n : {1U, 64U, 65U, 200U, 330U}) {
-    const BitGraph graph = random_graph(n, 0.4, rng);
-    PackedSubgraph whole;
-    whole.assign(graph, degeneracy_order(graph, 0));
-    expect_same_edges(whole, graph);
-    for (const double share : {0.05, 0.3, 0.9, 1.0}) {
-      std::vector<std::uint64_t> set(whole.words(), 0);
-      std::vector<std::uint32_t> names;
-      for (std::size_t v = 0; v < n; ++v) {
-        if (rng.uniform() >= share) continue;
-        bits::set(set.data(), v);
-        names.push_back(whole.name(v));
-      }
-      PackedSubgraph part;
-      part.assign(whole, set.data());
-      ASSERT_EQ(part.size(), names.size());
-      for (std::size_t v = 0; v < part.size(); ++v) EXPECT_EQ(part.name(v), names[v]);
-      expect_same_edges(part, graph);
-      part.reorder();
-      ASSERT_EQ(part.size(), names.size());
-      expect_same_edges(part, graph);
-    }
-  }
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "adit/keyframes/tunnel_filter.hpp"
 
+#include <string>
+
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
 #include "adit/geometry/oriented_box.hpp"
@@ -32,9 +34,9 @@ Result<TunnelVerdict> tunnel_filter(const PointCloud& cloud_base, const TunnelFi
                                       ? oriented_box(cropped(cloud_base.points, config.max_range_m))
                                       : oriented_box(cloud_base.points);
   if (!box) {
-    return fail(format(
-        "tunnel filter: none of {} points is finite{}", cloud_base.size(),
-        config.max_range_m > 0.0 ? format(" and within {} m; raise max_range_m", config.max_range_m) : ""));
+    const std::string limit =
+        config.max_range_m > 0.0 ? format(" within {} m (max_range_m)", config.max_range_m) : "";
+    return fail(format("tunnel filter of {} points{}", cloud_base.size(), limit), box.error());
   }
   return TunnelVerdict{box->extents, box->extents.y() < config.width_threshold_m};
 }
