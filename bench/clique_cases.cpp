@@ -290,8 +290,7 @@ const auto registered = [] {
          .work = exact ? "largest clique" : "large clique, " + std::to_string(c.budget) + " branches at most",
          .scene =
              std::to_string(c.num_graphs) + " random graphs of that kind, " + std::to_string(n) + " vertices",
-         .peer = "bitset-bnb",
-         .aim = exact ? 3.0 : 0.0,
+         .peer = c.igraph ? "igraph" : "bitset-bnb",
          .note = "least: the table of bits read once, " + std::to_string(n * n / 8 / 1000) +
                  " kB; a branch with m candidates left colours them, m rows of m / 64 words",
          .per_run = static_cast<double>(c.num_graphs),
