@@ -4,15 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "adit/core/format.hpp"
 
 namespace adit {
 namespace {
 
-constexpr double kPointSpacing = 1.0;
-constexpr double kWallHeight = 0.5;
-constexpr double kShortestRoute = 0.1;
+// Metres.
+constexpr double kPointSpacing = 1.0;  ///< Of the points on the floor between two waypoints.
+constexpr double kWallHeight = 0.5;    ///< Above the floor, where walls are looked for: over kerbs and rails.
+constexpr double kShortestRoute = 0.1;  ///< What is shorter is a robot that stands.
+constexpr double kCrack = 1e-3;         ///< Width of a gap that is still floor: coordinates in millimetres.
+constexpr double kPastSurface = 1e-3;   ///< From a surface that was met to where the search goes on.
 
 std::string waypoint_text(const Route& route, std::size_t i) {
   const Vector3& p = route.waypoints[i];
@@ -36,8 +40,9 @@ Result<std::vector<Vector3>> snapped_waypoints(const Raycaster& raycaster, const
   for (std::size_t i = 0; i < snapped.size(); ++i) {
     const std::optional<double> height = floor_height(raycaster, snapped[i]);
     if (!height) {
-      return fail(format("{} has no floor within {} m below it; do routes and world belong together?",
-                         waypoint_text(route, i), kFloorBelow));
+      return fail(
+          format("{} has no floor from {} m above to {} m below it; do routes and world belong together?",
+                 waypoint_text(route, i), kFloorAbove, kFloorBelow));
     }
     snapped[i].z() = *height;
   }
@@ -48,11 +53,11 @@ bool wall_between(const Raycaster& raycaster, const Vector3& a, const Vector3& b
   // Each ray begins a little before its segment: a wall that stands exactly on a point is then inside one of
   // the rays.
   constexpr double kOverlap = 0.02;
-  const Vector3 way = b - a;
-  if (way.norm() < 1e-3) return false;
-  const Vector3 eye = a + Vector3(0.0, 0.0, kWallHeight) - kOverlap * way.normalized();
+  const Vector3 step = b - a;
+  if (step.norm() < 1e-3) return false;
+  const Vector3 eye = a + Vector3(0.0, 0.0, kWallHeight) - kOverlap * step.normalized();
   return raycaster
-      .cast({eye.cast<float>(), way.normalized().cast<float>()}, static_cast<float>(way.norm() + kOverlap))
+      .cast({eye.cast<float>(), step.normalized().cast<float>()}, static_cast<float>(step.norm() + kOverlap))
       .hit();
 }
 
@@ -68,10 +73,8 @@ std::vector<Vector3> between(const Raycaster& raycaster, const Vector3& a, const
   return points;
 }
 
-}  // namespace
-
-std::optional<double> floor_height(const Raycaster& raycaster, const Vector3& p) {
-  constexpr double kStep = 1e-3;  // past a surface that was met
+// The surface nearest to p.z that is met exactly above or below p.
+std::optional<double> surface_at(const Raycaster& raycaster, const Vector3& p) {
   const double lowest = p.z() - kFloorBelow;
   std::optional<double> nearest;
   for (double z = p.z() + kFloorAbove; z > lowest;) {
@@ -79,12 +82,22 @@ std::optional<double> floor_height(const Raycaster& raycaster, const Vector3& p)
     const RayHit hit = raycaster.cast(down, static_cast<float>(z - lowest));
     if (!hit.hit()) break;
     const double surface = static_cast<double>(down.origin.z()) - static_cast<double>(hit.distance);
-    if (nearest && std::abs(surface - p.z()) >= std::abs(*nearest - p.z()))
-      break;  // from here on only farther ones
+    const bool is_farther = nearest && std::abs(surface - p.z()) >= std::abs(*nearest - p.z());
+    if (is_farther) break;  // and so are all below it
     nearest = surface;
-    z = std::min(surface, z) - kStep;
+    z = std::min(surface, z) - kPastSurface;
   }
   return nearest;
+}
+
+}  // namespace
+
+std::optional<double> floor_height(const Raycaster& raycaster, const Vector3& p) {
+  if (const std::optional<double> surface = surface_at(raycaster, p)) return surface;
+  for (const auto& [x, y] : {std::pair(kCrack, 0.0), {-kCrack, 0.0}, {0.0, kCrack}, {0.0, -kCrack}}) {
+    if (const std::optional<double> beside = surface_at(raycaster, p + Vector3(x, y, 0.0))) return beside;
+  }
+  return std::nullopt;
 }
 
 Result<std::vector<Vector3>> floor_line(const Raycaster& raycaster, const Route& route) {

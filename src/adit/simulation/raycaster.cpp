@@ -11,6 +11,7 @@
 
 #include "adit/core/check.hpp"
 #include "adit/core/pose.hpp"
+#include "adit/core/progress.hpp"
 #include "adit/core/vectors.hpp"
 
 namespace adit {
@@ -52,8 +53,18 @@ void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, con
   for (const Item& item : items) out = std::copy_n(item.data(), 3, out);
 }
 
-EmbreeScene embree_scene(RTCDevice device, const TriangleMesh& mesh) {
+// The caller's observer, as Embree's own threads know none.
+bool goes_on(void* observer, double) {
+  return observer == nullptr || !static_cast<const ProgressObserver*>(observer)->cancelled();
+}
+
+EmbreeScene embree_scene(RTCDevice device, const TriangleMesh& mesh, EdgeRule edges) {
   EmbreeScene scene(rtcNewScene(device));
+  if (edges == EdgeRule::watertight) {
+    // Built once and cast at for a few seconds: compact rather than fast.
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT);
+  }
+  rtcSetSceneProgressMonitorFunction(scene.get(), goes_on, progress_context().observer);
   const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   fill_buffer<float>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.vertices);
   fill_buffer<unsigned>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
@@ -61,6 +72,7 @@ EmbreeScene embree_scene(RTCDevice device, const TriangleMesh& mesh) {
   rtcAttachGeometry(scene.get(), geometry);
   rtcReleaseGeometry(geometry);
   rtcCommitScene(scene.get());
+  throw_if_cancelled();
   ADIT_CHECK(rtcGetDeviceError(device) == RTC_ERROR_NONE, "Embree built its tree");
   return scene;
 }
@@ -180,14 +192,14 @@ struct Raycaster::Scene {
   }
 };
 
-Result<Raycaster> Raycaster::build(const TriangleMesh& mesh) {
+Result<Raycaster> Raycaster::build(const TriangleMesh& mesh, EdgeRule edges) {
   if (const Result<> checked = check_mesh(mesh); !checked) return tl::unexpected(checked.error());
   auto scene = std::make_shared<Scene>();
   // No thread limit here: Embree would put it on the TBB of the whole process for as long as the device
   // lives.
   scene->device = Device(rtcNewDevice(nullptr));
   ADIT_CHECK(scene->device != nullptr, "Embree starts");
-  scene->embree = embree_scene(scene->device.get(), mesh);
+  scene->embree = embree_scene(scene->device.get(), mesh, edges);
   scene->planes = planes_of(mesh);
   return Raycaster(std::move(scene));
 }

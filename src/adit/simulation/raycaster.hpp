@@ -46,6 +46,12 @@ struct RayBlock {
   Numbers cosines;    ///< Of the angle between the ray and the normal, 0 to 1; undefined for a miss.
 };
 
+/// What happens to a ray that runs exactly through an edge or a corner that triangles share.
+enum class EdgeRule {
+  fast,        ///< One such ray in some 1e5 slips through: nothing to a scan, everything to a robot's floor.
+  watertight,  ///< It is a hit. Slower to build and to cast at.
+};
+
 /// Casts rays against a triangle mesh (Embree behind it). A cheap value: copies share one acceleration
 /// structure. All casting is const and may run on any number of threads at once.
 ///
@@ -54,7 +60,7 @@ struct RayBlock {
 class Raycaster {
  public:
   /// Copies what it needs of `mesh`. Fails as `check_mesh` does: no triangles, an index out of range, a NaN.
-  [[nodiscard]] static Result<Raycaster> build(const TriangleMesh& mesh);
+  [[nodiscard]] static Result<Raycaster> build(const TriangleMesh& mesh, EdgeRule edges = EdgeRule::fast);
 
   /// The first surface, from either side, within `max_distance`.
   [[nodiscard]] RayHit cast(const Ray& ray, float max_distance) const;

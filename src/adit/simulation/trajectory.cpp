@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "adit/core/format.hpp"
+#include "adit/core/progress.hpp"
 #include "adit/simulation/floor_line.hpp"
 
 namespace adit {
@@ -161,7 +162,10 @@ void spring(Way& way, std::size_t half_width, Member member) {
 }
 
 void follow_floor(const Raycaster& raycaster, const DriveConfig& config, Way& way) {
-  for (WayPoint& point : way) stand_on_floor(raycaster, config, point);
+  for (WayPoint& point : way) {
+    throw_if_cancelled();
+    stand_on_floor(raycaster, config, point);
+  }
   const double sample_length = config.corner_length / kSamplesPerCorner;
   const auto half_width = static_cast<std::size_t>(std::ceil(0.5 * config.wheelbase / sample_length));
   spring(way, half_width, [](WayPoint& p) -> double& { return p.position.z(); });

@@ -16,7 +16,7 @@ namespace {
 
 const Eigen::AlignedBox2d kArea(Eigen::Vector2d(-10, -10), Eigen::Vector2d(60, 60));
 
-Raycaster caster(const TriangleMesh& mesh) { return Raycaster::build(mesh).value(); }
+Raycaster caster(const TriangleMesh& mesh) { return Raycaster::build(mesh, EdgeRule::watertight).value(); }
 TriangleMesh flat() {
   return test::floor_of(kArea, 5.0, [](double, double) { return 0.0; });
 }
