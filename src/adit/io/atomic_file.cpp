@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: MIT
 #include "adit/io/atomic_file.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <array>
+#include <cstdio>
 #include <system_error>
 #include <utility>
 
 #include "adit/core/format.hpp"
+#include "adit/core/progress.hpp"
+#include "adit/io/disk_sync.hpp"
 
 namespace adit {
 namespace {
@@ -18,12 +22,21 @@ namespace fs = std::filesystem;
 /// Beside the target, so that the rename stays on one file system.
 fs::path partial_beside(const fs::path& path) { return path.string() + format(".partial-{}", getpid()); }
 
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+/// Inside an OutputDir that is not in its place yet: its `commit` syncs all of it at once.
+bool is_in_partial_folder(const fs::path& path) {
+  return folder_of(path).string().find(format(".partial-{}", getpid())) != std::string::npos;
+}
+
 fs::path without_trailing_slash(const fs::path& path) {
   return path.has_filename() ? path : path.parent_path();
 }
 
 Result<> check_parent(const fs::path& path) {
-  const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  const fs::path parent = folder_of(path);
   std::error_code ignored;
   if (fs::is_directory(parent, ignored)) return {};
   return fail(format("{}: the folder {} does not exist; make it first", path.string(), parent.string()));
@@ -47,6 +60,24 @@ Result<> check_replaceable(const fs::path& path, const std::string& kind) {
              path.string(), kind));
 }
 
+/// Puts `partial` in the place of `target`. Returns where the folder that stood there lies now.
+Result<fs::path> swap_in(const fs::path& partial, const fs::path& target) {
+  std::error_code error;
+  fs::path old = partial;
+  if (!fs::exists(target, error)) {
+    fs::rename(partial, target, error);
+  } else if (renameat2(AT_FDCWD, partial.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) != 0) {
+    // A file system that cannot exchange two names: for a moment the target has none.
+    old += "-old";
+    fs::rename(target, old, error);
+    if (!error) fs::rename(partial, target, error);
+    std::error_code ignored;
+    if (error && !fs::exists(target, ignored)) fs::rename(old, target, ignored);
+  }
+  if (error) return fail(format("{}: cannot be put in place: {}", target.string(), error.message()));
+  return old;
+}
+
 }  // namespace
 
 Result<std::string> read_bytes(const fs::path& path) {
@@ -59,6 +90,7 @@ Result<std::string> read_bytes(const fs::path& path) {
   std::string bytes;
   std::array<char, 1U << 16U> block{};
   while (stream.read(block.data(), block.size()) || stream.gcount() > 0) {
+    throw_if_cancelled();
     bytes.append(block.data(), static_cast<std::size_t>(stream.gcount()));
   }
   if (stream.bad()) return fail(format("{}: reading failed at byte {}", path.string(), bytes.size()));
@@ -101,11 +133,15 @@ AtomicFile::~AtomicFile() {
 Result<> AtomicFile::commit() {
   stream_.close();
   if (!stream_) return fail(path_.string() + ": writing failed; is the disk full?");
+  const bool syncs = !is_in_partial_folder(path_);
+  if (syncs) {
+    if (Result<> synced = sync_to_disk(partial_); !synced) return fail(path_.string(), synced.error());
+  }
   std::error_code error;
   fs::rename(partial_, path_, error);
   if (error) return fail(format("{}: cannot be put in place: {}", path_.string(), error.message()));
   partial_.clear();
-  return {};
+  return syncs ? sync_to_disk(folder_of(path_)) : Result<>();
 }
 
 Result<OutputDir> OutputDir::create(const fs::path& path, const std::string& kind) {
@@ -133,20 +169,15 @@ OutputDir::~OutputDir() {
 }
 
 Result<> OutputDir::commit() {
-  std::error_code error;
-  const fs::path old = target_.string() + format(".partial-{}-old", getpid());
-  const bool replaces = fs::exists(target_, error);
-  if (replaces) fs::rename(target_, old, error);
-  if (!error) fs::rename(partial_, target_, error);
-  if (error) {
-    std::error_code ignored;
-    if (replaces && !fs::exists(target_, ignored)) fs::rename(old, target_, ignored);
-    return fail(format("{}: cannot be put in place: {}", target_.string(), error.message()));
-  }
+  if (Result<> synced = sync_tree_to_disk(partial_); !synced) return synced;
+  const Result<fs::path> old = swap_in(partial_, target_);
+  if (!old) return tl::unexpected(old.error());
   committed_ = true;
   partial_ = target_;
-  fs::remove_all(old, error);
-  return {};
+  Result<> synced = sync_to_disk(folder_of(target_));
+  std::error_code ignored;
+  if (synced) fs::remove_all(*old, ignored);  // not before the new name is on the disk
+  return synced;
 }
 
 }  // namespace adit

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 /// Output that appears whole or not at all. Everything is built beside its final place under a name that
-/// contains
-/// ".partial-" and renamed at the end; when the process fails or is interrupted in between, what stood there
-/// before is untouched, and the destructor removes the partial output.
+/// holds
+/// ".partial-", synced to the disk, and renamed at the end. When the process fails or is interrupted before,
+/// what stood there is untouched and the destructor removes the partial output; after a power cut the old or
+/// the new output is there, whole. Every file that adit writes is written by this module.
 #pragma once
 
 #include <filesystem>
@@ -30,7 +31,8 @@ class AtomicFile {
   ~AtomicFile();
 
   [[nodiscard]] std::ostream& stream() { return stream_; }
-  /// Flushes, closes and renames. Fails when any write before it failed (disk full).
+  /// Flushes, syncs and renames. Fails if any write before it failed (disk full); the old file is then
+  /// untouched.
   Result<> commit();
 
  private:
@@ -56,7 +58,7 @@ class OutputDir {
 
   /// Where to write until `commit`; sub-folders are the caller's business.
   [[nodiscard]] const std::filesystem::path& path() const { return partial_; }
-  /// Puts the directory in its place. After it, `path()` is the final path.
+  /// Syncs all files to the disk and puts the directory in its place. After it, `path()` is the final path.
   Result<> commit();
 
  private:

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-// Routes, configuration, folders of scans, and output that appears whole or not at all.
+// Routes, configuration and folders of scans.
 #include <gtest/gtest.h>
 
 #include "adit/core/rng.hpp"
-#include "adit/io/atomic_file.hpp"
 #include "adit/io/byte_source.hpp"
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/config_toml.hpp"
@@ -20,65 +19,6 @@ namespace {
 
 using test::put_file;
 using test::TemporaryFolder;
-
-TEST(AtomicFile, ReplacesOnlyAtTheEnd) {
-  const TemporaryFolder folder;
-  put_file(folder / "a", "old");
-  {
-    Result<AtomicFile> file = AtomicFile::create(folder / "a");
-    ASSERT_TRUE(file);
-    file->stream() << "new";
-    EXPECT_EQ(test::get_file(folder / "a"), "old");
-  }
-  EXPECT_EQ(test::get_file(folder / "a"), "old");
-  EXPECT_EQ(test::num_entries(folder.path()), 1U);
-  ASSERT_TRUE(write_bytes(folder / "a", "new"));
-  EXPECT_EQ(test::get_file(folder / "a"), "new");
-  EXPECT_EQ(test::num_entries(folder.path()), 1U);
-  EXPECT_ERROR(write_bytes(folder / "absent" / "a", ""), "does not exist");
-  EXPECT_ERROR(write_bytes(folder.path(), ""), "is a folder");
-}
-
-TEST(OutputDir, ReplacesItsOwnKindOnly) {
-  const TemporaryFolder folder;
-  const auto make = [&](const std::string& kind, const char* content) {
-    return OutputDir::create(folder / "out", kind).and_then([&](OutputDir output) {
-      put_file(output.path() / "file", content);
-      return output.commit();
-    });
-  };
-  ASSERT_TRUE(make("session", "1"));
-  ASSERT_TRUE(make("session", "2"));
-  EXPECT_EQ(test::get_file(folder / "out" / "file"), "2");
-  EXPECT_ERROR(make("world", "3"), "holds files that are no world of adit");
-  EXPECT_EQ(test::get_file(folder / "out" / "file"), "2");
-  EXPECT_EQ(test::num_entries(folder.path()), 1U);
-}
-
-TEST(OutputDir, LeavesTheUsersFilesAlone) {
-  const TemporaryFolder folder;
-  std::filesystem::create_directory(folder / "mine");
-  ASSERT_TRUE(OutputDir::create(folder / "mine"));  // empty: free to take, but untouched without commit
-  EXPECT_TRUE(std::filesystem::is_empty(folder / "mine"));
-  put_file(folder / "mine" / "thesis.tex", "...");
-  EXPECT_ERROR(OutputDir::create(folder / "mine"), "is left alone");
-  put_file(folder / "file", "");
-  EXPECT_ERROR(OutputDir::create(folder / "file"), "is a file");
-  EXPECT_ERROR(OutputDir::create(folder / "absent" / "out"), "does not exist");
-  put_file(folder / "mine" / "session.toml", "");
-  EXPECT_TRUE(OutputDir::create(std::filesystem::path(folder / "mine") / ""));
-}
-
-TEST(OutputDir, RemovesWhatWasNotCommitted) {
-  const TemporaryFolder folder;
-  {
-    const Result<OutputDir> output = OutputDir::create(folder / "out");
-    ASSERT_TRUE(output);
-    put_file(output->path() / "half", "written");
-    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
-  }
-  EXPECT_EQ(test::num_entries(folder.path()), 0U);
-}
 
 TEST(ByteSource, ReadsInsideTheFileOnly) {
   const TemporaryFolder folder;
