@@ -8,6 +8,7 @@
 
 #include "adit/core/parallel.hpp"
 #include "adit/core/version.hpp"
+#include "run_command.hpp"
 
 namespace adit::app {
 
@@ -33,10 +34,7 @@ CLI::App* Program::add_command(const std::string& name, const std::string& descr
   command->fallthrough();
   command->callback([this, name, body = std::move(body)] {
     if (common_.threads > 0) set_num_threads(common_.threads);
-    const Result<> done = body(common_);
-    if (done) return;
-    std::fprintf(stderr, "adit %s: %s\n", name.c_str(), done.error().message.c_str());
-    exit_code_ = 1;
+    exit_code_ = run_command(name, [&] { return body(common_); });
   });
   return command;
 }

@@ -1,40 +1,57 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
+/// What the program shows of its work, and the signals that end it.
 #pragma once
 
-#include <atomic>
-#include <cstddef>
+#include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <string>
+#include <string_view>
+#include <thread>
+
+#include "adit/core/progress.hpp"
+#include "adit/report/progress_line.hpp"
 
 namespace adit::app {
 
-/// A progress bar on stderr where that is a terminal, nothing elsewhere. `advance` may be called from any
-/// thread.
-class Progress {
+/// From now on SIGINT (Ctrl-C), SIGTERM and SIGHUP set a flag instead of ending the process; a second one
+/// ends it at once. A signal that the parent had ignored stays so (nohup, jobs in the background of a
+/// script).
+void catch_signals();
+/// The first signal that came, 0 before.
+[[nodiscard]] int caught_signal();
+
+/// Observer of a command: cancels it once a signal came. Where stderr is a terminal it draws one line with
+/// the phase that runs, a bar and the time left, from half a second on, so that short phases do not flicker.
+class TerminalProgress : public ProgressObserver {
  public:
-  Progress(std::string title, std::size_t total);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  void advance(std::size_t steps = 1);
+  TerminalProgress();
+  ~TerminalProgress() override;
+
+  PhaseId begin(std::string_view name, std::size_t total, PhaseId parent) override;
+  void advance(PhaseId phase, std::size_t steps) override;
+  void end(PhaseId phase) noexcept override;
+  [[nodiscard]] bool cancelled() const noexcept override { return caught_signal() != 0; }
 
  private:
-  void draw(std::size_t done);
+  void keep_drawing(const std::stop_token& stop);
+  void draw();
+  void clear();
+  [[nodiscard]] static PhaseTree::Seconds now();
 
-  std::string title_;
-  std::size_t total_;
-  bool on_terminal_;
-  std::atomic<std::size_t> done_ = 0;
-  std::mutex drawing_;
-  std::size_t drawn_percent_ = 101;
+  std::mutex mutex_;  ///< Of all below.
+  PhaseTree phases_;
+  bool is_drawn_ = false;
+  std::condition_variable_any wake_;
+  std::jthread painter_;  ///< None where stderr is no terminal.
 };
 
-/// From now on Ctrl-C (SIGINT) and SIGTERM set a flag instead of ending the process; a second one ends it at
-/// once.
-void catch_interrupts();
-/// Whether one came. Long loops ask after each step and stop with an error, so that partial output is
-/// removed.
-[[nodiscard]] bool interrupted();
+using Progress = Phase;
+inline void catch_interrupts() {}
+[[nodiscard]] inline bool interrupted() {
+  throw_if_cancelled();
+  return false;
+}
 
 }  // namespace adit::app

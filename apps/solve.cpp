@@ -4,11 +4,11 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "adit/core/format.hpp"
+#include "adit/io/atomic_file.hpp"
 #include "adit/io/g2o.hpp"
 #include "adit/posegraph/gnc.hpp"
 #include "command_line.hpp"
@@ -56,19 +56,11 @@ Result<> check_information(const std::string& name, const SolveOptions& options,
   return fail(format("{}: {}, and still are with their translation-rotation blocks zeroed", name, found));
 }
 
-// Complete or not at all: a temporary file beside the target takes its place once it is written.
 Result<> replace_file(const std::filesystem::path& path, const G2oFile& file) {
-  const std::filesystem::path temporary = path.string() + ".part";
-  {
-    std::ofstream stream(temporary, std::ios::binary);
-    std::visit([&](const auto& graph) { write_g2o(stream, graph); }, file.graph);
-    stream.flush();
-    if (!stream) return fail(path.string() + ": cannot be written; is there room, and may you write here?");
-  }
-  std::error_code error;
-  std::filesystem::rename(temporary, path, error);
-  if (error) return fail(path.string() + ": " + error.message());
-  return {};
+  Result<AtomicFile> output = AtomicFile::create(path);
+  if (!output) return tl::unexpected(output.error());
+  std::visit([&](const auto& graph) { write_g2o(output->stream(), graph); }, file.graph);
+  return output->commit();
 }
 
 template <class P>
