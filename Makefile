@@ -4,31 +4,27 @@
 .DEFAULT_GOAL := build
 .PHONY: build demo test bench bench-merge lint docs clean
 
-build/%/build.ninja: CMakeLists.txt CMakePresets.json
-	@tools/setup.sh
-	cmake --preset $*
-
-build: build/release/build.ninja
-	@tools/setup.sh
-	cmake --build --preset release
+build:
+	@tools/build.sh release adit_program
 
 demo: build
-	tools/demo.sh
+	@tools/demo.sh
 
-test: build
-	ctest --preset release -j 2
+test:
+	@tools/build.sh release
+	@tools/test.sh release
 
 bench:
-	tools/bench.sh $(BENCH)
+	@tools/bench.sh $(BENCH)
 
 bench-merge:
-	tools/bench_merge.sh $(BENCH)
+	@tools/bench_merge.sh $(BENCH)
 
-lint: build
-	tools/lint.sh
+lint:
+	@tools/lint.sh
 
 docs: build
-	tools/docs.sh
+	@tools/docs.sh
 
 clean:
 	rm -rf build

@@ -1,12 +1,50 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The adit authors
 # SPDX-License-Identifier: MIT
-# Format, layers, paper map and clang-tidy. With file names: clang-tidy on those only.
+# Format, layers, length of functions, paper map, and clang-tidy on what changed since the last release: the newest tag
+# v*, or the commit that .ci/last-release names. Where the clone holds neither, clang-tidy reads every file.
+#   tools/lint.sh [FILE...]     clang-tidy on those files only
 set -euo pipefail
 cd "$(dirname "$0")/.."
+tools/setup.sh
 mapfile -t sources < <(git ls-files '*.hpp' '*.cpp')
 clang-format --dry-run --Werror "${sources[@]}"
 tools/check_layers
+tools/check_functions
 tools/check_paper_map
-mapfile -t tidied < <([ $# -gt 0 ] && printf '%s\n' "$@" || git ls-files 'src/*.cpp' 'apps/*.cpp' | grep -v _test.cpp)
-printf '%s\n' "${tidied[@]}" | xargs -P "$(nproc)" -n 4 clang-tidy -p build/release --quiet
+
+last_release() {
+  local name
+  name=$(git describe --tags --abbrev=0 --match 'v*' 2>/dev/null) || name=$(sed '/^#/d' .ci/last-release)
+  git rev-parse --quiet --verify "$name^{commit}" || true
+}
+
+# The .cpp files whose compilation shows clang-tidy all that changed: those that changed, and for a header the file of its
+# own name, or the first that includes it.
+files_to_tidy() {
+  local base=$1 file own
+  { git diff --name-only --diff-filter=d "$base" -- '*.cpp' '*.hpp'; git ls-files -o --exclude-standard '*.cpp' '*.hpp'; } |
+    grep -v '^tests/scenarios/install/\|^bench/' | sort -u | while read -r file; do
+      case $file in
+        *.cpp) echo "$file" ;;
+        *)
+          own=${file%.hpp}.cpp
+          [ -f "$own" ] && echo "$own" || git grep -lF "\"${file#src/}\"" -- '*.cpp' ':!bench' | head -1 ;;
+      esac
+    done | sort -u
+}
+
+base=$(last_release)
+if [ $# -gt 0 ]; then
+  files=("$@")
+elif [ -n "$base" ]; then
+  mapfile -t files < <(files_to_tidy "$base")
+else
+  mapfile -t files < <(git ls-files 'src/*.cpp' 'apps/*.cpp' 'tests/*.cpp' 'examples/*.cpp' ':!tests/scenarios/install')
+fi
+[ ${#files[@]} -gt 0 ] || { echo "lint: no C++ file changed since ${base:0:7}"; exit 0; }
+
+# clang-tidy reads the precompiled headers of a build by clang: without them it reads Eigen for each file again.
+tools/build.sh lint adit_precompiled adit_precompiled_kernels adit_precompiled_test
+echo "lint: clang-tidy on ${#files[@]} files${base:+ changed since ${base:0:7}}"
+printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -n 1 clang-tidy -p build/lint --quiet 2> >(grep -v 'warnings\? generated\.$\|^Suppressed' >&2 || true)
