@@ -12,15 +12,12 @@
 namespace adit {
 namespace {
 
-enum class CloudFormat { pcd, ply, kitti };
-
 Result<CloudFormat> format_of(const std::filesystem::path& path) {
   const std::string extension = lower_case(path.extension().string());
-  if (extension == ".pcd") return CloudFormat::pcd;
-  if (extension == ".ply") return CloudFormat::ply;
-  if (extension == ".bin") return CloudFormat::kitti;
-  return fail(
-      format("{}: '{}' is no extension of a point cloud; .pcd, .ply and .bin are", path.string(), extension));
+  for (const CloudFormat format : {CloudFormat::pcd, CloudFormat::ply, CloudFormat::kitti})
+    if (extension == extension_of(format)) return format;
+  return fail(format("{}: '{}' is not an extension of point clouds; .pcd, .ply and .bin are", path.string(),
+                     extension));
 }
 
 Result<CloudFile> parse(CloudFormat format, std::string_view bytes) {
@@ -35,10 +32,10 @@ Result<CloudFile> parse(CloudFormat format, std::string_view bytes) {
   return read_kitti(bytes);
 }
 
-std::string bytes_of(CloudFormat format, const PointCloud& cloud) {
+std::string bytes_of(CloudFormat format, const PointCloud& cloud, const Pose& viewpoint) {
   switch (format) {
     case CloudFormat::pcd:
-      return write_pcd(cloud);
+      return write_pcd(cloud, PcdData::binary, viewpoint);
     case CloudFormat::ply:
       return write_ply(cloud);
     case CloudFormat::kitti:
@@ -48,6 +45,18 @@ std::string bytes_of(CloudFormat format, const PointCloud& cloud) {
 }
 
 }  // namespace
+
+std::string_view extension_of(CloudFormat format) {
+  switch (format) {
+    case CloudFormat::pcd:
+      return ".pcd";
+    case CloudFormat::ply:
+      return ".ply";
+    case CloudFormat::kitti:
+      break;
+  }
+  return ".bin";
+}
 
 Result<CloudFile> read_cloud_file(const std::filesystem::path& path) {
   const Result<CloudFormat> format = format_of(path);
@@ -63,10 +72,10 @@ Result<PointCloud> read_cloud(const std::filesystem::path& path) {
   return read_cloud_file(path).map([](CloudFile file) { return std::move(file.cloud); });
 }
 
-Result<> write_cloud(const std::filesystem::path& path, const PointCloud& cloud) {
+Result<> write_cloud(const std::filesystem::path& path, const PointCloud& cloud, const Pose& viewpoint) {
   if (cloud.empty()) return fail(path.string() + ": the cloud has no points; nothing is written");
   return format_of(path).and_then(
-      [&](CloudFormat format) { return write_bytes(path, bytes_of(format, cloud)); });
+      [&](CloudFormat format) { return write_bytes(path, bytes_of(format, cloud, viewpoint)); });
 }
 
 }  // namespace adit

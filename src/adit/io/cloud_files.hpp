@@ -5,16 +5,25 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
+#include <string_view>
 
 #include "adit/core/point_cloud.hpp"
 #include "adit/core/result.hpp"
 
 namespace adit {
 
+enum class CloudFormat { pcd, ply, kitti };
+/// With its point: ".bin" for KITTI.
+[[nodiscard]] std::string_view extension_of(CloudFormat format);
+
 /// What a cloud reader found. Points with a NaN or infinite coordinate are left out and counted.
 struct CloudFile {
   PointCloud cloud;
   std::size_t num_skipped_nan = 0;
+  /// PCD's VIEWPOINT, the pose of the sensor: p_world = viewpoint * p. None for the identity, which is what
+  /// writers put there that do not know it, and for formats without one.
+  std::optional<Pose> viewpoint;
 };
 
 /// Reads a cloud, in the frame and unit of the file. A missing, truncated or empty file, an unknown extension
@@ -25,8 +34,8 @@ Result<CloudFile> read_cloud_file(const std::filesystem::path& path);
 Result<PointCloud> read_cloud(const std::filesystem::path& path);
 
 /// Writes binary PCD, binary little-endian PLY or KITTI .bin by extension. The file appears whole or not at
-/// all. Intensities and times are kept (KITTI: intensities only). An empty cloud is an error: no reader would
-/// accept it.
-Result<> write_cloud(const std::filesystem::path& path, const PointCloud& cloud);
+/// all. Intensities and times are kept (KITTI: intensities only), and `viewpoint` in PCD. An empty cloud is
+/// an error: no reader would accept it.
+Result<> write_cloud(const std::filesystem::path& path, const PointCloud& cloud, const Pose& viewpoint = {});
 
 }  // namespace adit

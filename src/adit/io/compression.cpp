@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "adit/io/compression.hpp"
 
+#include <liblzf/lzf.h>
 #include <lz4frame.h>
 #include <zstd.h>
 
@@ -18,7 +19,7 @@ constexpr std::size_t kLargest = std::size_t{1} << 30U;
 Result<std::string> decompress_zstd(std::string_view bytes, std::size_t size) {
   // The frame says its size as well; a claim that differs is damage, found before memory is taken.
   const unsigned long long stated = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
-  if (stated == ZSTD_CONTENTSIZE_ERROR) return fail("no zstd frame");
+  if (stated == ZSTD_CONTENTSIZE_ERROR) return fail("not a zstd frame");
   if (stated != ZSTD_CONTENTSIZE_UNKNOWN && stated > size)
     return fail(format("holds {} bytes, not {}", stated, size));
   std::string out(size, '\0');
@@ -67,6 +68,29 @@ Result<std::string> decompress(std::string_view bytes, std::string_view compress
     return fail(format("compression '{}' is unknown; lz4 and zstd are known", compression));
   if (bytes.size() != size) return fail(format("{} bytes, not the {} announced", bytes.size(), size));
   return std::string(bytes);
+}
+
+std::string compress_lzf(std::string_view bytes) {
+  if (bytes.empty()) return {};
+  // Runs of at most 32 literal bytes have one byte of head each; the library wants a little more than that.
+  std::string out(bytes.size() + bytes.size() / 16 + 64, '\0');
+  const unsigned size = lzf_compress(bytes.data(), static_cast<unsigned>(bytes.size()), out.data(),
+                                     static_cast<unsigned>(out.size()));
+  ADIT_CHECK(size > 0, "lzf fails only when its buffer is too small");
+  out.resize(size);
+  return out;
+}
+
+Result<std::string> decompress_lzf(std::string_view bytes, std::size_t size) {
+  constexpr std::size_t kLongestRun = 264;  // that two or three bytes of LZF stand for
+  if (size > kLargest || size / kLongestRun > bytes.size())
+    return fail(format("{} LZF bytes cannot hold {} bytes; the size is damaged", bytes.size(), size));
+  std::string out(size, '\0');
+  const unsigned got = lzf_decompress(bytes.data(), static_cast<unsigned>(bytes.size()), out.data(),
+                                      static_cast<unsigned>(out.size()));
+  if (got == 0 && size > 0) return fail(format("damaged LZF data, or more than {} bytes of it", size));
+  if (got != size) return fail(format("LZF data expand to {} bytes, not {}", got, size));
+  return out;
 }
 
 }  // namespace adit

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// The compressions of MCAP chunks: "" (none), "lz4" (LZ4 frames) and "zstd".
+/// The compressions of MCAP chunks, "" (none), "lz4" (LZ4 frames) and "zstd", and LZF, that of PCD files.
 #pragma once
 
 #include <cstddef>
@@ -16,5 +16,11 @@ namespace adit {
 
 /// Exactly `size` bytes, or an error; `size` above 1 GiB is refused as damage.
 Result<std::string> decompress(std::string_view bytes, std::string_view compression, std::size_t size);
+
+/// LZF, as in PCD's binary_compressed.
+[[nodiscard]] std::string compress_lzf(std::string_view bytes);
+
+/// Exactly `size` bytes, or an error; a `size` that so few bytes cannot hold is refused as damage.
+Result<std::string> decompress_lzf(std::string_view bytes, std::size_t size);
 
 }  // namespace adit

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "adit/io/pcd.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "adit/core/format.hpp"
-#include "adit/io/lzf.hpp"
+#include "adit/io/compression.hpp"
 #include "adit/io/packed_cloud.hpp"
 #include "adit/io/text.hpp"
 
@@ -26,6 +28,7 @@ struct PcdHeader {
   std::size_t width = 0;
   std::size_t height = 1;
   std::optional<std::size_t> points;
+  std::optional<Pose> viewpoint;
   std::string data;
 
   [[nodiscard]] std::size_t num_points() const { return points.value_or(width * height); }
@@ -62,7 +65,8 @@ using Words = std::vector<std::string_view>;
 Result<std::size_t> whole_number(std::string_view word) {
   const std::optional<std::size_t> number = parse_size(word);
   // Bounds the products taken later, far above any cloud.
-  if (!number || *number > (std::size_t{1} << 40U)) return fail(format("'{}' is no sensible number", word));
+  if (!number || *number > (std::size_t{1} << 40U))
+    return fail(format("'{}' is not a sensible number", word));
   return *number;
 }
 
@@ -102,6 +106,25 @@ Result<> set_counts(PcdHeader& header, const Words& values) {
       });
 }
 
+/// tx ty tz qw qx qy qz. The identity is every writer's default and says nothing.
+Result<> set_viewpoint(PcdHeader& header, const Words& values) {
+  std::vector<double> numbers;
+  for (const std::string_view value : values) {
+    const std::optional<double> number = parse_double(value);
+    if (!number || !std::isfinite(*number)) return fail(format("'{}' is not a finite number", value));
+    numbers.push_back(*number);
+  }
+  if (numbers.size() != 7) return fail(format("{} values; tx ty tz qw qx qy qz are needed", numbers.size()));
+  const Vector3 position(numbers[0], numbers[1], numbers[2]);
+  Eigen::Quaterniond rotation(numbers[3], numbers[4], numbers[5], numbers[6]);
+  if (!(std::abs(rotation.norm() - 1.0) < 0.01))
+    return fail(format("the quaternion has norm {:.4f}, not 1; its order is qw qx qy qz", rotation.norm()));
+  if (position.isZero(0.0) && rotation.vec().isZero(0.0)) return {};
+  if (std::abs(rotation.norm() - 1.0) > 1e-12) rotation.normalize();
+  header.viewpoint = Pose(rotation, position);
+  return {};
+}
+
 /// One line "KEY value...".
 Result<> set_entry(PcdHeader& header, std::string_view key, const Words& values) {
   const auto first = [&](auto& target) -> Result<> {
@@ -126,8 +149,9 @@ Result<> set_entry(PcdHeader& header, std::string_view key, const Words& values)
     header.data = values[0];
     return {};
   }
-  if (key == "VERSION" || key == "VIEWPOINT") return {};
-  return fail("is no line of a PCD header");
+  if (key == "VIEWPOINT") return set_viewpoint(header, values);
+  if (key == "VERSION") return {};
+  return fail("is not a line of a PCD header");
 }
 
 Result<PcdHeader> read_header(LineReader& lines) {
@@ -139,7 +163,8 @@ Result<PcdHeader> read_header(LineReader& lines) {
     if (!entry)
       return fail(format("header line {}: {}", lines.number(), words[0].substr(0, 40)), entry.error());
   }
-  if (header.data.empty()) return fail("the header has no DATA line; the file is truncated or no PCD file");
+  if (header.data.empty())
+    return fail("the header has no DATA line; the file is truncated or not a PCD file");
   if (header.fields.empty()) return fail("the header has no FIELDS line");
   if (header.sizes.empty()) return fail("the header has no SIZE line");
   if (header.num_points() == 0) return fail("the cloud has no points (POINTS 0)");
@@ -165,7 +190,7 @@ Result<std::string> pack_ascii(const PcdHeader& header, LineReader& lines) {
     for (const PcdField& field : header.fields) {
       for (std::size_t k = 0; k < field.count; ++k, ++word) {
         if (append_scalar(rows, field.type, *word)) continue;
-        return fail(format("line {}: '{}' is no value of field '{}'", lines.number(), *word, field.name));
+        return fail(format("line {}: '{}' is not a value of field '{}'", lines.number(), *word, field.name));
       }
     }
     ++i;
@@ -190,7 +215,7 @@ Result<std::string> expand(const PcdHeader& header, std::string_view body, std::
     return fail(format("byte {}: {} bytes announced for {} points of {} bytes", body_offset + 4, size,
                        header.num_points(), header.row_size()));
   }
-  Result<std::string> columns = expand_lzf(body.substr(0, compressed), size);
+  Result<std::string> columns = decompress_lzf(body.substr(0, compressed), size);
   if (!columns) return fail(format("from byte {}", body_offset + 8), columns.error());
   return columns;
 }
@@ -209,7 +234,10 @@ Result<CloudFile> unpack_fields(const PcdHeader& header, std::string_view bytes,
       assign_field(packed, field.name, {field.type, offset, by_rows ? header.row_size() : field.size()});
     offset += by_rows ? field.size() : field.size() * header.num_points();
   }
-  return unpack(packed);
+  return unpack(packed).map([&](CloudFile file) {
+    file.viewpoint = header.viewpoint;
+    return file;
+  });
 }
 
 }  // namespace
@@ -243,7 +271,13 @@ Result<CloudFile> read_pcd(std::string_view bytes) {
 
 namespace {
 
-std::string header_text(const PointCloud& cloud, std::string_view data) {
+std::string viewpoint_text(const Pose& viewpoint) {
+  const Vector3& t = viewpoint.translation();
+  const Eigen::Quaterniond& q = viewpoint.rotation();
+  return format("VIEWPOINT {} {} {} {} {} {} {}\n", t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z());
+}
+
+std::string header_text(const PointCloud& cloud, const Pose& viewpoint, std::string_view data) {
   const bool has_intensity = !cloud.intensities.empty();
   const auto line = [&](std::string_view key, std::string_view xyz, std::string_view intensity,
                         std::string_view t) {
@@ -252,7 +286,8 @@ std::string header_text(const PointCloud& cloud, std::string_view data) {
   return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n" +
          line("FIELDS", "x y z", " intensity", " t") + line("SIZE", "4 4 4", " 4", " 4") +
          line("TYPE", "F F F", " F", " I") + line("COUNT", "1 1 1", " 1", " 1") +
-         format("WIDTH {0}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {0}\nDATA {1}\n", cloud.size(), data);
+         format("WIDTH {}\nHEIGHT 1\n", cloud.size()) + viewpoint_text(viewpoint) +
+         format("POINTS {}\nDATA {}\n", cloud.size(), data);
 }
 
 std::string rows_text(const PointCloud& cloud) {
@@ -279,19 +314,19 @@ std::string columns_of(const PointCloud& cloud) {
 
 }  // namespace
 
-std::string write_pcd(const PointCloud& cloud, PcdData data) {
+std::string write_pcd(const PointCloud& cloud, PcdData data, const Pose& viewpoint) {
   cloud.check();
   switch (data) {
     case PcdData::ascii:
-      return header_text(cloud, "ascii") + rows_text(cloud);
+      return header_text(cloud, viewpoint, "ascii") + rows_text(cloud);
     case PcdData::binary:
-      return header_text(cloud, "binary") + packed_rows(cloud);
+      return header_text(cloud, viewpoint, "binary") + packed_rows(cloud);
     case PcdData::binary_compressed:
       break;
   }
   const std::string columns = columns_of(cloud);
   const std::string stream = compress_lzf(columns);
-  std::string bytes = header_text(cloud, "binary_compressed");
+  std::string bytes = header_text(cloud, viewpoint, "binary_compressed");
   append_little_endian(bytes, static_cast<std::uint32_t>(stream.size()));
   append_little_endian(bytes, static_cast<std::uint32_t>(columns.size()));
   return bytes + stream;

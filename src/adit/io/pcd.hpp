@@ -17,13 +17,15 @@ namespace adit {
 ///  - t, time, time_offset, timestamp: floats are seconds, integers nanoseconds, both relative to the scan's
 ///  stamp.
 ///    Times that lie further than 2.1 s from 0 (absolute clocks) are made relative to the earliest point.
-/// All other fields are skipped. Errors name the header line or the byte offset.
+/// All other fields are skipped. VIEWPOINT (tx ty tz qw qx qy qz) becomes CloudFile::viewpoint. Errors name
+/// the header line or the byte offset.
 Result<CloudFile> read_pcd(std::string_view bytes);
 
 enum class PcdData { ascii, binary, binary_compressed };
 
 /// The bytes of a PCD 0.7 file with fields x y z F4, and where the cloud has them intensity F4 and t I4
-/// (nanoseconds). A compressed file holds LZF streams of literal runs: readable everywhere, not smaller.
-[[nodiscard]] std::string write_pcd(const PointCloud& cloud, PcdData data = PcdData::binary);
+/// (nanoseconds). `viewpoint` is the pose of the sensor: p_world = viewpoint * p.
+[[nodiscard]] std::string write_pcd(const PointCloud& cloud, PcdData data = PcdData::binary,
+                                    const Pose& viewpoint = {});
 
 }  // namespace adit

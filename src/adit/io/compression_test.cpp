@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/compression.hpp"
+
+#include <gtest/gtest.h>
+
+#include "adit/io/crc32.hpp"
+#include "support/files.hpp"
+
+namespace adit {
+namespace {
+
+TEST(Compression, RoundTripAndDamage) {
+  const std::string text = "abcabcabc" + std::string(5000, 'x');
+  const std::string packed = compress_zstd(text);
+  EXPECT_LT(packed.size(), text.size());
+  EXPECT_EQ(decompress(packed, "zstd", text.size()), text);
+  EXPECT_FALSE(decompress(packed, "zstd", text.size() - 1));
+  EXPECT_FALSE(decompress(packed, "zstd", text.size() + 1));
+  EXPECT_FALSE(decompress(packed.substr(0, packed.size() / 2), "zstd", text.size()));
+  EXPECT_FALSE(decompress(packed, "lz4", text.size()));
+  EXPECT_FALSE(decompress("", "lz4", 0U));
+  EXPECT_FALSE(decompress(text, "", 3));
+  EXPECT_ERROR(decompress(text, "bz2", 3), "lz4 and zstd are known");
+  EXPECT_ERROR(decompress(packed, "zstd", std::size_t{1} << 50U), "1 GiB is the most");
+}
+
+TEST(Compression, Lz4Frames) {
+  // By hand: 6 literals, a match of 7 bytes 6 back, 5 literals; frame head and end mark around the one block.
+  const std::string frame = std::string("\x04\x22\x4d\x18\x60\x40\x82\x0f\0\0\0", 11) +
+                            "\x63"
+                            "hello " +
+                            std::string("\x06\0", 2) +
+                            "\x50"
+                            "ello\n" +
+                            std::string(4, '\0');
+  EXPECT_EQ(decompress(frame, "lz4", 18), "hello hello hello\n");
+  EXPECT_FALSE(decompress(frame, "lz4", 17));
+  EXPECT_FALSE(decompress(frame, "lz4", 19));
+  for (std::size_t size = 0; size < frame.size(); ++size)
+    EXPECT_FALSE(decompress(frame.substr(0, size), "lz4", 18));
+}
+
+TEST(Lzf, RoundTripAndDamage) {
+  std::string text = "abcabcabc" + std::string(5000, 'x');
+  for (int i = 0; i < 500; ++i) text += static_cast<char>(i * i % 251);
+  const std::string packed = compress_lzf(text);
+  EXPECT_LT(packed.size(), text.size());
+  EXPECT_EQ(decompress_lzf(packed, text.size()), text);
+  EXPECT_ERROR(decompress_lzf(packed, text.size() - 1), "damaged LZF data");
+  EXPECT_ERROR(decompress_lzf(packed, text.size() + 1), "expand to 5509 bytes");
+  EXPECT_FALSE(decompress_lzf(packed.substr(0, packed.size() - 1), text.size()));
+  EXPECT_ERROR(decompress_lzf("z", std::size_t{1} << 40U), "the size is damaged");
+  EXPECT_EQ(decompress_lzf(compress_lzf(""), 0), "");
+}
+
+TEST(Crc32, IsTheOneOfMcapAndContinues) {
+  EXPECT_EQ(crc32("123456789"), 0xCBF43926U);  // the check value of the CRC catalogue
+  EXPECT_EQ(crc32("6789", crc32("12345")), 0xCBF43926U);
+  EXPECT_EQ(crc32("", 17U), 17U);
+}
+
+}  // namespace
+}  // namespace adit

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/ros_messages.hpp"
+
+#include <gtest/gtest.h>
+
+#include "adit/io/cdr.hpp"
+
+namespace adit {
+namespace {
+
+Scan small_scan() {
+  Scan scan{{1'700'000'000'123'456'789}, {}};
+  for (int i = 0; i < 5; ++i) {
+    scan.cloud.points.emplace_back(0.1F * static_cast<float>(i), -1.0F, 1.5F);
+    scan.cloud.intensities.push_back(static_cast<float>(10 * i));
+    scan.cloud.time_offsets_ns.push_back(-1000 * i);
+  }
+  return scan;
+}
+
+TEST(RosMessages, EveryTruncationIsAnError) {
+  const std::string cloud = ros::encode_cloud(small_scan(), "lidar");
+  // The last byte is is_dense, which is not needed.
+  for (std::size_t size = 0; size + 1 < cloud.size(); ++size)
+    EXPECT_FALSE(ros::decode_cloud(cloud.substr(0, size)));
+  const std::string transforms = ros::encode_transforms({{"a", "b", {{5}, Pose::planar(1, 2, 3)}}});
+  for (std::size_t size = 0; size < transforms.size(); ++size) {
+    EXPECT_FALSE(ros::decode_transforms(transforms.substr(0, size)));
+  }
+  const std::string odometry = ros::encode_odometry({"a", "b", {{5}, Pose::planar(1, 2, 3)}});
+  EXPECT_FALSE(ros::decode_odometry(odometry.substr(0, 60)));
+  EXPECT_FALSE(ros::decode_odometry(""));
+}
+
+TEST(RosMessages, PaddedRowsOfAnOrganisedCloud) {
+  CdrWriter writer;
+  writer.number(std::int32_t{1}).number(std::uint32_t{500}).text("f");
+  writer.number(std::uint32_t{2}).number(std::uint32_t{1}).number(std::uint32_t{3});
+  for (const auto& [name, offset] : {std::pair{"x", 0U}, std::pair{"y", 4U}, std::pair{"z", 8U}}) {
+    writer.text(name).number(std::uint32_t{offset}).number(std::uint8_t{7}).number(std::uint32_t{1});
+  }
+  std::string data;
+  for (const float row : {1.0F, 2.0F}) {
+    for (int axis = 0; axis < 3; ++axis) append_little_endian(data, row);
+    data += "pad!";
+  }
+  writer.number(std::uint8_t{0})
+      .number(std::uint32_t{12})
+      .number(std::uint32_t{16})
+      .blob(data)
+      .number(std::uint8_t{1});
+  const Result<ros::CloudMessage> cloud = ros::decode_cloud(writer.take());
+  ASSERT_TRUE(cloud) << cloud.error().message;
+  EXPECT_EQ(cloud->scan.stamp.ns, 1'000'000'500);
+  ASSERT_EQ(cloud->scan.cloud.size(), 2U);
+  EXPECT_EQ(cloud->scan.cloud.points[1], Eigen::Vector3f(2, 2, 2));
+}
+
+}  // namespace
+}  // namespace adit
