@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <sstream>
 #include <variant>
@@ -11,10 +12,10 @@
 #include "adit/io/g2o.hpp"
 #include "adit/io/kitti.hpp"
 #include "adit/io/mesh_files.hpp"
-#include "adit/io/recording_files.hpp"
 #include "adit/io/text.hpp"
 #include "adit/io/tum.hpp"
 #include "command_line.hpp"
+#include "inputs.hpp"
 #include "recording_output.hpp"
 
 namespace adit::app {
@@ -66,7 +67,7 @@ Result<> write_trajectory(const fs::path& out, const Trajectory& trajectory) {
 
 Result<> convert_trajectory(const fs::path& in, const fs::path& out) {
   if (extension_of(in) == ".kitti")
-    return fail(in.string() + ": KITTI poses hold no stamps; they are written only");
+    return fail(in.string() + ": KITTI poses have no stamps, so they can be written but not read");
   const Result<Trajectory> trajectory = extension_of(in) == ".csv" ? read_csv(in) : read_tum(in);
   if (!trajectory) return tl::unexpected(trajectory.error());
   return write_trajectory(out, *trajectory);
@@ -80,7 +81,8 @@ Result<> convert_mesh(const fs::path& in, const fs::path& out) {
 /// cloud.
 Result<> convert_cloud(const fs::path& in, const fs::path& out) {
   if (is_ply_mesh(in) && extension_of(out) == ".ply") return convert_mesh(in, out);
-  return read_cloud(in).and_then([&](const PointCloud& cloud) { return write_cloud(out, cloud); });
+  return read_cloud_file(in).and_then(
+      [&](const CloudFile& file) { return write_cloud(out, file.cloud, file.viewpoint.value_or(Pose())); });
 }
 
 Result<> convert_graph(const fs::path& in, const fs::path& out) {
@@ -91,27 +93,44 @@ Result<> convert_graph(const fs::path& in, const fs::path& out) {
   });
 }
 
-/// Ground truth where there is one, as nobody else can compute it; the wheels' odometry otherwise.
+/// The ground truth, which nothing else can compute; without one the wheel odometry.
 Result<> convert_poses(const Recording& recording, const std::string& in, const fs::path& out) {
   const Trajectory& poses = recording.truth.empty() ? recording.wheel : recording.truth;
   if (!poses.empty()) return write_trajectory(out, poses);
-  return fail(in + ": has neither ground truth nor wheel odometry; 'adit odometry' computes poses");
+  return fail(in + ": neither ground truth nor wheel odometry in it; 'adit odometry' computes poses");
 }
 
-Result<> convert_recording(const std::string& in, const fs::path& out) {
-  return open_recording(in).and_then([&](const Recording& recording) -> Result<> {
-    if (kind_of(out.string()) == Kind::trajectory) return convert_poses(recording, in, out);
+struct Options {
+  std::string in;
+  std::string out;
+  std::string clouds = "pcd";
+  RecordingConfig recording;
+};
+
+const std::map<std::string, CloudFormat> kCloudFormats = {
+    {"pcd", CloudFormat::pcd}, {"ply", CloudFormat::ply}, {"bin", CloudFormat::kitti}};
+
+Result<> convert_recording(const Options& options) {
+  const fs::path out = options.out;
+  return open_input(options.in, options.recording).and_then([&](const Recording& recording) -> Result<> {
+    if (kind_of(options.out) == Kind::trajectory) return convert_poses(recording, options.in, out);
     Progress progress("scans", recording.num_scans());
-    return write_recording_to(out, recording, progress);
+    return write_recording_to(out, recording, progress, kCloudFormats.at(options.clouds));
   });
 }
 
-Result<> convert(const std::string& in, const std::string& out) {
+Result<> convert(const Options& options, const Common& common) {
+  const std::string& in = options.in;
+  const std::string& out = options.out;
   const Kind from = kind_of(in);
   const Kind to = kind_of(out);
   catch_interrupts();
-  if (from == Kind::recording && (to == Kind::recording || to == Kind::trajectory))
-    return convert_recording(in, out);
+  if (from == Kind::recording && (to == Kind::recording || to == Kind::trajectory)) {
+    Options configured = options;
+    Fields fields;
+    append(fields, "recording", fields_of(configured.recording));
+    return configure(fields, common).and_then([&] { return convert_recording(configured); });
+  }
   if (from == Kind::mesh && extension_of(out) == ".ply") return convert_mesh(in, out);
   if (from == Kind::cloud && to == Kind::cloud) return convert_cloud(in, out);
   if (from == Kind::trajectory && to == Kind::trajectory) return convert_trajectory(in, out);
@@ -122,16 +141,17 @@ Result<> convert(const std::string& in, const std::string& out) {
 }  // namespace
 
 void add_convert(Program& program) {
-  struct Paths {
-    std::string in;
-    std::string out;
-  };
-  const auto paths = std::make_shared<Paths>();
+  const auto options = std::make_shared<Options>();
   CLI::App* command =
       program.add_command("convert", "Convert between recording, cloud, mesh, trajectory and graph formats",
-                          [paths](const Common&) { return convert(paths->in, paths->out); });
-  command->add_option("IN", paths->in, "What to read")->required();
-  command->add_option("OUT", paths->out, "What to write; its extension says the format")->required();
+                          [options](const Common& common) { return convert(*options, common); });
+  command->add_option("IN", options->in, "What to read")->required();
+  command->add_option("OUT", options->out, "What to write; its extension says the format")->required();
+  command
+      ->add_option("--clouds", options->clouds, "Format of the clouds in a folder: pcd, ply or bin (KITTI)")
+      ->check(CLI::IsMember({"pcd", "ply", "bin"}))
+      ->capture_default_str();
+  add_recording_options(*command, options->recording);
   command->footer(
       "recording (.mcap, folder of clouds, FOLDER@even) -> .mcap, folder, or its poses (.tum .csv .kitti)\n"
       "cloud (.pcd .ply .bin) -> cloud; mesh (.obj .stl .dae .glb .ply) -> .ply, and of a .ply the vertices "

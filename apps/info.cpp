@@ -17,6 +17,7 @@
 #include "adit/io/text.hpp"
 #include "adit/io/tum.hpp"
 #include "command_line.hpp"
+#include "inputs.hpp"
 
 namespace adit::app {
 namespace {
@@ -46,6 +47,7 @@ Result<Json> cloud_info(const fs::path& path) {
                 {"skipped_nan", file.num_skipped_nan},
                 {"intensities", !file.cloud.intensities.empty()},
                 {"times", file.cloud.has_times()},
+                {"viewpoint", file.viewpoint ? mount_text(*file.viewpoint) : ""},
                 {"bounding_box_m", box_json(box)}};
   });
 }
@@ -101,6 +103,9 @@ Json recording_json(const Recording& recording) {
   Json info{{"kind", "recording"},
             {"name", recording.name},
             {"lidar", recording.lidar},
+            {"mount", mount_text(recording.T_base_lidar)},
+            {"mount_from", recording.mount_source},
+            {"assumed", recording.assumptions},
             {"scans", recording.num_scans()},
             {"first_stamp_s", stamp_text(recording.scan_stamps.front())},
             {"last_stamp_s", stamp_text(recording.scan_stamps.back())}};
@@ -134,9 +139,9 @@ Result<Json> topics_info(const fs::path& path) {
               {"topics", topics}};
 }
 
-Result<Json> mcap_info(const fs::path& path) {
+Result<Json> mcap_info(const fs::path& path, const RecordingConfig& config) {
   return topics_info(path).map([&](Json info) {
-    const Result<Recording> recording = open_recording(path.string());
+    const Result<Recording> recording = open_recording(path.string(), config);
     if (recording) {
       info.update(recording_json(*recording));
     } else {
@@ -159,16 +164,16 @@ Result<Json> session_info(const fs::path& path) {
   });
 }
 
-Result<Json> folder_info(const fs::path& path) {
+Result<Json> folder_info(const fs::path& path, const RecordingConfig& config) {
   if (fs::exists(path / "session.toml")) return session_info(path);
-  return open_recording(path.string()).map(recording_json);
+  return open_recording(path.string(), config).map(recording_json);
 }
 
-Result<Json> info_of(const std::string& input) {
+Result<Json> info_of(const std::string& input, const RecordingConfig& config) {
   const fs::path path = input;
-  if (fs::is_directory(path)) return folder_info(path);
+  if (fs::is_directory(path)) return folder_info(path, config);
   const std::string extension = lower_case(path.extension().string());
-  if (extension == ".mcap") return mcap_info(path);
+  if (extension == ".mcap") return mcap_info(path, config);
   if (extension == ".pcd" || extension == ".bin") return cloud_info(path);
   if (extension == ".ply") return ply_info(path);
   if (extension == ".obj" || extension == ".stl" || extension == ".dae" || extension == ".glb")
@@ -177,14 +182,15 @@ Result<Json> info_of(const std::string& input) {
   if (extension == ".g2o") return graph_info(path);
   if (extension == ".yaml" || extension == ".yml") return routes_info(path);
   if (fs::is_regular_file(path)) {
-    return fail(input +
-                ": of no kind that adit knows; these are .mcap, clouds and meshes (.pcd .ply .bin .obj .stl "
-                ".dae .glb), .tum, .g2o, routes (.yaml) and folders of scans or of a session");
+    return fail(
+        input +
+        ": not a kind of file that adit knows; it knows .mcap, clouds and meshes (.pcd .ply .bin .obj .stl "
+        ".dae .glb), .tum, .g2o, routes (.yaml) and folders of scans or of a session");
   }
-  return open_recording(input).map(recording_json);
+  return open_recording(input, config).map(recording_json);
 }
 
-/// One "key: value" a line; nested values as JSON.
+/// One "key: value" per line, nested values as JSON.
 void print_text(const Json& info) {
   for (const auto& [key, value] : info.items()) {
     const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
@@ -200,11 +206,15 @@ void print_text(const Json& info) {
 }  // namespace
 
 void add_info(Program& program) {
-  const auto input = std::make_shared<std::string>();
+  struct Options {
+    std::string input;
+    RecordingConfig recording;
+  };
+  const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_command(
       "info", "What a recording, cloud, mesh, trajectory, graph, routes file or session holds",
-      [input](const Common& common) {
-        return info_of(*input).map([&](const Json& info) {
+      [options](const Common& common) {
+        return info_of(options->input, options->recording).map([&](const Json& info) {
           if (common.json) {
             std::printf("%s\n", info.dump(2).c_str());
           } else {
@@ -212,7 +222,8 @@ void add_info(Program& program) {
           }
         });
       });
-  command->add_option("FILE", *input, "File or folder")->required();
+  command->add_option("FILE", options->input, "File or folder")->required();
+  add_recording_options(*command, options->recording);
 }
 
 }  // namespace adit::app

@@ -3,6 +3,7 @@
 #include "inputs.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <set>
 
 #include "adit/core/format.hpp"
@@ -37,8 +38,29 @@ Result<World> load_world(const std::filesystem::path& world_file, const std::fil
   return world;
 }
 
+void add_recording_options(CLI::App& command, RecordingConfig& config) {
+  command
+      .add_option(
+          "--mount", config.mount,
+          "Pose of the LiDAR on the robot, X,Y,Z[,ROLL,PITCH,YAW] in metres and degrees; overrides what "
+          "recordings say")
+      ->check([](const std::string& text) {
+        const Result<Pose> mount = parse_mount(text);
+        return mount ? std::string() : mount.error().message;
+      });
+  command.add_option("--points", config.points, "Topic of the clouds, for recordings with several");
+}
+
+Result<Recording> open_input(const std::string& input, const RecordingConfig& config) {
+  return open_recording(input, config).map([&](Recording recording) {
+    for (const std::string& assumption : recording.assumptions)
+      std::fprintf(stderr, "adit: %s: assumed %s\n", input.c_str(), assumption.c_str());
+    return recording;
+  });
+}
+
 Result<std::vector<Recording>> open_inputs(const std::vector<std::string>& inputs,
-                                           const ScenarioConfig& simulation) {
+                                           const ScenarioConfig& simulation, const RecordingConfig& config) {
   if (inputs.size() == 1 && is_routes_file(inputs.front())) {
     return load_world({}, inputs.front()).and_then([&](const World& world) {
       return simulate(world, simulation);
@@ -48,7 +70,7 @@ Result<std::vector<Recording>> open_inputs(const std::vector<std::string>& input
   std::set<std::string> names;
   for (const std::string& input : inputs) {
     if (is_routes_file(input)) return fail(input + ": a routes file stands for all robots; give it alone");
-    Result<Recording> recording = open_recording(input);
+    Result<Recording> recording = open_input(input, config);
     if (!recording) return tl::unexpected(recording.error());
     if (!names.insert(recording->name).second) {
       return fail(format("{}: a robot named '{}' was given before; rename the file or folder", input,

@@ -8,17 +8,18 @@
 #include "adit/core/format.hpp"
 #include "adit/evaluation/ate.hpp"
 #include "adit/evaluation/statistics.hpp"
-#include "adit/io/recording_files.hpp"
 #include "adit/io/tum.hpp"
 #include "adit/odometry/odometry.hpp"
 #include "adit/robot/robot_slam.hpp"
 #include "command_line.hpp"
+#include "inputs.hpp"
 #include "progress.hpp"
 
 namespace adit::app {
 namespace {
 
 struct Options {
+  RecordingConfig recording;
   std::string input;
   std::string method = "plane-icp";
   std::string out;
@@ -67,7 +68,7 @@ Result<> odometry(const Options& options, const Common& common) {
   append(fields, "odometry", fields_of(config));
   if (const Result<> configured = configure(fields, common); !configured) return configured;
   config.method = options.method;
-  const Result<Recording> recording = open_recording(options.input);
+  const Result<Recording> recording = open_input(options.input, options.recording);
   if (!recording) return tl::unexpected(recording.error());
   Result<Trajectory> truth = recording->truth;
   if (!options.truth.empty()) truth = read_tum(options.truth);
@@ -109,6 +110,7 @@ void add_odometry(Program& program) {
   command->add_option("--out", options->out, "Trajectory to write (TUM)")->required();
   command->add_option("--truth", options->truth,
                       "True trajectory (TUM), for the error; default: the recording's own");
+  add_recording_options(*command, options->recording);
 }
 
 }  // namespace adit::app

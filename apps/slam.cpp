@@ -21,6 +21,7 @@ namespace adit::app {
 namespace {
 
 struct Options {
+  RecordingConfig recording;
   std::vector<std::string> inputs;
   std::string out;
   std::string lidar = "os2-128";
@@ -121,7 +122,8 @@ Result<> slam(const Options& options, const Common& common) {
   if (!selection) usage_error(selection.error().message);
   if (const Result<> configured = configure(fields_of(config), common); !configured) return configured;
   config = under(*selection, config);
-  const Result<std::vector<Recording>> recordings = open_inputs(options.inputs, config.simulation);
+  const Result<std::vector<Recording>> recordings =
+      open_inputs(options.inputs, config.simulation, options.recording);
   if (!recordings) return tl::unexpected(recordings.error());
   Result<OutputDir> out = OutputDir::create(options.out, "session");
   if (!out) return tl::unexpected(out.error());
@@ -160,6 +162,7 @@ void add_slam(Program& program) {
   command->add_option("--lidar", options->lidar, "Simulated LiDAR (routes.yaml only)")->capture_default_str();
   command->add_option("--keyframes", options->keyframes, "adaptive, all, tunnel_filter or tunnel_filter_keep")
       ->capture_default_str();
+  add_recording_options(*command, options->recording);
 }
 
 }  // namespace adit::app

@@ -65,7 +65,7 @@ TEST_F(BadInput, MissingFiles) {
 
 TEST_F(BadInput, UnknownKinds) {
   put_file(path("notes.doc"), "hello");
-  expect_refused("info " + path("notes.doc"), 1, "notes.doc: of no kind that adit knows");
+  expect_refused("info " + path("notes.doc"), 1, "notes.doc: not a kind of file that adit knows");
   expect_refused("convert " + path("notes.doc") + " " + existing(), 2, "cannot become");
   expect_refused("convert " + path("a.pcd") + " " + existing(), 2, "a.pcd cannot become");
 }

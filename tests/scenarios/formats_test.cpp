@@ -57,6 +57,38 @@ TEST(Convert, AFolderOfScansToARecordingAndBack) {
   EXPECT_EQ(tum_text(a.truth), tum_text(b.truth));
 }
 
+/// A drive through the hall, simulated; its path.
+std::string hall_recording(const test::TemporaryFolder& folder) {
+  test::put_hall(folder.path());
+  test::put_route(folder / "routes.yaml", 3, 8);
+  expect_done("simulate --routes " + (folder / "routes.yaml").string() + " --lidar vlp-16 --out " +
+              (folder / "recordings").string());
+  return (folder / "recordings/alpha.mcap").string();
+}
+
+TEST(Convert, ARecordingComesBackFromAFolderByteForByte) {
+  const test::TemporaryFolder folder;
+  const std::string recording = hall_recording(folder);
+  for (const std::string format : {"pcd", "ply"}) {
+    const std::string scans = (folder / format).string();
+    expect_done("convert " + recording + " " + scans + " --clouds " + format);
+    expect_done("convert " + scans + " " + scans + ".mcap");
+    EXPECT_TRUE(get_file(scans + ".mcap") == get_file(recording)) << format;
+  }
+  test::expect_refused("convert " + recording + " " + (folder / "x").string() + " --clouds xyz", 2, "xyz");
+}
+
+TEST(Convert, TheMountGivenByTheUserIsKept) {
+  const test::TemporaryFolder folder;
+  const std::string recording = hall_recording(folder);
+  const std::string moved = (folder / "moved.mcap").string();
+  expect_done("convert " + recording + " " + moved + " --mount 0.5,-0.25,1.25,0,10,0");
+  const Pose mount = open_recording(moved).value().T_base_lidar;
+  EXPECT_EQ(mount.translation(), Vector3(0.5, -0.25, 1.25));
+  EXPECT_NEAR(mount.angle(), 10.0 * 3.14159265358979 / 180.0, 1e-9);
+  test::expect_refused("convert " + recording + " " + moved + " --mount 1,2", 2, "2 numbers");
+}
+
 TEST(Convert, TrajectoriesKeepEveryBit) {
   const test::TemporaryFolder folder;
   const std::string base = (folder / "poses").string();
@@ -115,6 +147,27 @@ TEST(Info, SaysWhatAFileHolds) {
   expect_done("convert " + recordings + "/alpha.mcap " + (folder / "scans").string());
   expect_kind(folder / "scans", "recording");
   expect_kind(folder / "scans/000000.pcd", "cloud");
+}
+
+std::string info_of(const std::string& arguments) {
+  const test::ProgramRun run = test::run_adit("info " + arguments);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  return run.out;
+}
+
+TEST(Info, SaysWhereTheLidarSitsAndHowThatIsKnown) {
+  const test::TemporaryFolder folder;
+  const std::string recording = hall_recording(folder);
+  const std::string scans = (folder / "scans").string();
+  expect_done("convert " + recording + " " + scans);
+  EXPECT_NE(
+      info_of(recording).find("mount: 0 0 0.9\nmount_from: /tf_static: alpha/base_link -> alpha/lidar\n"),
+      std::string::npos);
+  EXPECT_NE(info_of(scans).find("mount: 0 0 0.9\nmount_from: recording.toml\n"), std::string::npos);
+  std::filesystem::remove(folder / "scans/recording.toml");
+  EXPECT_NE(info_of(scans).find("mount: 0 0 0.9\nmount_from: VIEWPOINT of the clouds\n"), std::string::npos);
+  EXPECT_NE(info_of(scans + " --mount 0,0,1").find("mount: 0 0 1\nmount_from: given by the user\n"),
+            std::string::npos);
 }
 
 TEST(Info, OfSharedFiles) {

@@ -49,9 +49,11 @@ struct WheelDelta {
 /// All that one robot measured, scan by scan. Scans are read (or cast, by the simulator) when they are asked
 /// for. `truth` is for evaluation alone; no other stage may look at it.
 struct Recording {
-  std::string name;   ///< The robot's name.
-  std::string lidar;  ///< The sensor's name, "" when unknown.
-  Pose T_base_lidar;
+  std::string name;          ///< The robot's name.
+  std::string lidar;         ///< The sensor's name, "" when unknown.
+  Pose T_base_lidar;         ///< The mount: where the LiDAR sits on the robot.
+  std::string mount_source;  ///< How the mount is known, for people: "/tf_static: base_link -> os_lidar".
+  std::vector<std::string> assumptions;                ///< By the reader, a sentence each with its remedy.
   std::vector<Stamp> scan_stamps;                      ///< Strictly ascending.
   std::function<Result<Scan>(std::size_t)> read_scan;  ///< Thread-safe; scan i has stamp scan_stamps[i].
   Trajectory wheel;                                    ///< T_wheelodom_base; empty when there are no wheels.
@@ -61,14 +63,14 @@ struct Recording {
 };
 
 /// Wheel motion from stamp to stamp, interpolated. Covariance from the distance and angle driven: sigma of 2
-/// % along, 1 % across, 0.5 deg a metre plus 2 % of the angle; floors of 1 mm and 0.02 deg.
+/// % along, 1 % across, 0.5 deg per metre plus 2 % of the angle; at least 1 mm and 0.02 deg.
 [[nodiscard]] Result<WheelDelta> wheel_delta(const Trajectory& wheel, Stamp from, Stamp to);
 
 enum class StepStatus {
   ok,
-  no_map,  ///< The first scan: there was nothing to register to. The pose is the start or the wheels' word.
+  no_map,  ///< The first scan: no map yet to register to. The pose is the start or the wheels' prediction.
   too_few_points,  ///< Fewer points or correspondences than needed. The pose is the prediction.
-  degenerate,      ///< The geometry leaves a direction open; the pose stands on the prediction along it.
+  degenerate,      ///< The geometry leaves a direction open; along it the pose is the prediction.
   diverged,        ///< The solver left the trust region around the prediction. The pose is the prediction.
 };
 [[nodiscard]] std::string_view to_string(StepStatus status);
@@ -81,7 +83,7 @@ struct OdometryStep {
   StepStatus status = StepStatus::no_map;
   int num_correspondences = 0;
   int iterations = 0;
-  bool is_guess = false;  ///< No prediction could be relied on: several were tried and the best fit counts.
+  bool is_guess = false;  ///< No prediction was reliable: several starts were tried, the best fit was taken.
 };
 
 /// Immutable once made. `cloud` is in the base frame of this keyframe, deskewed and thinned.
@@ -114,14 +116,14 @@ struct LoopClosure {
   Matrix6 information = Matrix6::Identity();  ///< Of T_from_to, right perturbation.
   double place_distance = 1.0;
   int num_inliers = 0;
-  double overlap =
-      0.0;  ///< Share of points of one cloud that have a neighbour in the other, smaller side, 0 to 1.
-  double weak_axis =
-      0.0;  ///< Smallest eigenvalue of the normalised translational information, 0 (open) to 1/3.
+  /// Share of the points of one cloud that have a neighbour in the other; the smaller of both ways, 0 to 1.
+  double overlap = 0.0;
+  /// Smallest eigenvalue of the normalised translational information, 0 (open) to 1/3.
+  double weak_axis = 0.0;
   LoopVerdict verdict = LoopVerdict::rejected;
   std::string reason;  ///< One sentence: why.
 
-  /// Along a smooth tube: it says nothing of where along it.
+  /// Along a smooth tube: the measurement does not fix the position along it.
   [[nodiscard]] bool is_free_to_slide() const { return weak_axis < kWeakAxis; }
 };
 

@@ -47,7 +47,7 @@ Result<ByteSource> open_source(const std::filesystem::path& path) {
   const auto file = std::make_shared<const OpenFile>(descriptor);
   struct stat status {};
   if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode))
-    return fail(path.string() + ": is no regular file");
+    return fail(path.string() + ": is not a regular file");
   const auto size = static_cast<std::uint64_t>(status.st_size);
   return ByteSource{
       size, [file, size](std::uint64_t offset, std::uint64_t count) -> Result<std::string> {

@@ -45,7 +45,7 @@ class Words {
     T value{};
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc{} || end != digits.data() + digits.size())
-      return fail(format("'{}' is no number", word));
+      return fail(format("'{}' is not a number", word));
     if constexpr (std::is_floating_point_v<T>) {
       if (!std::isfinite(value)) return fail(format("'{}' is not finite", word));
     }
@@ -196,7 +196,7 @@ class Reader {
   std::unordered_map<std::uint64_t, std::size_t> node_of_;  // looked up only, never walked through
 };
 
-// Reads line by line; what a line means is decided by its tag alone.
+// Reads line by line; the tag of a line decides what it means.
 class FileReader {
  public:
   Result<> line(std::string_view text) {

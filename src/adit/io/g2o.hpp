@@ -18,7 +18,7 @@ struct G2oFile {
   std::variant<PoseGraph, PoseGraph2> graph;
   std::vector<std::size_t> edge_lines;  ///< Line of each edge in the file, from 1.
   std::vector<std::string>
-      notes;  ///< What was skipped or made up: tags with counts, vertices without a line.
+      notes;  ///< What was skipped or added: tags with counts, vertices without a line of their own.
 };
 
 /// Reads VERTEX_SE3:QUAT and EDGE_SE3:QUAT, or VERTEX_SE2 and EDGE_SE2 (not both kinds in one file). Vertices

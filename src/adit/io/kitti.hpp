@@ -11,13 +11,13 @@
 
 namespace adit {
 
-/// A size that is no multiple of 16 bytes is a truncated file: an error that names the last whole point.
+/// A size that is not a multiple of 16 bytes is a truncated file: an error that names the last whole point.
 Result<CloudFile> read_kitti(std::string_view bytes);
 
 /// Points without intensity get 0.
 [[nodiscard]] std::string write_kitti(const PointCloud& cloud);
 
-/// KITTI's pose file: one line a pose, the upper three rows of T_world_body row by row; it holds no stamps.
+/// KITTI's pose file: one line per pose, the upper three rows of T_world_body row by row, without stamps.
 [[nodiscard]] std::string write_kitti_poses(const Trajectory& trajectory);
 
 }  // namespace adit

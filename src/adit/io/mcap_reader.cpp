@@ -52,7 +52,8 @@ Result<std::string> expand(const Chunk& chunk, std::uint64_t offset) {
 Result<std::string> read_chunk(const ByteSource& source, std::uint64_t offset) {
   const Result<FileRecord> record = read_record(source, offset);
   if (!record) return tl::unexpected(record.error());
-  if (record->opcode != Opcode::chunk) return fail_at(offset, "a chunk is announced, but there is none");
+  if (record->opcode != Opcode::chunk)
+    return fail_at(offset, "the index announces a chunk here, but there is another record");
   return decode_at<Chunk>(offset, record->content, "chunk").and_then([&](const Chunk& chunk) {
     return expand(chunk, offset);
   });
@@ -142,18 +143,17 @@ Result<> scan_data(const ByteSource& source, Contents& contents) {
 Result<> check_start(const ByteSource& source) {
   const Result<std::string> magic = source.read(0, std::min<std::uint64_t>(source.size, kMagic.size()));
   if (!magic) return tl::unexpected(magic.error());
-  if (*magic != kMagic)
-    return fail("byte 0: does not start as an MCAP file does; it is none, or only its first bytes");
+  if (*magic != kMagic) return fail("byte 0: not an MCAP file, or truncated");
   return {};
 }
 
-/// The file ends early: says where, and how much is there.
+/// The file ends early: the error says where and how much is readable.
 tl::unexpected<Error> truncated(const ByteSource& source) {
   Contents contents;
   const Result<> scanned = scan_data(source, contents);
   return fail(
-      format("byte {}: the file is truncated (no footer; the recorder was interrupted?); {} messages are "
-             "readable before that{}; record it again or recover it with 'mcap recover'",
+      format("byte {}: the file ends without a footer, as after an interrupted recording; {} messages are "
+             "readable{}: save them with 'mcap recover'",
              source.size, contents.messages.size(), scanned ? "" : " (" + scanned.error().message + ")"));
 }
 
@@ -167,7 +167,7 @@ Result<Footer> read_footer(const ByteSource& source) {
   RecordCursor cursor(*tail);
   const std::optional<RecordView> record = cursor.next();
   if (!record || record->opcode != Opcode::footer)
-    return fail_at(offset, "no footer in front of the closing magic");
+    return fail_at(offset, "no footer before the closing magic bytes");
   return decode_at<Footer>(offset, record->content, "footer");
 }
 
@@ -193,7 +193,7 @@ Result<> read_metadata(const ByteSource& source, Contents& contents, const Metad
   const Result<FileRecord> record = read_record(source, index.offset);
   if (!record) return tl::unexpected(record.error());
   if (record->opcode != Opcode::metadata)
-    return fail_at(index.offset, "metadata are announced, but there are none");
+    return fail_at(index.offset, "the index announces metadata here, but there is another record");
   return scan_record(contents, index.offset, *record);
 }
 
@@ -257,7 +257,7 @@ Result<Contents> contents_from_summary(const ByteSource& source, const Footer& f
   return scan_record(contents, kMagic.size(), *header).map([&] { return std::move(contents); });
 }
 
-/// A summary may leave out all that it likes; without channels and chunks it is no index.
+/// A summary may leave out any kind of record; without channels and chunks it cannot serve as the index.
 bool is_complete(const Contents& contents) {
   return !contents.chunks.empty() && std::ranges::all_of(contents.messages, [&](const MessageRef& message) {
     return contents.channels.contains(message.channel_id);

@@ -102,7 +102,7 @@ Result<TriangleMesh> soup_of(const Assimp::Importer& importer, const aiScene* sc
 }
 
 Result<TriangleMesh> checked(const TriangleMesh& soup) {
-  if (soup.triangles.empty()) return fail("the mesh has no triangles; a point cloud is no world");
+  if (soup.triangles.empty()) return fail("the mesh has no triangles; a world needs them, a point cloud will not do");
   // Before welding, which sorts: NaN has no place in an order.
   return check_mesh(soup)
       .map([&] { return weld(soup); })
@@ -117,7 +117,7 @@ Result<std::string> known_extension(const std::string& extension) {
   std::string lower = lower_case(extension);
   if (lower.starts_with('.')) lower.erase(0, 1);
   if (std::ranges::find(kKnown, lower) != std::end(kKnown)) return lower;
-  return fail(format("'{}' is no extension of a mesh; .ply, .obj, .stl, .dae and .glb are", extension));
+  return fail(format("'{}' is not an extension of meshes; .ply, .obj, .stl, .dae and .glb are", extension));
 }
 
 }  // namespace

@@ -137,7 +137,7 @@ TEST(MeshFiles, BadInput) {
   EXPECT_FALSE(read_mesh(write_ply(cloud), "ply"));
   EXPECT_FALSE(read_mesh("", "ply"));
   EXPECT_FALSE(read_mesh("garbage", "obj"));
-  EXPECT_ERROR(read_mesh("x", "fbx"), "no extension of a mesh");
+  EXPECT_ERROR(read_mesh("x", "fbx"), "not an extension of meshes");
   EXPECT_ERROR(read_mesh(folder / "absent.ply"), "absent.ply: no such file");
   EXPECT_FALSE(read_mesh("v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", "obj"));
   EXPECT_FALSE(write_mesh(folder / "a.ply", {}));

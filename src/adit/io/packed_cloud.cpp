@@ -110,8 +110,9 @@ Result<std::vector<std::int32_t>> relative_times(const std::vector<std::int64_t>
   const std::int64_t from_stamp = stamp ? stamp->ns : *low;
   const std::int64_t origin = fits(0) ? 0 : from_stamp;
   if (!fits(origin)) {
-    return fail(format("field 't' spans {:.3f} s around the scan's stamp; a sweep of more than 2.1 s is none",
-                       static_cast<double>(Wide{*high} - *low) * 1e-9));
+    return fail(
+        format("the point times of the sweep span {:.3f} s, more than 2.1 s: wrong time field or unit?",
+               static_cast<double>(Wide{*high} - *low) * 1e-9));
   }
   std::vector<std::int32_t> offsets(times.size());
   std::ranges::transform(times, offsets.begin(),

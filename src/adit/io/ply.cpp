@@ -90,13 +90,13 @@ Result<> set_entry(PlyHeader& header, const Words& words) {
   if (words[0] == "element") return add_element(header, words);
   if (words[0] == "property") return add_property(header, words);
   if (words[0] == "comment" || words[0] == "obj_info") return {};
-  return fail("is no line of a PLY header");
+  return fail("is not a line of a PLY header");
 }
 
 Result<PlyHeader> read_header(LineReader& lines) {
   PlyHeader header;
   if (!lines.next() || lines.line() != "ply")
-    return fail("does not start with a line 'ply'; it is no PLY file");
+    return fail("the first line is not 'ply': not a PLY file");
   bool has_end = false;
   while (!has_end && lines.next()) {
     const Words words = split_words(lines.line());
@@ -244,7 +244,7 @@ Result<CloudFile> read_vertices(Body body, const PlyHeader& header) {
 
 /// Cuts a polygon into the fan of triangles around its first corner; a point or a line adds nothing.
 void append_polygon(TriangleMesh& mesh, const std::vector<double>& corners) {
-  // What is no index of a vertex becomes -1, which check_mesh refuses.
+  // What is not an index of a vertex becomes -1, which check_mesh refuses.
   const auto index = [&](std::size_t k) {
     const bool is_int = corners[k] >= 0.0 && corners[k] <= std::numeric_limits<int>::max();
     return is_int ? static_cast<int>(corners[k]) : -1;

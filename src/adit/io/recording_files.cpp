@@ -25,13 +25,13 @@ std::optional<ScanSelection> parse_selection(const std::string& text) {
   return ScanSelection{*first, *step};
 }
 
-Result<Recording> open_part(const std::filesystem::path& folder, const std::string& part) {
+Result<Recording> open_part(const std::filesystem::path& folder, const std::string& part,
+                            const std::optional<Pose>& mount) {
   const std::optional<ScanSelection> selection = parse_selection(part);
-  if (!selection) {
+  if (!selection)
     return fail(
-        format("{}@{}: '{}' is no selection; @even, @odd and @FIRST:STEP are", folder.string(), part, part));
-  }
-  return read_scan_folder(folder, *selection).map([&](Recording recording) {
+        format("{}@{}: a part is @even, @odd or @FIRST:STEP, not '@{}'", folder.string(), part, part));
+  return read_scan_folder(folder, *selection, mount).map([&](Recording recording) {
     recording.name += "_" + part;
     std::ranges::replace(recording.name, ':', '_');
     return recording;
@@ -40,17 +40,18 @@ Result<Recording> open_part(const std::filesystem::path& folder, const std::stri
 
 }  // namespace
 
-Result<Recording> open_recording(const std::string& input) {
+Result<Recording> open_recording(const std::string& input, const RecordingConfig& config) {
+  const Result<std::optional<Pose>> mount = mount_of(config);
+  if (!mount) return tl::unexpected(mount.error());
   std::error_code ignored;
-  if (std::filesystem::is_directory(input, ignored)) return read_scan_folder(input);
-  if (lower_case(std::filesystem::path(input).extension().string()) == ".mcap") return read_recording(input);
+  if (std::filesystem::is_directory(input, ignored)) return read_scan_folder(input, {}, *mount);
+  if (lower_case(std::filesystem::path(input).extension().string()) == ".mcap")
+    return read_recording(input, config);
   const std::size_t at = input.rfind('@');
-  if (at != std::string::npos && std::filesystem::is_directory(input.substr(0, at), ignored)) {
-    return open_part(input.substr(0, at), input.substr(at + 1));
-  }
-  if (std::filesystem::exists(input, ignored)) {
-    return fail(input + ": is no recording; an .mcap file or a folder of clouds is");
-  }
+  if (at != std::string::npos && std::filesystem::is_directory(input.substr(0, at), ignored))
+    return open_part(input.substr(0, at), input.substr(at + 1), *mount);
+  if (std::filesystem::exists(input, ignored))
+    return fail(input + ": is not a recording; an .mcap file or a folder of clouds is");
   return fail(input + ": no such file or folder; a recording is an .mcap file or a folder of clouds");
 }
 

@@ -7,6 +7,7 @@
 
 #include "adit/core/records.hpp"
 #include "adit/core/result.hpp"
+#include "adit/io/mount.hpp"
 
 namespace adit {
 
@@ -14,9 +15,9 @@ namespace adit {
 ///  - FILE.mcap: see mcap.hpp;
 ///  - FOLDER: a folder of clouds, see scan_folder.hpp;
 ///  - FOLDER@even, FOLDER@odd, FOLDER@FIRST:STEP: part of the scans, so that one drive can serve as two
-///  robots. The
-///    recording's name then carries the part: "nclt_even".
-/// Anything else is an error that says what would do.
-Result<Recording> open_recording(const std::string& input);
+///  robots.
+///    The recording's name then ends in the part: "nclt_even".
+/// Anything else is an error that lists these. `config` overrides what the input says of itself.
+Result<Recording> open_recording(const std::string& input, const RecordingConfig& config = {});
 
 }  // namespace adit

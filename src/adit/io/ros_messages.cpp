@@ -74,7 +74,7 @@ Result<Pose> read_pose(CdrReader& reader) {
   if (!reader.ok()) return fail(format("byte {}: the message ends inside a pose", reader.offset()));
   if (!t.allFinite() || !(std::abs(q.norm() - 1.0) < 0.01)) {
     return fail(
-        format("byte {}: position or quaternion of the pose are no numbers of a pose", reader.offset()));
+        format("byte {}: the position is not finite or the quaternion does not have length 1", reader.offset()));
   }
   if (std::abs(q.norm() - 1.0) > 1e-12) q.normalize();
   return Pose(q, t);
@@ -110,7 +110,7 @@ std::vector<CloudField> read_fields(CdrReader& reader) {
     field.name = reader.text();
     field.offset = reader.number<std::uint32_t>();
     field.datatype = reader.number<std::uint8_t>();
-    static_cast<void>(reader.number<std::uint32_t>());  // elements a field; the first one is taken
+    static_cast<void>(reader.number<std::uint32_t>());  // elements per field; the first is taken
     fields.push_back(std::move(field));
   }
   return fields;

@@ -24,7 +24,7 @@ struct RoutesFile {
 };
 
 /// Errors name line and column: unknown or repeated keys, a missing name, two robots of one name, a name that
-/// is no plain file name, a speed that is not positive, fewer than two waypoints, a waypoint without three
+/// cannot name a file, a speed that is not positive, fewer than two waypoints, a waypoint without three
 /// finite numbers.
 Result<RoutesFile> parse_routes(const std::string& yaml);
 /// Reads the file; a relative `world` comes back resolved against the folder of `path`.

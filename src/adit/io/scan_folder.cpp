@@ -10,7 +10,10 @@
 
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
-#include "adit/io/cloud_files.hpp"
+#include "adit/io/folder_mount.hpp"
+#include "adit/io/mount.hpp"
+#include "adit/io/packed_cloud.hpp"
+#include "adit/io/recording_toml.hpp"
 #include "adit/io/text.hpp"
 #include "adit/io/tum.hpp"
 
@@ -41,7 +44,7 @@ Result<std::vector<ScanFile>> list_scans(const fs::path& folder) {
     if (extension != ".pcd" && extension != ".ply" && extension != ".bin") continue;
     const std::optional<std::size_t> number = last_number(entry.path().stem().string());
     if (!number) {
-      return fail(format("{}: the name {} holds no number to order it by", folder.string(),
+      return fail(format("{}: the name {} has no number to order it by", folder.string(),
                          entry.path().filename().string()));
     }
     scans.push_back({*number, entry.path()});
@@ -57,12 +60,12 @@ Result<> check_scans(const fs::path& folder, const std::vector<ScanFile>& scans)
     const std::string pair =
         scans[i - 1].path.filename().string() + " and " + scans[i].path.filename().string();
     if (scans[i].path.extension() != scans[i - 1].path.extension()) {
-      return fail(format("{}: clouds of several kinds ({}); keep one robot's scans in a folder",
+      return fail(format("{}: clouds of several kinds ({}); keep the scans of one robot per folder",
                          folder.string(), pair));
     }
     if (scans[i].number == scans[i - 1].number) {
-      return fail(
-          format("{}: {} have one number; keep one robot's scans in a folder", folder.string(), pair));
+      return fail(format("{}: {} have the same number; keep the scans of one robot per folder",
+                         folder.string(), pair));
     }
   }
   return {};
@@ -78,7 +81,7 @@ Result<std::vector<Stamp>> read_stamps(const fs::path& path) {
     if (words.empty() || words[0].starts_with('#')) continue;
     const std::optional<Stamp> stamp = words.size() == 1 ? parse_stamp(words[0]) : std::nullopt;
     const std::string place = format("{}: line {}", path.string(), lines.number());
-    if (!stamp) return fail(format("{}: '{}' is no stamp in seconds", place, lines.line()));
+    if (!stamp) return fail(format("{}: '{}' is not a stamp in seconds", place, lines.line()));
     if (!stamps.empty() && *stamp <= stamps.back()) {
       return fail(
           format("{}: stamp {} is not after the one before, {}", place, words[0], stamp_text(stamps.back())));
@@ -101,15 +104,24 @@ Result<std::vector<Stamp>> stamps_from_numbers(const fs::path& folder, const std
   return stamps;
 }
 
-Result<std::vector<Stamp>> stamps_of(const fs::path& folder, const std::vector<ScanFile>& scans) {
-  std::error_code ignored;
-  if (!fs::exists(folder / "stamps.txt", ignored)) return stamps_from_numbers(folder, scans);
-  return read_stamps(folder / "stamps.txt")
-      .and_then([&](std::vector<Stamp> stamps) -> Result<std::vector<Stamp>> {
-        if (stamps.size() == scans.size()) return stamps;
-        return fail(format("{}: stamps.txt has {} stamps for {} scans", folder.string(), stamps.size(),
-                           scans.size()));
-      });
+/// stamps.txt, or the times.txt of KITTI, which lies beside the folder of its scans.
+std::optional<fs::path> stamp_file(const fs::path& folder) {
+  std::vector<fs::path> files = {folder / "stamps.txt", folder / "times.txt"};
+  const fs::path full = fs::weakly_canonical(folder);
+  if (full.filename().string().starts_with("velodyne")) files.push_back(full.parent_path() / "times.txt");
+  for (const fs::path& file : files) {
+    std::error_code ignored;
+    if (fs::exists(file, ignored)) return file;
+  }
+  return std::nullopt;
+}
+
+Result<std::vector<Stamp>> read_stamps_for(const fs::path& file, std::size_t num_scans) {
+  return read_stamps(file).and_then([&](std::vector<Stamp> stamps) -> Result<std::vector<Stamp>> {
+    if (stamps.size() == num_scans) return stamps;
+    return fail(
+        format("{}: {} stamps for {} scans; it needs one per scan", file.string(), stamps.size(), num_scans));
+  });
 }
 
 Result<Trajectory> read_optional(const fs::path& path) {
@@ -145,71 +157,137 @@ Result<> check_recording(const fs::path& folder, const Recording& recording) {
                      stamp_text(recording.wheel.back().stamp), stamp_text(first), stamp_text(last)));
 }
 
-/// Everything but the clouds.
-Result<Recording> read_frame(const fs::path& folder, const std::vector<ScanFile>& scans,
-                             ScanSelection selection) {
-  const Result<std::vector<Stamp>> stamps = stamps_of(folder, scans);
+/// Stamps, wheels and ground truth.
+Result<Recording> read_tracks(const fs::path& folder, const std::vector<ScanFile>& scans,
+                              ScanSelection selection) {
+  Recording recording;
+  const std::optional<fs::path> file = stamp_file(folder);
+  if (!file) {
+    recording.assumptions.push_back(
+        "stamps: the number in each name counts as seconds, as neither stamps.txt nor times.txt is there");
+  }
+  const auto stamps = file ? read_stamps_for(*file, scans.size()) : stamps_from_numbers(folder, scans);
   if (!stamps) return tl::unexpected(stamps.error());
   Result<Trajectory> wheel = read_optional(folder / "odometry.tum");
   if (!wheel) return tl::unexpected(wheel.error());
   Result<Trajectory> truth = read_optional(folder / "groundtruth.tum");
   if (!truth) return tl::unexpected(truth.error());
-  Recording recording;
-  recording.name = name_of(folder);
   recording.scan_stamps = select(*stamps, selection);
   recording.wheel = std::move(*wheel);
   recording.truth = std::move(*truth);
   return check_recording(folder, recording).map([&] { return std::move(recording); });
 }
 
-Result<> write_scans(const fs::path& folder, const Recording& recording,
-                     const std::function<void(std::size_t)>& progress) {
-  for (std::size_t i = 0; i < recording.num_scans(); ++i) {
-    const Result<Scan> scan = recording.read_scan(i);
-    if (!scan) return fail(format("scan {}", i), scan.error());
-    const PointCloud cloud = transformed(recording.T_base_lidar, scan->cloud);
-    if (Result<> written = write_cloud(folder / format("{:06}.pcd", i), cloud); !written) return written;
-    if (progress) progress(i + 1);
+// Point times beside a KITTI .bin.
+
+fs::path offsets_beside(const fs::path& cloud) { return fs::path(cloud).replace_extension(".offsets"); }
+
+std::string offsets_text(const PointCloud& cloud) {
+  std::string bytes;
+  for (const std::int32_t offset : cloud.time_offsets_ns) append_little_endian(bytes, offset);
+  return bytes;
+}
+
+Result<> read_offsets(const fs::path& path, const CloudFile& file, PointCloud& cloud) {
+  const Result<std::string> bytes = read_bytes(path);
+  if (!bytes) return tl::unexpected(bytes.error());
+  if (file.num_skipped_nan > 0 || bytes->size() != sizeof(std::int32_t) * cloud.size()) {
+    return fail(format("{}: {} bytes for {} points ({} more not finite); 4 bytes per point are needed",
+                       path.string(), bytes->size(), cloud.size(), file.num_skipped_nan));
+  }
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    cloud.time_offsets_ns.push_back(static_cast<std::int32_t>(
+        load_scalar(ScalarType::int32, bytes->data() + 4 * i, std::endian::little)));
   }
   return {};
 }
 
-Result<> write_frame(const fs::path& folder, const Recording& recording) {
+Result<PointCloud> read_points(const fs::path& path) {
+  Result<CloudFile> file = read_cloud_file(path);
+  if (!file) return tl::unexpected(file.error());
+  PointCloud cloud = std::move(file->cloud);
+  std::error_code ignored;
+  const fs::path offsets = offsets_beside(path);
+  if (cloud.has_times() || !fs::exists(offsets, ignored)) return cloud;
+  return read_offsets(offsets, *file, cloud).map([&] { return std::move(cloud); });
+}
+
+/// Reads scan i in the LiDAR's frame. Clouds that are in it already keep every bit.
+std::function<Result<Scan>(std::size_t)> scan_reader(std::vector<fs::path> files, std::vector<Stamp> stamps,
+                                                     const Pose& T_lidar_cloud) {
+  const bool is_moved = T_lidar_cloud.log().norm() > 0.0;
+  return [=, files = std::move(files), stamps = std::move(stamps)](std::size_t i) {
+    ADIT_CHECK(i < files.size(), "no scan of that index");
+    return read_points(files[i]).map([&](PointCloud cloud) {
+      return Scan{stamps[i], is_moved ? transformed(T_lidar_cloud, std::move(cloud)) : std::move(cloud)};
+    });
+  };
+}
+
+// Writing.
+
+Result<> write_scan(const fs::path& folder, const Recording& recording, CloudFormat format_of_clouds,
+                    std::size_t i) {
+  const Result<Scan> scan = recording.read_scan(i);
+  if (!scan) return fail(format("scan {}", i), scan.error());
+  const fs::path path = folder / format("{:06}{}", i, extension_of(format_of_clouds));
+  const Result<> written = write_cloud(path, scan->cloud, recording.T_base_lidar);
+  if (!written || format_of_clouds != CloudFormat::kitti || !scan->cloud.has_times()) return written;
+  return write_bytes(offsets_beside(path), offsets_text(scan->cloud));
+}
+
+/// All but the clouds.
+Result<> write_tracks(const fs::path& folder, const Recording& recording) {
   std::string stamps;
   for (const Stamp stamp : recording.scan_stamps) stamps += stamp_text(stamp) + '\n';
   Result<> written = write_bytes(folder / "stamps.txt", stamps);
   if (written && !recording.wheel.empty()) written = write_tum(folder / "odometry.tum", recording.wheel);
   if (written && !recording.truth.empty()) written = write_tum(folder / "groundtruth.tum", recording.truth);
-  return written;
+  if (!written) return written;
+  return write_recording_toml(folder / "recording.toml",
+                              {recording.name, recording.lidar, mount_text(recording.T_base_lidar),
+                               CloudFrame::lidar, format("{}", fmt::join(recording.assumptions, "\n"))});
 }
 
 }  // namespace
 
-Result<Recording> read_scan_folder(const fs::path& folder, ScanSelection selection) {
+Result<Recording> read_scan_folder(const fs::path& folder, ScanSelection selection,
+                                   const std::optional<Pose>& T_base_lidar) {
   if (selection.step == 0) return fail(folder.string() + ": every 0-th scan; the step is 1 or more");
   const Result<std::vector<ScanFile>> scans = list_scans(folder);
   if (!scans) return tl::unexpected(scans.error());
   if (Result<> checked = check_scans(folder, *scans); !checked) return tl::unexpected(checked.error());
-  return read_frame(folder, *scans, selection).map([&](Recording recording) {
-    recording.read_scan = [files = select(*scans, selection), stamps = recording.scan_stamps](std::size_t i) {
-      ADIT_CHECK(i < files.size(), "no scan of that index");
-      return read_cloud(files[i].path).map([&](PointCloud cloud) {
-        return Scan{stamps[i], std::move(cloud)};
-      });
-    };
-    return recording;
-  });
+  Result<Recording> recording = read_tracks(folder, *scans, selection);
+  if (!recording) return recording;
+  const Result<RecordingToml> file = read_recording_toml(folder / "recording.toml");
+  if (!file) return tl::unexpected(file.error());
+  std::vector<fs::path> clouds;
+  for (const ScanFile& scan : select(*scans, selection)) clouds.push_back(scan.path);
+  const Wheels wheels = recording->wheel.empty() ? Wheels::absent : Wheels::present;
+  const Result<FolderMount> mount = mount_of_folder(clouds, *file, T_base_lidar, wheels);
+  if (!mount) return fail(folder.string(), mount.error());
+  recording->name = file->robot.empty() ? name_of(folder) : file->robot;
+  recording->lidar = file->lidar;
+  std::ranges::copy(lines_of(file->assumed), std::back_inserter(recording->assumptions));
+  if (!mount->assumption.empty()) recording->assumptions.push_back(mount->assumption);
+  if (T_base_lidar) set_mount(*recording, mount->T_base_lidar);
+  recording->T_base_lidar = mount->T_base_lidar;
+  recording->mount_source = mount->source;
+  recording->read_scan = scan_reader(std::move(clouds), recording->scan_stamps, mount->T_lidar_cloud);
+  return recording;
 }
 
-Result<> write_scan_folder(const fs::path& folder, const Recording& recording,
+Result<> write_scan_folder(const fs::path& folder, const Recording& recording, CloudFormat clouds,
                            const std::function<void(std::size_t)>& progress) {
   if (recording.num_scans() == 0)
     return fail(folder.string() + ": the recording has no scans; nothing is written");
   Result<OutputDir> output = OutputDir::create(folder, "scans");
   if (!output) return tl::unexpected(output.error());
-  return write_scans(output->path(), recording, progress)
-      .and_then([&] { return write_frame(output->path(), recording); })
-      .and_then([&] { return output->commit(); });
+  for (std::size_t i = 0; i < recording.num_scans(); ++i) {
+    if (Result<> written = write_scan(output->path(), recording, clouds, i); !written) return written;
+    if (progress) progress(i + 1);
+  }
+  return write_tracks(output->path(), recording).and_then([&] { return output->commit(); });
 }
 
 }  // namespace adit

@@ -3,19 +3,32 @@
 /// A folder of clouds as the recording of one robot.
 ///
 /// Scans are all .pcd, .ply or .bin files of the folder (of one kind), ordered by the last number in their
-/// names. Stamps come from, in this order:
-///  - `stamps.txt`: one decimal stamp in seconds a line, one line a scan;
-///  - else the number in the name, as seconds (0017.pcd is stamped 17 s).
-/// `odometry.tum` (T_wheelodom_base) and `groundtruth.tum` (T_world_base) are read when they are there; their
-/// stamps are of the same clock. The cloud frame is the base frame (T_base_lidar is the identity).
+/// names. Beside them, each where it is known:
+///  - `stamps.txt`, or KITTI's `times.txt` here or beside a folder `velodyne`: one decimal stamp in seconds
+///  per
+///    line, one line per scan. Without either, the number in the name counts as seconds (0017.pcd: 17 s);
+///  - `recording.toml`: `robot` and `lidar`, their names, and `mount`, the pose of the LiDAR on the robot
+///  (see
+///    mount.hpp) when the clouds are in the LiDAR's frame;
+///  - `odometry.tum` (T_wheelodom_base) and `groundtruth.tum` (T_world_base), on the clock of the stamps;
+///  - `NNNNNN.offsets` beside a .bin, which has no room for them: the points' times, int32 nanoseconds from
+///  the
+///    scan's stamp, little-endian.
+///
+/// The mount comes from, in this order: the caller; recording.toml; the VIEWPOINT that all .pcd files share;
+/// the clouds themselves, when they show clearly where the sensor stood (geometry/sensor_origin.hpp: then the
+/// clouds' frame is the base frame); else the clouds' origin is assumed to be the sensor, the recording's
+/// `assumptions` say so, and with wheels, whose frame could then be anywhere, it is an error.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "adit/core/records.hpp"
 #include "adit/core/result.hpp"
+#include "adit/io/cloud_files.hpp"
 
 namespace adit {
 
@@ -25,15 +38,17 @@ struct ScanSelection {
   std::size_t step = 1;
 };
 
-/// Errors: no clouds, clouds of several kinds, two scans of one number, a single scan, stamps not ascending
-/// or not as many as scans, an odometry that does not cover the scans. Scans themselves are read when asked
-/// for.
-Result<Recording> read_scan_folder(const std::filesystem::path& folder, ScanSelection selection = {});
+/// `T_base_lidar` overrides what the folder says of the mount. Scans are read when asked for, from any
+/// thread. Errors: no clouds, clouds of several kinds, two scans of one number, a single scan, stamps not
+/// ascending or not as many as scans, an odometry that does not cover the scans, wheels without a mount.
+Result<Recording> read_scan_folder(const std::filesystem::path& folder, ScanSelection selection = {},
+                                   const std::optional<Pose>& T_base_lidar = {});
 
-/// Writes NNNNNN.pcd (binary), stamps.txt, and odometry.tum and groundtruth.tum where the recording has them.
-/// Clouds are written in the base frame. The folder appears whole or not at all; `progress` gets the number
-/// of scans written.
+/// Writes NNNNNN.pcd (.ply, .bin) in the LiDAR's frame, stamps.txt, recording.toml, and odometry.tum and
+/// groundtruth.tum where the recording has them: all that `read_scan_folder` takes, so that nothing is lost.
+/// The folder appears whole or not at all; `progress` gets the number of scans written.
 Result<> write_scan_folder(const std::filesystem::path& folder, const Recording& recording,
+                           CloudFormat clouds = CloudFormat::pcd,
                            const std::function<void(std::size_t)>& progress = {});
 
 }  // namespace adit

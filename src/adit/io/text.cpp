@@ -28,6 +28,13 @@ bool LineReader::next() {
   return true;
 }
 
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines;
+  for (LineReader reader(text); reader.next();)
+    if (!reader.line().empty()) lines.emplace_back(reader.line());
+  return lines;
+}
+
 std::vector<std::string_view> split_words(std::string_view line) {
   constexpr std::string_view kBlanks = " \t\r\v\f";
   std::vector<std::string_view> words;

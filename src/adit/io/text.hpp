@@ -29,6 +29,9 @@ class LineReader {
   std::size_t number_ = 0;
 };
 
+/// The lines that are not empty.
+[[nodiscard]] std::vector<std::string> lines_of(std::string_view text);
+
 /// The parts between blanks.
 [[nodiscard]] std::vector<std::string_view> split_words(std::string_view line);
 

@@ -64,11 +64,11 @@ Result<StampedPose> parse_pose(const std::vector<std::string_view>& words) {
     return fail(format("{} words; a pose is 'stamp x y z qx qy qz qw'", words.size()));
   }
   const std::optional<Stamp> stamp = parse_stamp(words[0]);
-  if (!stamp) return fail(format("stamp '{}' is no decimal number of seconds", words[0]));
+  if (!stamp) return fail(format("stamp '{}' is not a decimal number of seconds", words[0]));
   std::array<double, 7> values{};
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::optional<double> value = parse_double(words[i + 1]);
-    if (!value || !std::isfinite(*value)) return fail(format("'{}' is no finite number", words[i + 1]));
+    if (!value || !std::isfinite(*value)) return fail(format("'{}' is not a finite number", words[i + 1]));
     values[i] = *value;
   }
   Eigen::Quaterniond rotation(values[6], values[3], values[4], values[5]);
@@ -125,7 +125,7 @@ Result<Trajectory> parse_tum(std::string_view text) {
     }
     trajectory.push_back(*pose);
   }
-  if (trajectory.empty()) return fail("no pose in it; a line is 'stamp x y z qx qy qz qw'");
+  if (trajectory.empty()) return fail("no poses in it; a line is 'stamp x y z qx qy qz qw'");
   return trajectory;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// TUM trajectories: one line a pose, `stamp_s x y z qx qy qz qw`, metres. Stamps are kept to the nanosecond:
+/// TUM trajectories: one line per pose, `stamp_s x y z qx qy qz qw`, metres. Stamps are kept to the nanosecond:
 /// they are integers in memory and decimal text in the file, never a double.
 #pragma once
 
@@ -15,7 +15,7 @@
 namespace adit {
 
 /// "12.5" -> 12500000000 ns; digits beyond the ninth decimal are rounded. Exponents ("1.5e9") are read too.
-/// Nothing when the text is no decimal number or out of range.
+/// Nothing when the text is not a decimal number or out of range.
 [[nodiscard]] std::optional<Stamp> parse_stamp(std::string_view text);
 /// Seconds with nine decimals, exact: "1.500000000".
 [[nodiscard]] std::string stamp_text(Stamp stamp);

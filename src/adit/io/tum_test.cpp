@@ -72,7 +72,7 @@ TEST(Tum, CommentsAndBlankLinesAreSkipped) {
 TEST(Tum, ErrorsNameTheLine) {
   EXPECT_ERROR(parse_tum("1 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"), "line 2: stamp 1 is not after 1.000000000");
   EXPECT_ERROR(parse_tum("1 0 0 0 0 0 0\n"), "line 1: 7 words");
-  EXPECT_ERROR(parse_tum("1 0 0 nan 0 0 0 1\n"), "'nan' is no finite number");
+  EXPECT_ERROR(parse_tum("1 0 0 nan 0 0 0 1\n"), "'nan' is not a finite number");
   EXPECT_ERROR(parse_tum("x 0 0 0 0 0 0 1\n"), "stamp 'x'");
   EXPECT_ERROR(parse_tum("1 0 0 0 0 0 0 0\n"), "norm 0.0000");
   EXPECT_ERROR(parse_tum("# nothing\n"), "no pose");

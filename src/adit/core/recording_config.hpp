@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "adit/core/config.hpp"
+
+namespace adit {
+
+/// How recordings are opened (io/recording_files.hpp).
+struct RecordingConfig {
+  std::string mount;   ///< Overrides what a recording says of its mount, see io/mount.hpp. "": as it says.
+  std::string points;  ///< Topic of the clouds, where a file has several. "": the only one.
+};
+
+[[nodiscard]] inline Fields fields_of(RecordingConfig& c) {
+  return {
+      {"mount", &c.mount, "m, deg", 0, 0,
+       "pose of the LiDAR on the robot, 'x y z' or 'x y z roll pitch yaw'; empty: as each recording says"},
+      {"points", &c.points, "", 0, 0,
+       "topic of the clouds, where a recording has several; empty: the only one"}};
+}
+
+}  // namespace adit

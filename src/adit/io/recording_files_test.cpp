@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/recording_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include "adit/io/cloud_files.hpp"
+#include "support/data.hpp"
+#include "support/files.hpp"
+
+namespace adit {
+namespace {
+
+using test::put_file;
+using test::TemporaryFolder;
+
+PointCloud one_point(float x) {
+  PointCloud cloud;
+  cloud.points = {{x, 2, 3}};
+  return cloud;
+}
+
+TEST(OpenRecording, SelectsPartsOfAFolder) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 6; ++i) ASSERT_TRUE(write_cloud(folder / (std::to_string(i) + ".bin"), one_point(1)));
+  const std::string path = folder.path().string();
+  EXPECT_EQ(open_recording(path)->num_scans(), 6U);
+  EXPECT_EQ(open_recording(path + "@even")->scan_stamps[1].ns, 2'000'000'000);
+  EXPECT_EQ(open_recording(path + "@odd")->scan_stamps[1].ns, 3'000'000'000);
+  EXPECT_EQ(open_recording(path + "@1:3")->num_scans(), 2U);
+  EXPECT_TRUE(open_recording(path + "@1:3")->name.ends_with("_1_3"));
+  EXPECT_ERROR(open_recording(path + "@1:0"), "@even, @odd or @FIRST:STEP");
+  EXPECT_ERROR(open_recording(path + "@9:1"), "0 scan(s) taken");
+  EXPECT_ERROR(open_recording(path + "/absent"), "no such file or folder");
+  put_file(folder / "a.txt", "");
+  EXPECT_ERROR(open_recording(path + "/a.txt"), "is not a recording");
+}
+
+TEST(OpenRecording, RealFolderAsTwoRobots) {
+  ADIT_NEED_DATA("scans/nclt/0000.pcd");
+  const std::string path = test::shared_data("scans/nclt").string();
+  const Result<Recording> even = open_recording(path + "@even");
+  const Result<Recording> odd = open_recording(path + "@odd");
+  ASSERT_TRUE(even) << even.error().message;
+  ASSERT_TRUE(odd) << odd.error().message;
+  EXPECT_EQ(even->num_scans() + odd->num_scans(), 300U);
+  EXPECT_EQ(even->truth.size(), 300U);
+  EXPECT_EQ(even->name, "nclt_even");
+  const Result<Scan> scan = odd->read_scan(149);
+  ASSERT_TRUE(scan) << scan.error().message;
+  EXPECT_EQ(scan->stamp.ns, 299'000'000'000);
+  EXPECT_GT(scan->cloud.size(), 5000U);
+}
+
+}  // namespace
+}  // namespace adit

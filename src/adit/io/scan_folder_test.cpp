@@ -1,0 +1,215 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/scan_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include "adit/io/cloud_files.hpp"
+#include "adit/io/recording_files.hpp"
+#include "adit/io/tum.hpp"
+#include "support/files.hpp"
+
+namespace adit {
+namespace {
+
+using test::put_file;
+using test::TemporaryFolder;
+
+PointCloud one_point(float x) {
+  PointCloud cloud;
+  cloud.points = {{x, 2, 3}};
+  return cloud;
+}
+
+TEST(ScanFolder, OrderedByNumberAndStampedByIt) {
+  const TemporaryFolder folder;
+  for (const int i : {10, 9, 2})
+    ASSERT_TRUE(write_cloud(folder / ("s1_" + std::to_string(i) + ".pcd"), one_point(static_cast<float>(i))));
+  const Result<Recording> recording = read_scan_folder(folder.path());
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->scan_stamps, std::vector<Stamp>({{2'000'000'000}, {9'000'000'000}, {10'000'000'000}}));
+  const Result<Scan> scan = recording->read_scan(2);
+  ASSERT_TRUE(scan) << scan.error().message;
+  EXPECT_EQ(scan->cloud.points[0].x(), 10.0F);
+  EXPECT_EQ(scan->stamp, recording->scan_stamps[2]);
+}
+
+TEST(ScanFolder, BadFolders) {
+  const TemporaryFolder folder;
+  EXPECT_ERROR(read_scan_folder(folder.path()), "no clouds in it");
+  EXPECT_ERROR(read_scan_folder(folder / "absent"), "cannot be listed");
+  ASSERT_TRUE(write_cloud(folder / "1.pcd", one_point(1)));
+  EXPECT_ERROR(read_scan_folder(folder.path()), "1 scan(s) taken");
+  ASSERT_TRUE(write_cloud(folder / "01.pcd", one_point(1)));
+  EXPECT_ERROR(read_scan_folder(folder.path()), "have the same number");
+  std::filesystem::rename(folder / "01.pcd", folder / "2.pcd");
+  ASSERT_TRUE(read_scan_folder(folder.path()));
+  put_file(folder / "stamps.txt", "1.5\n1.5\n");
+  EXPECT_ERROR(read_scan_folder(folder.path()), "stamps.txt: line 2: stamp 1.5 is not after");
+  put_file(folder / "stamps.txt", "1.5\n");
+  EXPECT_ERROR(read_scan_folder(folder.path()), "stamps.txt: 1 stamps for 2 scans");
+  put_file(folder / "stamps.txt", "1.5\n2.5\n");
+  put_file(folder / "odometry.tum", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n");
+  EXPECT_ERROR(read_scan_folder(folder.path()), "does not cover the scans");
+  ASSERT_TRUE(write_cloud(folder / "3.ply", one_point(1)));
+  EXPECT_ERROR(read_scan_folder(folder.path()), "several kinds");
+  ASSERT_TRUE(write_cloud(folder / "map.ply", one_point(1)));
+  EXPECT_ERROR(read_scan_folder(folder.path()), "has no number");
+}
+
+/// Two scans of a robot whose LiDAR is turned on its mount, with all that a recording can hold.
+Recording full_recording() {
+  Recording recording;
+  recording.name = "robot_7";
+  recording.lidar = "vlp-16";
+  recording.T_base_lidar = Pose::planar(0.3, -0.1, 0.5, 0.9);
+  recording.scan_stamps = {{1'000'000'001}, {1'100'000'002}};
+  recording.read_scan = [stamps = recording.scan_stamps](std::size_t i) -> Result<Scan> {
+    Scan scan{stamps[i], one_point(0.1F * static_cast<float>(i + 1))};
+    scan.cloud.points.emplace_back(-1.0F, 0.3F, 1e-7F);
+    scan.cloud.intensities = {7.0F, 0.125F};
+    scan.cloud.time_offsets_ns = {-7, -99'999'999};
+    return scan;
+  };
+  recording.wheel = {{{0}, Pose()}, {{2'000'000'000}, Pose::planar(1, 0, 0.1)}};
+  recording.truth = {{{0}, Pose()}, {{2'000'000'000}, Pose::planar(1.1, 0, 0.1)}};
+  return recording;
+}
+
+class ScanFolderFormats : public ::testing::TestWithParam<CloudFormat> {};
+
+TEST_P(ScanFolderFormats, LoseNothing) {
+  const TemporaryFolder folder;
+  const Recording recording = full_recording();
+  const Result<> written = write_scan_folder(folder / "out", recording, GetParam());
+  ASSERT_TRUE(written) << written.error().message;
+  const Result<Recording> back = open_recording((folder / "out").string());
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->name, "robot_7");
+  EXPECT_EQ(back->lidar, "vlp-16");
+  EXPECT_LT((back->T_base_lidar.inverse() * recording.T_base_lidar).log().norm(), 1e-12);
+  EXPECT_EQ(back->mount_source, "recording.toml");
+  EXPECT_TRUE(back->assumptions.empty());
+  EXPECT_EQ(back->scan_stamps, recording.scan_stamps);
+  EXPECT_EQ(tum_text(back->wheel), tum_text(recording.wheel));
+  EXPECT_EQ(tum_text(back->truth), tum_text(recording.truth));
+  for (std::size_t i = 0; i < recording.num_scans(); ++i) {
+    const Result<Scan> scan = back->read_scan(i);
+    ASSERT_TRUE(scan) << scan.error().message;
+    const PointCloud expected = recording.read_scan(i)->cloud;
+    EXPECT_EQ(scan->stamp, recording.scan_stamps[i]);
+    EXPECT_EQ(scan->cloud.points, expected.points);  // in the LiDAR's frame, bit for bit
+    EXPECT_EQ(scan->cloud.intensities, expected.intensities);
+    EXPECT_EQ(scan->cloud.time_offsets_ns, expected.time_offsets_ns);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ScanFolderFormats,
+                         ::testing::Values(CloudFormat::pcd, CloudFormat::ply, CloudFormat::kitti),
+                         [](const auto& item) { return std::string(extension_of(item.param).substr(1)); });
+
+/// The folder of `full_recording` without what only recording.toml says.
+std::filesystem::path written_without_toml(const TemporaryFolder& folder, Recording recording) {
+  const std::filesystem::path out = folder / "out";
+  EXPECT_TRUE(write_scan_folder(out, recording));
+  std::filesystem::remove(out / "recording.toml");
+  return out;
+}
+
+TEST(ScanFolder, AViewpointThatAllCloudsShareIsTheMount) {
+  const TemporaryFolder folder;
+  const std::filesystem::path out = written_without_toml(folder, full_recording());
+  const Result<Recording> back = read_scan_folder(out);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_LT((back->T_base_lidar.inverse() * full_recording().T_base_lidar).log().norm(), 1e-12);
+  EXPECT_EQ(back->mount_source, "VIEWPOINT of the clouds");
+  EXPECT_EQ(back->name, "out");
+  // One that changes from cloud to cloud is a path.
+  ASSERT_TRUE(write_cloud(out / "000001.pcd", one_point(1), Pose::translation_of(5, 0, 1)));
+  EXPECT_ERROR(read_scan_folder(out), "nothing says where the LiDAR sits on the robot; give --mount X,Y,Z");
+}
+
+TEST(ScanFolder, WheelsNeedAMount) {
+  const TemporaryFolder folder;
+  Recording recording = full_recording();
+  recording.T_base_lidar = Pose();
+  const std::filesystem::path out = written_without_toml(folder, recording);
+  EXPECT_ERROR(read_scan_folder(out), "out: there is wheel odometry, but nothing says where the LiDAR sits");
+  const Result<Recording> given = open_recording(out.string(), {"0.1 0 0.8", ""});
+  ASSERT_TRUE(given) << given.error().message;
+  EXPECT_EQ(given->T_base_lidar.translation(), Vector3(0.1, 0, 0.8));
+  EXPECT_EQ(given->mount_source, "given by the user");
+  EXPECT_TRUE(given->assumptions.empty());
+}
+
+TEST(ScanFolder, AnUnknownMountIsAssumedAloudAndTheAssumptionTravels) {
+  const TemporaryFolder folder;
+  Recording recording = full_recording();
+  recording.T_base_lidar = Pose();
+  recording.wheel.clear();
+  const std::filesystem::path out = written_without_toml(folder, recording);
+  const Result<Recording> assumed = read_scan_folder(out);
+  ASSERT_TRUE(assumed) << assumed.error().message;
+  ASSERT_EQ(assumed->assumptions.size(), 1U);
+  EXPECT_TRUE(assumed->assumptions[0].starts_with("mount: nothing says where the LiDAR stood"))
+      << assumed->assumptions[0];
+  EXPECT_NE(assumed->assumptions[0].find("--mount"), std::string::npos);
+  ASSERT_TRUE(write_scan_folder(folder / "copy", *assumed));
+  EXPECT_EQ(read_scan_folder(folder / "copy")->assumptions, assumed->assumptions);
+  EXPECT_TRUE(open_recording((folder / "copy").string(), {"0 0 1", ""})->assumptions.empty());
+}
+
+TEST(ScanFolder, CloudsShiftedToTheirMeansAreNoticed) {
+  const TemporaryFolder folder;
+  for (const char* name : {"0.ply", "1.ply"}) {
+    PointCloud cloud;
+    cloud.points = {{1, 2, 3}, {-1, -2, -3}};
+    ASSERT_TRUE(write_cloud(folder / name, cloud));
+  }
+  const Result<Recording> recording = read_scan_folder(folder.path());
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_NE(recording->assumptions.back().find("each cloud was shifted to its own mean"), std::string::npos);
+}
+
+TEST(ScanFolder, CloudsInTheBaseFrameAreBroughtBackToTheLidar) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_scan_folder(folder / "out", full_recording()));
+  put_file(folder / "out" / "recording.toml", "mount = '0 0 2'\nframe = 'base'\n");
+  const Result<Recording> back = read_scan_folder(folder / "out");
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->T_base_lidar.translation(), Vector3(0, 0, 2));
+  EXPECT_EQ(back->read_scan(0)->cloud.points[0], Eigen::Vector3f(0.1F, 2, 1));
+  put_file(folder / "out" / "recording.toml", "mount = '0 0'\n");
+  EXPECT_ERROR(read_scan_folder(folder / "out"), "out: mount '0 0': 2 numbers");
+  put_file(folder / "out" / "recording.toml", "mont = '0 0'\n");
+  EXPECT_ERROR(read_scan_folder(folder / "out"), "did you mean 'mount'?");
+}
+
+TEST(ScanFolder, StampsOfKittiLieBesideTheFolderOfItsScans) {
+  const TemporaryFolder folder;
+  const std::filesystem::path velodyne = folder / "velodyne";
+  std::filesystem::create_directory(velodyne);
+  for (const char* name : {"000000.bin", "000001.bin", "000002.bin"})
+    ASSERT_TRUE(write_cloud(velodyne / name, one_point(1)));
+  put_file(folder / "times.txt", "0.000000e+00\n1.037359e-01\n2.075160e-01\n");
+  const Result<Recording> recording = read_scan_folder(velodyne);
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->scan_stamps, std::vector<Stamp>({{0}, {103'735'900}, {207'516'000}}));
+  put_file(folder / "times.txt", "0.000000e+00\n1.037359e-01\n");
+  EXPECT_ERROR(read_scan_folder(velodyne), "times.txt: 2 stamps for 3 scans");
+  put_file(velodyne / "times.txt", "0\n1\n2\n");
+  EXPECT_EQ(read_scan_folder(velodyne)->scan_stamps[2].ns, 2'000'000'000);
+}
+
+TEST(ScanFolder, PointTimesThatDoNotFitTheirCloudAreAnError) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_scan_folder(folder / "out", full_recording(), CloudFormat::kitti));
+  put_file(folder / "out" / "000001.offsets", "1234");
+  const Result<Recording> back = read_scan_folder(folder / "out");
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_TRUE(back->read_scan(0));
+  EXPECT_ERROR(back->read_scan(1), "000001.offsets: 4 bytes for 2 points");
+}
+
+}  // namespace
+}  // namespace adit
