@@ -19,6 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kBlock = 1U << 20U;  ///< Bytes written between two questions whether to go on.
+
 /// Beside the target, so that the rename stays on one file system.
 fs::path partial_beside(const fs::path& path) { return path.string() + format(".partial-{}", getpid()); }
 
@@ -100,7 +102,11 @@ Result<std::string> read_bytes(const fs::path& path) {
 Result<> write_bytes(const fs::path& path, std::string_view bytes) {
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
-  file->stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  for (std::size_t begin = 0; begin < bytes.size(); begin += kBlock) {
+    throw_if_cancelled();
+    const std::string_view block = bytes.substr(begin, kBlock);
+    file->stream().write(block.data(), static_cast<std::streamsize>(block.size()));
+  }
   return file->commit();
 }
 

@@ -16,6 +16,7 @@
 #include <unordered_map>
 
 #include "adit/core/format.hpp"
+#include "adit/core/progress.hpp"
 
 namespace adit {
 namespace {
@@ -311,6 +312,7 @@ Result<G2oFile> read_g2o(std::istream& stream, const std::string& name) {
   if (stream.bad()) return fail(name + ": reading failed");
   FileReader reader;
   for (std::size_t begin = 0; begin < text.size();) {
+    throw_if_cancelled();
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     const Result<> read = reader.line(std::string_view(text).substr(begin, end - begin));
     if (!read) return fail(format("{}: line {}", name, reader.line_number()), read.error());

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "adit/core/format.hpp"
+#include "adit/core/progress.hpp"
 #include "adit/io/compression.hpp"
 #include "adit/io/crc32.hpp"
 
@@ -132,6 +133,7 @@ Result<> scan_record(Contents& contents, std::uint64_t offset, const FileRecord&
 /// Goes through the data section from its start. What was read before an error stays in `contents`.
 Result<> scan_data(const ByteSource& source, Contents& contents) {
   for (std::uint64_t offset = kMagic.size();;) {
+    throw_if_cancelled();
     const Result<FileRecord> record = read_record(source, offset);
     if (!record) return tl::unexpected(record.error());
     if (record->opcode == Opcode::data_end || record->opcode == Opcode::footer) return {};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adit/core/format.hpp"
+#include "adit/core/progress.hpp"
 #include "adit/io/packed_cloud.hpp"
 #include "adit/io/text.hpp"
 
@@ -197,6 +198,7 @@ Result<std::string> pack_element(Body& body, const PlyElement& element, const On
   std::string rows;
   std::vector<double> values;
   for (std::size_t i = 0; i < element.count; ++i) {
+    throw_if_cancelled();
     for (const PlyProperty& property : element.properties) {
       const bool read =
           property.count_type ? body.read_list(values, property) : body.append_next(rows, property.type);

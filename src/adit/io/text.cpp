@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "adit/core/progress.hpp"
+
 namespace adit {
 namespace {
 
@@ -19,6 +21,7 @@ std::optional<T> parse_whole(std::string_view word) {
 }  // namespace
 
 bool LineReader::next() {
+  throw_if_cancelled();
   if (offset_ >= text_.size()) return false;
   const std::size_t end = std::min(text_.find('\n', offset_), text_.size());
   line_ = text_.substr(offset_, end - offset_);

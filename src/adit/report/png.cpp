@@ -12,6 +12,7 @@
 
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
+#include "adit/core/progress.hpp"
 
 namespace adit {
 namespace {
@@ -80,6 +81,7 @@ std::uint32_t premultiplied(Rgba p) {
 
 Result<std::string> png_from_svg(const std::string& svg, int width_px) {
   ADIT_CHECK(width_px >= 1 && width_px <= kLargestSide, "a picture is between 1 and 16384 pixels wide");
+  throw_if_cancelled();  // a picture takes a tenth of a second
   const Result<Document> document = parsed(svg);
   if (!document) return tl::unexpected(document.error());
   const Result<int> height_px = height_for(*document, width_px);

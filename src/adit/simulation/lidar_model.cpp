@@ -17,7 +17,7 @@ namespace adit {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr std::size_t kColumnsAPart = 64;
+constexpr std::size_t kColumnsPerPart = 64;  ///< Of a parallel loop.
 
 LidarConfig ouster(const std::string& name, int beams, double half_field_deg) {
   LidarConfig c;
@@ -72,8 +72,8 @@ float arc_cosine(float x) {
   return std::sqrt(1.0F - x) * sum;
 }
 
-// What chance adds to each ray of a block. It hangs on the seed of the column and the number of the beam
-// alone.
+// Range noise and drop-out of each ray of a block. They depend on the seed of the column and the number of
+// the beam alone.
 struct Chance {
   // Near normal with mean 0 and standard deviation 1: the sum of four 16-bit uniform numbers (Irwin and
   // Hall). No logarithm, so every machine draws the same; and bounded by 3.5, as no sensor errs by metres.
@@ -282,9 +282,9 @@ Scan cast_scan(const Raycaster& raycaster, const LidarConfig& config, const Swee
   const Sensor sensor(config);
   const Turn turn{config, sweep};
   const auto columns = static_cast<std::size_t>(config.columns);
-  std::vector<PointCloud> parts((columns + kColumnsAPart - 1) / kColumnsAPart);
-  parallel_for(columns, kColumnsAPart, [&](std::size_t begin, std::size_t end) {
-    PointCloud& part = parts[begin / kColumnsAPart];
+  std::vector<PointCloud> parts((columns + kColumnsPerPart - 1) / kColumnsPerPart);
+  parallel_for(columns, kColumnsPerPart, [&](std::size_t begin, std::size_t end) {
+    PointCloud& part = parts[begin / kColumnsPerPart];
     part.points.reserve((end - begin) * sensor.num_beams());
     part.time_offsets_ns.reserve((end - begin) * sensor.num_beams());
     for (std::size_t column = begin; column < end; ++column) {

@@ -36,10 +36,10 @@ inline Fields fields_of(LidarConfig& c) {
   return {
       {"name", &c.name, "", 0, 0, "the sensor's name, noted in recordings"},
       {"beams", &c.beams, "", 1, 1024, "beams, spread evenly over the vertical field of view"},
-      {"columns", &c.columns, "", 4, 8192, "firings of all beams in one turn"},
+      {"columns", &c.columns, "", 4, 8192, "firings of all beams per turn"},
       {"elevation_min_deg", &c.elevation_min_deg, "deg", -90, 90, "elevation of the lowest beam"},
       {"elevation_max_deg", &c.elevation_max_deg, "deg", -90, 90, "elevation of the highest beam"},
-      {"rate_hz", &c.rate_hz, "Hz", 0.1, 100, "turns a second"},
+      {"rate_hz", &c.rate_hz, "Hz", 0.1, 100, "turns per second"},
       {"range_min", &c.range_min, "m", 0, 100, "nearer returns are dropped"},
       {"range_max", &c.range_max, "m", 0.1, 1000, "farther returns are dropped"},
       {"noise_near", &c.noise_near, "m", 0, 1, "standard deviation of a range at range_min"},
@@ -73,7 +73,7 @@ struct Sweep {
   Pose T_world_lidar_end;
   Stamp end;  ///< Stamp of the scan.
   std::uint64_t noise_seed =
-      0;  ///< One number a scan. A ray's noise hangs on it, its beam and its column alone.
+      0;  ///< One per scan. A ray's noise depends on it, its beam and its column alone.
 };
 
 /// What the sensor sees during one sweep, as it would report it: each point in the lidar frame of its own

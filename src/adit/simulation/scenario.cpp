@@ -13,7 +13,7 @@
 namespace adit {
 namespace {
 
-// All that casting the scans of one robot needs; shared by the copies of its recording.
+// All that casting the scans of one robot needs. Copies of its recording share it.
 struct Robot {
   std::string name;
   Raycaster raycaster;
@@ -37,7 +37,7 @@ struct Robot {
   }
 };
 
-// From the end of the second turn on, so that the first sweep begins well after the wheels' first word.
+// From the end of the second turn on, so that the first sweep begins well after the first wheel odometry.
 std::vector<Stamp> scan_stamps(const Trajectory& truth, const LidarConfig& lidar) {
   std::vector<Stamp> stamps;
   for (std::int64_t i = 2;; ++i) {

@@ -29,13 +29,13 @@ inline Fields fields_of(ScenarioConfig& c) {
   return fields;
 }
 
-/// Drives every route of the world at the same time, each robot on a clock that starts at 0. One recording a
-/// route, in their order. Nothing is cast or stored now: `read_scan` casts a scan whenever it is asked for,
-/// always the same one, on any thread. `wheel` covers every sweep from its start; `truth` has a pose at every
-/// scan stamp and between them.
+/// Drives every route of the world at the same time, each robot on a clock that starts at 0. One recording
+/// per route, in their order. No scan is cast or stored now: `read_scan` casts a scan whenever it is asked
+/// for, always the same one, on any thread. `wheel` covers every sweep from its start; `truth` has a pose at
+/// every scan stamp and between them.
 ///
 /// Fails on a mesh that `check_mesh` refuses, a field out of range, no route at all, two routes of one name,
-/// and routes that `drive` refuses.
+/// and routes that `drive` refuses. One phase of progress; may throw `Cancelled` (core/progress.hpp).
 [[nodiscard]] Result<std::vector<Recording>> simulate(const World& world, const ScenarioConfig& config);
 
 }  // namespace adit

@@ -14,21 +14,22 @@
 namespace adit {
 namespace {
 
-constexpr int kSamplesPerCorner = 64;
-constexpr double kHighestStep = 0.3;  // what a wheel can stand on, from the floor midway between the wheels
+constexpr int kSamplesPerCorner = 64;  ///< Path points per DriveConfig::corner_length: centimetres apart.
+constexpr double kHighestStep =
+    0.3;  ///< Metres that a wheel may stand above or below the floor midway between all.
 
-// One sample of the way, dense enough (centimetres) to be interpolated linearly.
-struct WayPoint {
+// A sample of the path. They are dense enough (centimetres) to be interpolated linearly.
+struct PathPoint {
   Vector3 position = Vector3::Zero();
-  double yaw = 0.0;  // continuous: not wrapped
-  double curvature = 0.0;
+  double yaw = 0.0;          // radians, continuous: not wrapped
+  double curvature = 0.0;    // 1/m
   double slope_ahead = 0.0;  // rise of the floor along x and along y of the base frame
   double slope_left = 0.0;
-  double distance = 0.0;  // along the way
+  double distance = 0.0;  // metres along the path
   double speed = 0.0;
   double time = 0.0;
 };
-using Way = std::vector<WayPoint>;
+using Path = std::vector<PathPoint>;
 
 double polyline_length(const std::vector<Vector3>& line) {
   double length = 0.0;
@@ -76,8 +77,8 @@ Bend b_spline(const std::array<Vector3, 4>& c, double u) {
   return bend;
 }
 
-WayPoint way_point(const Bend& bend) {
-  WayPoint point;
+PathPoint path_point(const Bend& bend) {
+  PathPoint point;
   point.position = bend.position;
   point.yaw = std::atan2(bend.first.y(), bend.first.x());
   const double speed = std::max(bend.first.head<2>().norm(), 1e-9);
@@ -86,38 +87,38 @@ WayPoint way_point(const Bend& bend) {
   return point;
 }
 
-Way smoothed(const std::vector<Vector3>& line, double corner_length) {
+Path smoothed(const std::vector<Vector3>& line, double corner_length) {
   std::vector<Vector3> control = resampled(line, corner_length);
   // Mirrored end points: the curve then starts and ends on the line's ends, straight.
   const std::size_t n = control.size();
   control.insert(control.begin(), 2.0 * control[0] - control[1]);
   control.push_back(2.0 * control[n] - control[n - 1]);
-  Way way;
+  Path path;
   for (std::size_t i = 1; i + 2 < control.size(); ++i) {
     const std::array<Vector3, 4> four{control[i - 1], control[i], control[i + 1], control[i + 2]};
     for (int k = 0; k < kSamplesPerCorner; ++k)
-      way.push_back(way_point(b_spline(four, double(k) / kSamplesPerCorner)));
-    if (i + 3 == control.size()) way.push_back(way_point(b_spline(four, 1.0)));
+      path.push_back(path_point(b_spline(four, double(k) / kSamplesPerCorner)));
+    if (i + 3 == control.size()) path.push_back(path_point(b_spline(four, 1.0)));
   }
-  return way;
+  return path;
 }
 
-Result<> unwrap_yaw(Way& way, const std::string& robot) {
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const double turn = wrap_angle(way[i].yaw - way[i - 1].yaw);
+Result<> unwrap_yaw(Path& path, const std::string& robot) {
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const double turn = wrap_angle(path[i].yaw - path[i - 1].yaw);
     if (std::abs(turn) > std::numbers::pi / 4.0) {
-      const Vector3& p = way[i].position;
+      const Vector3& p = path[i].position;
       return fail(
-          format("{}: the route turns back on the spot at ({:.2f}, {:.2f}, {:.2f}); give it a curve to drive",
+          format("{}: the route reverses its direction at ({:.2f}, {:.2f}, {:.2f}); add waypoints on a curve",
                  robot, p.x(), p.y(), p.z()));
     }
-    way[i].yaw = way[i - 1].yaw + turn;
+    path[i].yaw = path[i - 1].yaw + turn;
   }
   return {};
 }
 
 // The heights under the four wheels give the plane that the robot stands on.
-void stand_on_floor(const Raycaster& raycaster, const DriveConfig& config, WayPoint& point) {
+void stand_on_floor(const Raycaster& raycaster, const DriveConfig& config, PathPoint& point) {
   point.position.z() = floor_height(raycaster, point.position).value_or(point.position.z());
   const Eigen::Vector2d ahead =
       0.5 * config.wheelbase * Eigen::Vector2d(std::cos(point.yaw), std::sin(point.yaw));
@@ -153,56 +154,56 @@ std::vector<double> moving_average(const std::vector<double>& values, std::size_
 
 // Tyres and springs: a mean over a wheelbase, twice, so that speeds stay continuous.
 template <class Member>
-void spring(Way& way, std::size_t half_width, Member member) {
+void spring(Path& path, std::size_t half_width, Member member) {
   std::vector<double> values;
-  values.reserve(way.size());
-  for (WayPoint& point : way) values.push_back(member(point));
+  values.reserve(path.size());
+  for (PathPoint& point : path) values.push_back(member(point));
   values = moving_average(moving_average(values, half_width), half_width);
-  for (std::size_t i = 0; i < way.size(); ++i) member(way[i]) = values[i];
+  for (std::size_t i = 0; i < path.size(); ++i) member(path[i]) = values[i];
 }
 
-void follow_floor(const Raycaster& raycaster, const DriveConfig& config, Way& way) {
-  for (WayPoint& point : way) {
+void follow_floor(const Raycaster& raycaster, const DriveConfig& config, Path& path) {
+  for (PathPoint& point : path) {
     throw_if_cancelled();
     stand_on_floor(raycaster, config, point);
   }
   const double sample_length = config.corner_length / kSamplesPerCorner;
   const auto half_width = static_cast<std::size_t>(std::ceil(0.5 * config.wheelbase / sample_length));
-  spring(way, half_width, [](WayPoint& p) -> double& { return p.position.z(); });
-  spring(way, half_width, [](WayPoint& p) -> double& { return p.slope_ahead; });
-  spring(way, half_width, [](WayPoint& p) -> double& { return p.slope_left; });
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    way[i].distance = way[i - 1].distance + (way[i].position - way[i - 1].position).norm();
+  spring(path, half_width, [](PathPoint& p) -> double& { return p.position.z(); });
+  spring(path, half_width, [](PathPoint& p) -> double& { return p.slope_ahead; });
+  spring(path, half_width, [](PathPoint& p) -> double& { return p.slope_left; });
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    path[i].distance = path[i - 1].distance + (path[i].position - path[i - 1].position).norm();
   }
 }
 
 // The fastest drive within the limits (forward and backward pass over v^2 = v0^2 + 2 a s), then all speeds
 // times one factor, which keeps the shape and makes the mean exact.
-void set_speeds(const DriveConfig& config, double mean_speed, Way& way) {
+void set_speeds(const DriveConfig& config, double mean_speed, Path& path) {
   const double two_a = 2.0 * config.acceleration;
-  const auto limit = [&](WayPoint& point, const WayPoint& neighbour) {
+  const auto limit = [&](PathPoint& point, const PathPoint& neighbour) {
     const double gap = std::abs(point.distance - neighbour.distance);
     point.speed = std::min(point.speed, std::sqrt(neighbour.speed * neighbour.speed + two_a * gap));
   };
-  for (WayPoint& point : way) {
+  for (PathPoint& point : path) {
     point.speed = std::min(
         mean_speed, std::sqrt(config.lateral_acceleration / std::max(std::abs(point.curvature), 1e-9)));
   }
-  way.front().speed = way.back().speed = 0.0;
-  for (std::size_t i = 1; i < way.size(); ++i) limit(way[i], way[i - 1]);
-  for (std::size_t i = way.size() - 1; i-- > 0;) limit(way[i], way[i + 1]);
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    way[i].time =
-        way[i - 1].time + 2.0 * (way[i].distance - way[i - 1].distance) / (way[i].speed + way[i - 1].speed);
+  path.front().speed = path.back().speed = 0.0;
+  for (std::size_t i = 1; i < path.size(); ++i) limit(path[i], path[i - 1]);
+  for (std::size_t i = path.size() - 1; i-- > 0;) limit(path[i], path[i + 1]);
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    path[i].time = path[i - 1].time +
+                   2.0 * (path[i].distance - path[i - 1].distance) / (path[i].speed + path[i - 1].speed);
   }
-  const double factor = mean_speed * way.back().time / way.back().distance;
-  for (WayPoint& point : way) {
+  const double factor = mean_speed * path.back().time / path.back().distance;
+  for (PathPoint& point : path) {
     point.speed *= factor;
     point.time /= factor;
   }
 }
 
-Pose T_world_base(const WayPoint& a, const WayPoint& b, double share) {
+Pose T_world_base(const PathPoint& a, const PathPoint& b, double share) {
   const auto mix = [&](double from, double to) { return from + share * (to - from); };
   const double yaw = mix(a.yaw, b.yaw);
   const Vector3 ahead(std::cos(yaw), std::sin(yaw), mix(a.slope_ahead, b.slope_ahead));
@@ -214,24 +215,24 @@ Pose T_world_base(const WayPoint& a, const WayPoint& b, double share) {
   return {R, a.position + share * (b.position - a.position)};
 }
 
-Pose pose_after(const Way& way, double driving_time) {
-  const double time = std::clamp(driving_time, 0.0, way.back().time);
-  const auto after = std::ranges::lower_bound(way.begin() + 1, way.end() - 1, time, {}, &WayPoint::time);
-  const WayPoint& a = *(after - 1);
-  const WayPoint& b = *after;
+Pose pose_after(const Path& path, double driving_time) {
+  const double time = std::clamp(driving_time, 0.0, path.back().time);
+  const auto after = std::ranges::lower_bound(path.begin() + 1, path.end() - 1, time, {}, &PathPoint::time);
+  const PathPoint& a = *(after - 1);
+  const PathPoint& b = *after;
   const double t = time - a.time;
   const double acceleration = (b.speed - a.speed) / (b.time - a.time);
   const double share = (a.speed + 0.5 * acceleration * t) * t / (b.distance - a.distance);
   return T_world_base(a, b, std::clamp(share, 0.0, 1.0));
 }
 
-Trajectory sampled(const Way& way, const DriveConfig& config, Stamp start) {
+Trajectory sampled(const Path& path, const DriveConfig& config, Stamp start) {
   Trajectory trajectory;
-  const double duration = config.stand_time + way.back().time;
+  const double duration = config.stand_time + path.back().time;
   const auto last = static_cast<std::int64_t>(std::ceil(duration * config.sample_rate_hz));
   for (std::int64_t i = 0; i <= last; ++i) {
     const double time = static_cast<double>(i) / config.sample_rate_hz;
-    trajectory.push_back({start + from_seconds(time), pose_after(way, time - config.stand_time)});
+    trajectory.push_back({start + from_seconds(time), pose_after(path, time - config.stand_time)});
   }
   return trajectory;
 }
@@ -242,11 +243,11 @@ Result<Trajectory> drive(const Raycaster& raycaster, const Route& route, const D
                          Stamp start) {
   const Result<std::vector<Vector3>> line = floor_line(raycaster, route);
   if (!line) return tl::unexpected(line.error());
-  Way way = smoothed(*line, config.corner_length);
-  if (const Result<> turns = unwrap_yaw(way, route.name); !turns) return tl::unexpected(turns.error());
-  follow_floor(raycaster, config, way);
-  set_speeds(config, route.speed_mps, way);
-  return sampled(way, config, start);
+  Path path = smoothed(*line, config.corner_length);
+  if (const Result<> turns = unwrap_yaw(path, route.name); !turns) return tl::unexpected(turns.error());
+  follow_floor(raycaster, config, path);
+  set_speeds(config, route.speed_mps, path);
+  return sampled(path, config, start);
 }
 
 }  // namespace adit

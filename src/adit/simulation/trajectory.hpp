@@ -24,15 +24,15 @@ struct DriveConfig {
 };
 
 inline Fields fields_of(DriveConfig& c) {
-  return {
-      {"sample_rate_hz", &c.sample_rate_hz, "Hz", 10, 1000, "ground-truth poses a second"},
-      {"stand_time", &c.stand_time, "s", 0, 60, "the robot stands before it drives off"},
-      {"acceleration", &c.acceleration, "m/s^2", 0.05, 10, "speeding up and braking, nominal"},
-      {"lateral_acceleration", &c.lateral_acceleration, "m/s^2", 0.05, 10, "slows down in curves, nominal"},
-      {"corner_length", &c.corner_length, "m", 0.2, 10,
-       "stretch over which corners of the route are rounded"},
-      {"wheelbase", &c.wheelbase, "m", 0.1, 5, "between front and rear wheels"},
-      {"track", &c.track, "m", 0.1, 5, "between left and right wheels"}};
+  return {{"sample_rate_hz", &c.sample_rate_hz, "Hz", 10, 1000, "ground-truth poses per second"},
+          {"stand_time", &c.stand_time, "s", 0, 60, "the robot stands before it drives off"},
+          {"acceleration", &c.acceleration, "m/s^2", 0.05, 10, "speeding up and braking, nominal"},
+          {"lateral_acceleration", &c.lateral_acceleration, "m/s^2", 0.05, 10,
+           "limit in curves, nominal: the robot slows down"},
+          {"corner_length", &c.corner_length, "m", 0.2, 10,
+           "stretch over which corners of the route are rounded"},
+          {"wheelbase", &c.wheelbase, "m", 0.1, 5, "between front and rear wheels"},
+          {"track", &c.track, "m", 0.1, 5, "between left and right wheels"}};
 }
 
 /// Drives `route` over the floor of the mesh: stands for a while, then follows the smoothed line with the

@@ -155,7 +155,7 @@ void expect_words(const std::string& text, const std::vector<std::string>& words
     EXPECT_NE(text.find(word), std::string::npos) << word << " in: " << text;
 }
 
-TEST(Drive, refuses_routes_that_are_none) {
+TEST(Drive, refuses_routes_without_extent_or_speed) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   expect_words(error_of(flat(), route_of({})), {"robot_0", "0 waypoints"});
   expect_words(error_of(flat(), route_of({{1, 2, 0}})), {"robot_0", "1 waypoints"});
@@ -186,8 +186,9 @@ TEST(Drive, sees_a_wall_that_stands_exactly_on_a_waypoint) {
   expect_words(error_of(mesh, route_of({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}})), {"robot_0", "wall"});
 }
 
-TEST(Drive, refuses_to_turn_back_on_the_spot) {
-  expect_words(error_of(flat(), route_of({{0, 0, 0}, {10, 0, 0}, {0, 0, 0}})), {"robot_0", "turns back"});
+TEST(Drive, refuses_to_reverse) {
+  expect_words(error_of(flat(), route_of({{0, 0, 0}, {10, 0, 0}, {0, 0, 0}})),
+               {"robot_0", "reverses its direction"});
 }
 
 TEST(FloorHeight, finds_the_nearest_surface_within_reach) {

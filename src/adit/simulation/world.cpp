@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "adit/core/check.hpp"
+#include "adit/core/progress.hpp"
 #include "adit/simulation/world_plan.hpp"
 #include "adit/simulation/world_surface.hpp"
 
@@ -46,8 +47,8 @@ World network_of(const WorldConfig& config) {
   return world;
 }
 
-/// Seen in a mirror that stands along the x axis. The triangles turn round, so that they still face free
-/// space.
+/// The mirror image in the x-z plane. The corners of each triangle change their order, so that it still faces
+/// the free space.
 World mirrored(World world) {
   for (Eigen::Vector3f& vertex : world.mesh.vertices) vertex.y() = -vertex.y();
   for (Eigen::Vector3i& corners : world.mesh.triangles) std::swap(corners[1], corners[2]);
@@ -62,12 +63,11 @@ void move(World& world, const Vector3& by) {
     for (Vector3& waypoint : route.waypoints) waypoint += by;
 }
 
-/// What stands beside the network in an arrangement of two.
+/// The second network of an arrangement of two.
 World neighbour_of(const World& network, WorldConfig config) {
   if (config.arrangement == "mirrored") return mirrored(network);
   if (config.arrangement == "twins") return network;
-  // Far from the seeds that people choose.
-  constexpr std::uint64_t kOther = 1'000'003;
+  constexpr std::uint64_t kOther = 1'000'003;  // Added to a seed: far from those that people choose.
   if (config.arrangement == "copies")
     config.furniture_seed = furniture_seed(config) + kOther;
   else
@@ -78,7 +78,8 @@ World neighbour_of(const World& network, WorldConfig config) {
 /// Two robots drive in each of the two networks; those of the second take over the names of the two that
 /// the first one loses.
 World side_by_side(World first, World second) {
-  constexpr float kRockBetween = 40.0F;  // Metres, beyond which no ray through a portal strays.
+  constexpr float kRockBetween =
+      40.0F;  // Metres: a ray that leaves one network by a portal misses the other.
   constexpr std::size_t kRobotsEach = 2;
   const float gap = bounding_box(first.mesh).max().y() - bounding_box(second.mesh).min().y();
   move(second, Vector3(0.0, static_cast<double>(gap + kRockBetween), 0.0));
@@ -102,6 +103,7 @@ std::vector<std::string> world_presets() {
 Result<World> make_world(const WorldConfig& config) {
   WorldConfig checked = config;
   if (const Result<> ok = check_fields(fields_of(checked)); !ok) return fail("world", ok.error());
+  const Phase phase("building the world");
   World network = network_of(config);
   if (config.arrangement == "single") return network;
   World neighbour = neighbour_of(network, config);

@@ -34,7 +34,7 @@ struct WorldConfig {
   double passage_spacing_factor = 1.0;
   double curvature_factor = 1.0;
   double facet_factor = 1.0;
-  /// Which robots have anything in common to merge by. Every arrangement but "single" stands two networks
+  /// Which robots have anything in common to merge by. Every arrangement but "single" puts two networks
   /// side by side and lets two robots drive in each: "different", the networks of two seeds; "mirrored", a
   /// network and its mirror image; "copies", the same tunnels twice, each with furniture and rock of its
   /// own; "twins", the same twice to the last bit, which no measurement can tell apart.

@@ -144,12 +144,12 @@ Polyline part_of(std::span<const Vector3> line, double begin, double end) {
 
 Route route_of(const Drive& drive) {
   const Polyline line = rounded(driven_parts(drive), drive.corner);
-  // Crossings are drawn, and with some seeds they cut the way short by a few metres. Such a robot stops
+  // Crossings are drawn, and with some seeds they cut the path short by a few metres. Such a robot stops
   // before it leaves through a portal, where the floor ends.
   constexpr double kShortest = 0.9;
   constexpr double kBeforePortal = 2.0;
-  const double way = length_of(line);
-  const double length = way >= drive.length ? drive.length : way - kBeforePortal;
+  const double path = length_of(line);
+  const double length = path >= drive.length ? drive.length : path - kBeforePortal;
   ADIT_CHECK(length >= kShortest * drive.length, "the legs of a drive must be about as long as the drive");
   Route route{drive.name, drive.speed_mps, {}};
   const int num_steps = static_cast<int>(std::lround(length));

@@ -45,16 +45,16 @@ Polyline drift_line(const Network& nodes, int from, int to, const WorldConfig& c
   if (from > to) return reversed_line(drift_line(nodes, to, from, config));
   Rng rng(mix64(config.seed, static_cast<std::uint64_t>(100 * from + to)));
   const Vector3 begin = nodes[static_cast<std::size_t>(from)];
-  const Vector3 way = nodes[static_cast<std::size_t>(to)] - begin;
-  const double amplitude = config.curvature_factor * 0.05 * way.norm() * rng.uniform(-1.0, 1.0);
+  const Vector3 path = nodes[static_cast<std::size_t>(to)] - begin;
+  const double amplitude = config.curvature_factor * 0.05 * path.norm() * rng.uniform(-1.0, 1.0);
   const double waves = rng.uniform() < 0.5 ? 1.0 : 2.0;
-  const Vector3 aside = Vector3::UnitZ().cross(way).normalized();
-  const int steps = static_cast<int>(std::ceil(way.norm() / 2.0));
+  const Vector3 aside = Vector3::UnitZ().cross(path).normalized();
+  const int steps = static_cast<int>(std::ceil(path.norm() / 2.0));
   Polyline line;
   for (int k = 0; k <= steps; ++k) {
     const double t = static_cast<double>(k) / steps;
     const double envelope = std::sin(std::numbers::pi * t);
-    line.emplace_back(begin + t * way +
+    line.emplace_back(begin + t * path +
                       amplitude * envelope * std::sin(waves * std::numbers::pi * t) * aside);
   }
   return line;
@@ -111,14 +111,14 @@ void add_headings(WorldPlan& plan, const Network& nodes, const WorldConfig& conf
   }
 }
 
-/// A robot's way through the nodes and how far along it the robot drives.
-struct Way {
+/// A robot's path through the nodes and how far along it the robot drives.
+struct Path {
   std::vector<int> nodes;
   double length;
 };
 
 /// Ways that every pair of robots shares a stretch of, around the middle of the mine.
-std::array<Way, 4> meeting_ways() {
+std::array<Path, 4> meeting_ways() {
   const auto a = [](int column) { return junction(column, 0); };
   const auto b = [](int column) { return junction(column, 1); };
   const auto c = [](int column) { return junction(column, 2); };
@@ -131,7 +131,7 @@ std::array<Way, 4> meeting_ways() {
 }
 
 /// Two robots pass one another in the first row of drifts, two in the last, and nobody leaves its row.
-std::array<Way, 4> parallel_ways() {
+std::array<Path, 4> parallel_ways() {
   const auto a = [](int column) { return junction(column, 0); };
   const auto c = [](int column) { return junction(column, kRows - 1); };
   constexpr double kLength = 260.0;
@@ -144,14 +144,14 @@ std::array<Way, 4> parallel_ways() {
 }
 
 std::vector<Drive> draw_drives(const Network& nodes, const WorldConfig& config) {
-  const std::array<Way, 4> ways = config.routes == "meeting" ? meeting_ways() : parallel_ways();
+  const std::array<Path, 4> paths = config.routes == "meeting" ? meeting_ways() : parallel_ways();
   const std::array speeds{1.87, 1.83, 1.85, 1.81};
   std::vector<Drive> all;
-  for (std::size_t i = 0; i < ways.size(); ++i) {
-    const std::vector<int>& way = ways[i].nodes;
-    Drive drive{"robot_" + std::to_string(i), speeds[i], ways[i].length, 5.0, 5.0, {}};
-    for (std::size_t k = 1; k < way.size(); ++k)
-      drive.legs.push_back(drift_line(nodes, way[k - 1], way[k], config));
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const std::vector<int>& path = paths[i].nodes;
+    Drive drive{"robot_" + std::to_string(i), speeds[i], paths[i].length, 5.0, 5.0, {}};
+    for (std::size_t k = 1; k < path.size(); ++k)
+      drive.legs.push_back(drift_line(nodes, path[k - 1], path[k], config));
     all.push_back(std::move(drive));
   }
   return all;

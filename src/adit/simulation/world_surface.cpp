@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "adit/core/progress.hpp"
 #include "adit/core/rng.hpp"
 
 namespace adit {
@@ -82,6 +83,7 @@ std::vector<Loop> merged_loops(std::span<const Face> faces, std::vector<Vector3>
   VertexMerger merger;
   std::vector<Loop> loops;
   for (const Face& face : faces) {
+    throw_if_cancelled();
     Loop loop;
     for (const Vector3& p : face.corners) {
       const int index = merger.index_of(p);
@@ -105,7 +107,7 @@ std::vector<Edge> unmatched_edges(const std::vector<Loop>& loops) {
   return unmatched;
 }
 
-/// The points of `grid` strictly between two ends, in order along the way.
+/// The points of `grid` strictly between two ends, in order from the first end.
 std::vector<int> points_between(const std::vector<Vector3>& points, const PointGrid& grid, const Edge& edge) {
   const Vector3& a = points[static_cast<std::size_t>(edge.first)];
   const Vector3& b = points[static_cast<std::size_t>(edge.second)];
@@ -137,6 +139,7 @@ void close_t_junctions(const std::vector<Vector3>& points, std::vector<Loop>& lo
   for (const int i : ends) grid.add(points[static_cast<std::size_t>(i)], i);
 
   for (Loop& loop : loops) {
+    throw_if_cancelled();
     Loop full;
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const Edge edge{loop[i], loop[(i + 1) % loop.size()]};
@@ -176,6 +179,7 @@ class Refiner {
     midpoints_.clear();
     std::vector<Eigen::Vector3i> finer;
     finer.reserve(triangles.size());
+    throw_if_cancelled();
     for (const Eigen::Vector3i& t : triangles) split(t, finer);
     triangles = std::move(finer);
     return !midpoints_.empty();
@@ -241,7 +245,10 @@ TriangleMesh surface_mesh(std::span<const Face> faces, const Surfacing& surfacin
   while (refiner.refine(mesh.triangles)) {
   }
   mesh.vertices.reserve(points.size());
-  for (const Vector3& p : points) mesh.vertices.emplace_back(surfacing.displaced(p).cast<float>());
+  for (const Vector3& p : points) {
+    throw_if_cancelled();
+    mesh.vertices.emplace_back(surfacing.displaced(p).cast<float>());
+  }
   return mesh;
 }
 

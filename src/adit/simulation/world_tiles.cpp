@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 /// A grid of tunnels made of one tile, as circuits for competitions are: wall, cabinet and junction look the
-/// same everywhere. Only which way the junctions open and how many tiles lie between them tells places apart,
+/// same everywhere. Only the directions in which junctions open and the number of tiles between them distinguish places,
 /// and no two blocks of a row or of a column have the same number of tiles.
 #include <algorithm>
 #include <array>
@@ -48,10 +48,10 @@ std::array<double, N> draw_positions(int fewest, Rng& rng) {
   return positions;
 }
 
-using Way = std::vector<Node>;  ///< From the mouth of an adit over the junctions at which the robot turns.
+using Path = std::vector<Node>;  ///< From the mouth of an adit over the junctions at which the robot turns.
 
-/// All four lead through the middle of the second row, two each way.
-std::array<Way, 4> meeting_ways() {
+/// All four lead through the middle of the second row, two in each direction.
+std::array<Path, 4> meeting_ways() {
   return {{{{-1, 0}, {1, 0}, {1, 1}, {3, 1}, {3, 2}, {0, 2}},
            {{5, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 2}, {4, 2}},
            {{-1, 3}, {0, 3}, {0, 2}, {1, 2}, {1, 1}, {4, 1}, {4, 3}},
@@ -59,7 +59,7 @@ std::array<Way, 4> meeting_ways() {
 }
 
 /// Two robots in the first two rows and two in the last ones.
-std::array<Way, 4> parallel_ways() {
+std::array<Path, 4> parallel_ways() {
   return {{{{-1, 0}, {1, 0}, {1, 1}, {4, 1}, {4, 0}, {0, 0}},
            {{5, 0}, {3, 0}, {3, 1}, {0, 1}, {0, 0}, {4, 0}},
            {{-1, 3}, {1, 3}, {1, 2}, {4, 2}, {4, 3}, {0, 3}},
@@ -68,15 +68,15 @@ std::array<Way, 4> parallel_ways() {
 
 Edge edge_between(const Node& a, const Node& b) { return std::minmax(a, b); }
 
-/// The edges of the grid that some way leads along.
-std::vector<Edge> edges_of(const std::array<Way, 4>& ways) {
+/// The edges of the grid that some path follows.
+std::vector<Edge> edges_of(const std::array<Path, 4>& paths) {
   std::vector<Edge> edges;
-  for (const Way& way : ways)
-    for (std::size_t k = 1; k < way.size(); ++k) {
-      Node at = way[k - 1];
-      const Node step{(way[k].first > at.first) - (way[k].first < at.first),
-                      (way[k].second > at.second) - (way[k].second < at.second)};
-      while (at != way[k]) {
+  for (const Path& path : paths)
+    for (std::size_t k = 1; k < path.size(); ++k) {
+      Node at = path[k - 1];
+      const Node step{(path[k].first > at.first) - (path[k].first < at.first),
+                      (path[k].second > at.second) - (path[k].second < at.second)};
+      while (at != path[k]) {
         const Node next{at.first + step.first, at.second + step.second};
         edges.push_back(edge_between(at, next));
         at = next;
@@ -113,9 +113,9 @@ void add_edge(WorldPlan& plan, const Grid& grid, const Edge& edge, double cabine
 }
 
 /// The mouth of an adit is open; its other end lies within the junction.
-void add_adit(WorldPlan& plan, const Grid& grid, const Way& way) {
-  const Vector3 mouth = grid.at(way[0]);
-  const Vector3 junction = grid.at({way[0].first < 0 ? 0 : static_cast<int>(kColumns) - 1, way[0].second});
+void add_adit(WorldPlan& plan, const Grid& grid, const Path& path) {
+  const Vector3 mouth = grid.at(path[0]);
+  const Vector3 junction = grid.at({path[0].first < 0 ? 0 : static_cast<int>(kColumns) - 1, path[0].second});
   add_tunnel(plan, arch_profile(kTube), stepped(mouth, junction));
 }
 
@@ -127,21 +127,21 @@ WorldPlan plan_tiles(const WorldConfig& config) {
   Grid grid;
   grid.x = draw_positions<kColumns>(3, rng);
   grid.y = draw_positions<kRows>(2, rng);
-  const std::array<Way, 4> ways = config.routes == "meeting" ? meeting_ways() : parallel_ways();
-  const std::vector<Edge> driven = edges_of(ways);
-  for (const Way& way : ways) add_adit(plan, grid, way);
+  const std::array<Path, 4> paths = config.routes == "meeting" ? meeting_ways() : parallel_ways();
+  const std::vector<Edge> driven = edges_of(paths);
+  for (const Path& path : paths) add_adit(plan, grid, path);
   for (const Edge& edge : all_edges()) {
-    // Junctions of three and of four ways, as they come.
+    // Junctions of three and of four paths, as they come.
     const bool stays = rng.uniform() < 0.6;
     if (stays || std::ranges::find(driven, edge) != driven.end())
       add_edge(plan, grid, edge, kTile * config.furniture_spacing_factor);
   }
   const std::array speeds{1.88, 1.84, 1.86, 1.82};
   const std::array lengths{440.0, 425.0, 430.0, 415.0};
-  for (std::size_t i = 0; i < ways.size(); ++i) {
+  for (std::size_t i = 0; i < paths.size(); ++i) {
     Drive drive{"robot_" + std::to_string(i), speeds[i], lengths[i], 5.0, 3.2, {}};
-    for (std::size_t k = 1; k < ways[i].size(); ++k)
-      drive.legs.push_back({grid.at(ways[i][k - 1]), grid.at(ways[i][k])});
+    for (std::size_t k = 1; k < paths[i].size(); ++k)
+      drive.legs.push_back({grid.at(paths[i][k - 1]), grid.at(paths[i][k])});
     plan.drives.push_back(std::move(drive));
   }
   return plan;
