@@ -70,12 +70,13 @@ FolderMount found(const SensorOrigin& origin) {
       format("found in the clouds, whose frame is taken for the robot's (contrast {:.1f})", origin.contrast));
 }
 
-FolderMount assumed(const std::vector<CloudFile>& samples) {
-  const bool is_centred = std::ranges::all_of(
+/// Whether each cloud was shifted to its own mean.
+bool are_centred(const std::vector<CloudFile>& samples) {
+  return std::ranges::all_of(
       samples, [](const CloudFile& sample) { return distance_of_mean(sample.cloud) < kCentred; });
-  const std::string why =
-      is_centred ? "each cloud was shifted to its own mean, so the LiDAR's place differs from scan to scan"
-                 : "nothing says where the LiDAR stood in the clouds, and they do not show it";
+}
+
+FolderMount assumed(const std::string& why) {
   return {
       {},
       {},
@@ -85,6 +86,16 @@ FolderMount assumed(const std::vector<CloudFile>& samples) {
           "be refused, as the space that a scan saw to be free is judged from the wrong place: {}, or write "
           "'mount' into recording.toml",
           kMountAssumption, why, kMountRemedy)};
+}
+
+FolderMount found_or_assumed(const std::vector<CloudFile>& samples) {
+  if (are_centred(samples))
+    return assumed("each cloud was shifted to its own mean, so the LiDAR's place differs from scan to scan");
+  std::vector<PointCloud> clouds;
+  for (const CloudFile& sample : samples) clouds.push_back(sample.cloud);
+  const std::optional<SensorOrigin> origin = find_sensor_origin(clouds);
+  if (origin) return found(*origin);
+  return assumed("nothing says where the LiDAR stood in the clouds, and they do not show it");
 }
 
 }  // namespace
@@ -101,13 +112,9 @@ Result<FolderMount> mount_of_folder(const std::vector<fs::path>& clouds, const R
   if (!samples) return tl::unexpected(samples.error());
   if (const auto viewpoint = common_viewpoint(*samples))
     return stated(*viewpoint, file.frame, "VIEWPOINT of the clouds");
-  std::vector<PointCloud> sampled;
-  for (const CloudFile& sample : *samples) sampled.push_back(sample.cloud);
-  const std::optional<SensorOrigin> origin = find_sensor_origin(sampled);
-  const FolderMount mount = origin ? found(*origin) : assumed(*samples);
-  // The wheels speak of the base. Only clouds that were moved to it say where the LiDAR is on the robot.
-  const bool is_unknown = !origin || origin->position.norm() < kSamePlace;
-  if (wheels == Wheels::absent || !is_unknown) return mount;
+  const FolderMount mount = found_or_assumed(*samples);
+  // Wheel odometry is of the base. Only clouds that were moved to it show where the LiDAR is on the robot.
+  if (wheels == Wheels::absent || mount.T_lidar_cloud.log().norm() > 0.0) return mount;
   return fail(format(
       "there is wheel odometry, but nothing says where the LiDAR sits on the robot; {}, or write 'mount' "
       "into recording.toml",

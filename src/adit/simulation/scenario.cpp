@@ -75,6 +75,7 @@ Recording recording_of(Robot robot, const WheelConfig& wheels) {
   recording.name = robot.name;
   recording.lidar = robot.lidar.name;
   recording.T_base_lidar = T_base_lidar(robot.lidar);
+  recording.mount_source = "simulation";
   recording.wheel = wheel_odometry(robot.truth, wheels, mix64(robot.seed));
   robot.scan_stamps = scan_stamps(robot.truth, robot.lidar);
   robot.truth = with_poses_at(robot.truth, robot.scan_stamps);
