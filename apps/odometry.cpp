@@ -67,7 +67,7 @@ Result<> odometry(const Options& options, const Common& common) {
   Fields fields;
   append(fields, "odometry", fields_of(config));
   if (const Result<> configured = configure(fields, common); !configured) return configured;
-  config.method = options.method;
+  if (const Result<> known = set_field(fields_of(config), "method", options.method); !known) return known;
   const Result<Recording> recording = open_input(options.input, options.recording);
   if (!recording) return tl::unexpected(recording.error());
   Result<Trajectory> truth = recording->truth;

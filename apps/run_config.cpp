@@ -21,13 +21,8 @@ RunConfig studied_under(KeyframeSelection selection, RunConfig config) {
 }
 
 Fields fields_of(RunConfig& c) {
-  Fields fields = {{"paper_odometry",
-                    &c.paper_odometry,
-                    "",
-                    0,
-                    0,
-                    "odometry of the paper's keyframe policies in `adit study` and `merge-study`",
-                    {"plane-icp", "kinematic-icp", "kiss-icp"}}};
+  Fields fields = {enum_field("paper_odometry", &c.paper_odometry, kOdometryMethods,
+                              "odometry of the paper's keyframe policies in `adit study` and `merge-study`")};
   append(fields, "simulation", fields_of(c.simulation));
   append(fields, "robot", fields_of(c.robot));
   append(fields, "loops", fields_of(c.loops));

@@ -17,7 +17,7 @@ struct RunConfig {
   AgentConfig loops;
   BackEndConfig back_end;
   LoopbackConfig bus;
-  std::string paper_odometry = "kinematic-icp";
+  OdometryMethod paper_odometry = OdometryMethod::kinematic_icp;
 
   /// The paper's pipeline behind the odometry: KISS-Matcher's global result accepted by its inliers, PCM,
   /// GNC.

@@ -37,7 +37,7 @@ Result<std::vector<std::shared_ptr<const RobotMap>>> map_robots(const std::vecto
   std::vector<Result<RobotMap>> maps(recordings.size(), fail("not run"));
   parallel_for_each(recordings.size(), [&](std::size_t i) {
     RobotSlamConfig own = config;
-    if (recordings[i].wheel.empty()) own.odometry.method = "kiss-icp";  // nothing else to go by
+    if (recordings[i].wheel.empty()) own.odometry.method = OdometryMethod::kiss_icp;  // nothing else to go by
     maps[i] = map_recording(recordings[i], {static_cast<std::uint8_t>(i)}, own, [&](std::size_t) {
       progress.advance();
       return !interrupted();

@@ -29,15 +29,16 @@ OdometryResult odometry_result(const std::string& method, const Trajectory& esti
   return result;
 }
 
-std::string json_name(std::string method) {
-  std::ranges::replace(method, '-', '_');
-  return method;
+std::string json_name(OdometryMethod method) {
+  std::string name(to_string(method));
+  std::ranges::replace(name, '-', '_');
+  return name;
 }
 
 /// A robot's drive under one odometry.
 class Drive {
  public:
-  Drive(const Recording& recording, RobotId id, RobotSlamConfig config, const std::string& method)
+  Drive(const Recording& recording, RobotId id, RobotSlamConfig config, OdometryMethod method)
       : method_(method), slam_(id, recording.name, with_method(config, method), recording.T_base_lidar) {}
 
   void process(const Scan& scan, const std::optional<WheelDelta>& wheel) {
@@ -45,32 +46,32 @@ class Drive {
     const double ms = timed_ms([&] { step = slam_.process(scan, wheel); });
     if (!step.keyframe) ms_.push_back(ms);
   }
-  [[nodiscard]] const std::string& method() const { return method_; }
+  [[nodiscard]] OdometryMethod method() const { return method_; }
   [[nodiscard]] const RobotMap& map() const { return slam_.map(); }
   [[nodiscard]] OdometryResult result(const Trajectory& truth) const {
     return odometry_result(json_name(method_), slam_.map().odometry, truth, ms_);
   }
 
  private:
-  static RobotSlamConfig with_method(RobotSlamConfig config, const std::string& method) {
+  static RobotSlamConfig with_method(RobotSlamConfig config, OdometryMethod method) {
     config.odometry.method = method;
     return config;
   }
 
-  std::string method_;
+  OdometryMethod method_;
   RobotSlam slam_;
   std::vector<double> ms_;  ///< Of scans that became no keyframe, so that it is the odometry's time alone.
 };
 
 Result<RobotRun> run_robot(const Recording& recording, RobotId id, const RunConfig& config,
                            Progress& progress) {
-  const std::string& method = config.robot.odometry.method;
+  const OdometryMethod method = config.robot.odometry.method;
   std::vector<Drive> drives;
   drives.emplace_back(recording, id, config.robot, method);
   if (config.paper_odometry != method)
     drives.emplace_back(recording, id, config.robot, config.paper_odometry);
   KissIcp kiss_icp(config.robot.odometry.kiss_icp, recording.T_base_lidar);
-  const bool compare = std::ranges::find(drives, "kiss-icp", &Drive::method) == drives.end();
+  const bool compare = std::ranges::find(drives, OdometryMethod::kiss_icp, &Drive::method) == drives.end();
   Trajectory kiss_trajectory;
   std::vector<double> kiss_ms;
   for (std::size_t i = 0; i < recording.num_scans(); ++i) {

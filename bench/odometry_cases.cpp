@@ -20,8 +20,10 @@ namespace {
 
 OdometryConfig config_of(const std::string& method, double voxel_size) {
   OdometryConfig config;
-  config.method = method;
-  config.kiss_icp.voxel_size = config.kinematic_icp.voxel_size = config.plane_icp.voxel_size = voxel_size;
+  ADIT_CHECK(set_field(fields_of(config), "method", method), "a known method");
+  for (ScanToMapConfig* settings :
+       {&config.kiss_icp.scan_to_map, &config.kinematic_icp.scan_to_map, &config.plane_icp.scan_to_map})
+    settings->voxel_size = voxel_size;
   return config;
 }
 

@@ -21,7 +21,7 @@ Recording nclt(const std::string& part) {
 
 RobotSlamConfig lidar_alone() {
   RobotSlamConfig config;
-  config.odometry.method = "kiss-icp";
+  config.odometry.method = OdometryMethod::kiss_icp;
   return config;
 }
 

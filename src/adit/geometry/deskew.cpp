@@ -6,7 +6,7 @@
 #include <array>
 
 #include "adit/core/check.hpp"
-#include "adit/core/vectors.hpp"
+#include "adit/core/simd.hpp"
 
 namespace adit {
 namespace {

@@ -43,28 +43,6 @@ struct NearestAloneVisitor {
   }
 };
 
-struct KNearestVisitor {
-  std::size_t k;
-  float bound = std::numeric_limits<float>::infinity();
-  std::vector<Neighbor> heap;  ///< The farthest on top.
-  void found(const Neighbor& n) {
-    if (heap.size() == k) {
-      if (!closer(n, heap.front())) return;
-      std::pop_heap(heap.begin(), heap.end(), closer);
-      heap.pop_back();
-    }
-    heap.push_back(n);
-    std::push_heap(heap.begin(), heap.end(), closer);
-    if (heap.size() == k) bound = heap.front().squared_distance;
-  }
-};
-
-struct RadiusVisitor {
-  float bound;
-  std::vector<Neighbor> all;
-  void found(const Neighbor& n) { all.push_back(n); }
-};
-
 /// Always summed in the order x, y, z: a float sum of smaller terms is then never larger, so pruning is
 /// exact.
 template <class T>
@@ -126,15 +104,12 @@ void KdTree::build(std::span<Item> items, std::uint32_t first_leaf, std::uint32_
 
 template <class Visitor>
 void KdTree::visit(const Leaf& leaf, const Eigen::Vector3f& query, Visitor& visitor) const {
-  Lanes squared_distances[2];
+  simd::Float4 squared_distances[2];
   for (int half = 0; half < 2; ++half) {
-    squared_distances[half] =
-        sum_of_squares<Lanes>(leaf.x[half] - query.x(), leaf.y[half] - query.y(), leaf.z[half] - query.z());
+    squared_distances[half] = sum_of_squares<simd::Float4>(leaf.x[half] - query.x(), leaf.y[half] - query.y(),
+                                                           leaf.z[half] - query.z());
   }
-  using Halves [[gnu::vector_size(16)]] = std::uint64_t;
-  const auto near_enough = reinterpret_cast<Halves>((squared_distances[0] <= visitor.bound) |
-                                                    (squared_distances[1] <= visitor.bound));
-  if ((near_enough[0] | near_enough[1]) == 0) return;
+  if (!simd::any((squared_distances[0] <= visitor.bound) | (squared_distances[1] <= visitor.bound))) return;
   float distances[kLeafSize];
   std::memcpy(distances, squared_distances, sizeof(distances));
   for (std::uint32_t k = 0; k < kLeafSize; ++k) {
@@ -190,22 +165,6 @@ std::optional<NearestAlone> KdTree::nearest_alone(const Eigen::Vector3f& query, 
   if (!visitor.found_any) return std::nullopt;
   visitor.best.others_squared_distance = visitor.bound;
   return visitor.best;
-}
-
-std::vector<Neighbor> KdTree::k_nearest(const Eigen::Vector3f& query, std::size_t k) const {
-  if (k == 0) return {};
-  KNearestVisitor visitor{.k = k, .heap = {}};
-  visitor.heap.reserve(std::min(k, size()) + 1);
-  search(query, visitor);
-  std::sort_heap(visitor.heap.begin(), visitor.heap.end(), closer);
-  return std::move(visitor.heap);
-}
-
-std::vector<Neighbor> KdTree::within(const Eigen::Vector3f& query, float radius) const {
-  RadiusVisitor visitor{radius * radius, {}};
-  search(query, visitor);
-  std::sort(visitor.all.begin(), visitor.all.end(), closer);
-  return std::move(visitor.all);
 }
 
 }  // namespace adit

@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+#include "adit/core/simd.hpp"
+
 namespace adit {
 
 /// A point that a search found: its index in the cloud that the index was built from.
@@ -27,9 +29,9 @@ struct NearestAlone {
   bool operator==(const NearestAlone&) const = default;
 };
 
-/// A balanced tree over a copy of the points, stored flat, with eight points a leaf that are compared at once
-/// (Bentley, "Multidimensional binary search trees", 1975). Answers are exact and unique: among equally near
-/// points the smaller index comes first. Points with a NaN or infinite coordinate are never found, and a
+/// A balanced tree over a copy of the points, stored flat, with eight points per leaf that are compared at
+/// once (Bentley, "Multidimensional binary search trees", 1975). Answers are exact and unique: among equally
+/// near points the smaller index comes first. Points with a NaN or infinite coordinate are never found, and a
 /// query with one finds nothing. Immutable; searches are thread-safe.
 class KdTree {
  public:
@@ -42,19 +44,13 @@ class KdTree {
   /// The nearest point whose squared distance is at most `bound`, and how far the second nearest is; none
   /// when no point is so near.
   [[nodiscard]] std::optional<NearestAlone> nearest_alone(const Eigen::Vector3f& query, float bound) const;
-  /// The `k` nearest points (fewer in a smaller cloud), nearest first.
-  [[nodiscard]] std::vector<Neighbor> k_nearest(const Eigen::Vector3f& query, std::size_t k) const;
-  /// All points no farther than `radius` metres, nearest first.
-  [[nodiscard]] std::vector<Neighbor> within(const Eigen::Vector3f& query, float radius) const;
 
   [[nodiscard]] std::size_t size() const { return size_; }  ///< Finite points only.
 
  private:
   static constexpr std::uint32_t kLeafSize = 8;
-  /// One vector register (a type of GCC and Clang on every processor).
-  using Lanes [[gnu::vector_size(16)]] = float;
   struct Leaf {
-    Lanes x[2], y[2], z[2];  ///< NaN beyond the last point.
+    simd::Float4 x[2], y[2], z[2];  ///< NaN beyond the last point.
     std::uint32_t index[kLeafSize];
   };
   /// Inner nodes in preorder: the left child of a node follows it, and as each subtree has one inner node

@@ -10,19 +10,19 @@
 #include <tuple>
 
 #include "adit/core/check.hpp"
+#include "adit/core/simd.hpp"
 
 namespace adit {
 namespace {
 
-/// One vector register (a type of GCC and Clang on every processor).
-using Four [[gnu::vector_size(16)]] = float;
+using simd::Float4;
 
 /// Sums over the neighbours of one point, of their offsets from it: small numbers, so floats lose nothing
 /// that matters.
 struct Scatter {
-  Four sum = {};       ///< x, y, z; number of neighbours.
-  Four squares = {};   ///< xx, yy, zz.
-  Four products = {};  ///< xy, yz, zx.
+  Float4 sum = {};       ///< x, y, z; number of neighbours.
+  Float4 squares = {};   ///< xx, yy, zz.
+  Float4 products = {};  ///< xy, yz, zx.
 };
 
 /// The unit vector that a symmetric matrix of rank 2 maps to zero: the longest cross product of two rows.
@@ -65,9 +65,9 @@ SurfacePoint surface_from(const Scatter& scatter, const Eigen::Vector3f& point) 
 std::vector<SurfacePoint> estimate_surface(const std::vector<Eigen::Vector3f>& points,
                                            const NeighborPairs& pairs, float radius) {
   ADIT_CHECK(pairs.num_points() == points.size(), "the pairs belong to these points");
-  std::vector<Four> padded;
+  std::vector<Float4> padded;
   padded.reserve(points.size());
-  for (const Eigen::Vector3f& p : points) padded.push_back(Four{p.x(), p.y(), p.z(), 0.0F});
+  for (const Eigen::Vector3f& p : points) padded.push_back(Float4{p.x(), p.y(), p.z(), 0.0F});
   std::vector<Scatter> scatters(points.size());
   std::vector<std::uint32_t> near;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -82,10 +82,10 @@ std::vector<SurfacePoint> estimate_surface(const std::vector<Eigen::Vector3f>& p
     Scatter own = scatters[i];
     for (std::size_t k = 0; k < num_near; ++k) {
       Scatter& other = scatters[near[k]];
-      const Four offset = padded[near[k]] - padded[i];
-      const Four squares = offset * offset;
-      const Four products = offset * Four{offset[1], offset[2], offset[0], 0.0F};
-      constexpr Four kOne = {0.0F, 0.0F, 0.0F, 1.0F};
+      const Float4 offset = padded[near[k]] - padded[i];
+      const Float4 squares = offset * offset;
+      const Float4 products = offset * Float4{offset[1], offset[2], offset[0], 0.0F};
+      constexpr Float4 kOne = {0.0F, 0.0F, 0.0F, 1.0F};
       own.sum += offset + kOne;
       own.squares += squares;
       own.products += products;

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "adit/core/check.hpp"
-#include "adit/core/vectors.hpp"
+#include "adit/core/simd.hpp"
 #include "adit/geometry/voxel_grid.hpp"
 
 namespace adit {

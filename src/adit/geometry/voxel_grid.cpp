@@ -7,7 +7,7 @@
 #include <bit>
 
 #include "adit/core/parallel.hpp"
-#include "adit/core/vectors.hpp"
+#include "adit/core/simd.hpp"
 
 namespace adit {
 namespace {

@@ -26,8 +26,8 @@ std::optional<Alignability> alignability(std::span<const Eigen::Vector3f> normal
 std::optional<Alignability> alignability_of_points(std::span<const Eigen::Vector3f> points, double voxel) {
   PointCloud cloud;
   cloud.points.assign(points.begin(), points.end());
-  const PointCloud thinned = voxel_centroids(cloud, voxel);
-  return alignability(estimate_normals(thinned.points, static_cast<float>(2.5 * voxel)));
+  const PointCloud means = voxel_centroids(cloud, voxel);
+  return alignability(estimate_normals(means.points, static_cast<float>(2.5 * voxel)));
 }
 
 }  // namespace adit

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "adit/core/vectors.hpp"
+#include "adit/core/simd.hpp"
 
 namespace adit {
 namespace {

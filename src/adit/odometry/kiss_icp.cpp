@@ -7,7 +7,7 @@
 namespace adit {
 namespace {
 
-// Sum of squared distances to the map, a voxel at most for each point.
+// Sum of squared distances from the map, square metres; a point counts at most the square of a voxel.
 double misfit(const Alignment& alignment, const ThinnedScan& scan, const LocalMap& map) {
   const double reach = map.voxel_size();
   Correspondences pairs(scan.source, map, reach);
@@ -16,26 +16,54 @@ double misfit(const Alignment& alignment, const ThinnedScan& scan, const LocalMa
   return fit.squared_residuals + lost * reach * reach;
 }
 
+bool are_irregular(IrregularSteps steps, const Scan& scan) {
+  return steps == IrregularSteps::on || (steps == IrregularSteps::automatic && !scan.cloud.has_times());
+}
+
 }  // namespace
+
+std::string_view to_string(IrregularSteps steps) {
+  switch (steps) {
+    case IrregularSteps::automatic:
+      return "auto";
+    case IrregularSteps::on:
+      return "on";
+    case IrregularSteps::off:
+      return "off";
+  }
+  return "unknown";
+}
+
+Fields fields_of(KissIcpConfig& c) {
+  Fields fields = fields_of(c.scan_to_map);
+  fields.push_back(
+      {"initial_threshold", &c.initial_threshold, "m", 0.01, 100.0, "first sigma of the motion model"});
+  fields.push_back({"min_motion", &c.min_motion, "m", 0.0, 10.0, "smaller deviations do not train sigma"});
+  fields.push_back(
+      enum_field("irregular_steps", &c.irregular_steps, kIrregularSteps,
+                 "also start from the last pose and keep the better fit, for scans that do not come at a "
+                 "steady pace; auto: where points carry no times"));
+  return fields;
+}
 
 KissIcp::KissIcp(const KissIcpConfig& config, const Pose& T_base_lidar)
     : config_(config),
       T_base_lidar_(T_base_lidar),
-      map_(config.voxel_size, config.max_points_per_voxel),
-      threshold_(config.initial_threshold, config.min_motion, config.max_range) {}
+      map_(config.scan_to_map.voxel_size, config.scan_to_map.max_points_per_voxel),
+      threshold_(config.initial_threshold, config.min_motion, config.scan_to_map.max_range) {}
 
 OdometryStep KissIcp::register_scan(const Scan& scan) {
   ADIT_CHECK(!stamp_ || *stamp_ < scan.stamp, "the stamps of scans ascend");
   const Pose T_prediction = motion_ ? T_odom_base_ * motion_->T_start_end : T_odom_base_;
-  preprocess(scan.cloud, {config_.min_range, config_.max_range}, T_base_lidar_,
-             config_.deskew ? motion_ : std::nullopt, cloud_);
-  irregular_ =
-      config_.irregular_steps == "on" || (config_.irregular_steps == "auto" && !scan.cloud.has_times());
-  const ThinnedScan thin = thinned(cloud_.points, config_.voxel_size, thinner_);
-  OdometryStep step = map_.empty() ? first_step(thin, T_prediction, config_) : registered(thin, T_prediction);
+  const ScanToMapConfig& config = config_.scan_to_map;
+  preprocess(scan.cloud, {config.min_range, config.max_range}, T_base_lidar_,
+             config.deskew ? motion_ : std::nullopt, cloud_);
+  irregular_ = are_irregular(config_.irregular_steps, scan);
+  const ThinnedScan thin = thinned_twice(cloud_.points, config.voxel_size, thinner_);
+  OdometryStep step = map_.empty() ? first_step(thin, T_prediction, config) : registered(thin, T_prediction);
   step.stamp = scan.stamp;
   step.is_guess = irregular_;
-  update_map(map_, thin, step, config_);
+  update_map(map_, thin, step, config);
   if (stamp_) motion_ = {T_odom_base_.inverse() * step.T_odom_base, scan.stamp - *stamp_};
   stamp_ = scan.stamp;
   T_odom_base_ = step.T_odom_base;
@@ -43,9 +71,12 @@ OdometryStep KissIcp::register_scan(const Scan& scan) {
 }
 
 Alignment KissIcp::align(const ThinnedScan& scan, const Pose& T_prediction) const {
-  Alignment predicted = align_rigid(scan.source, map_, T_prediction, threshold_.sigma(), config_);
+  const auto align_from = [&](const Pose& T_start) {
+    return align_point_to_point(scan.source, map_, T_start, threshold_.sigma(), config_.scan_to_map);
+  };
+  Alignment predicted = align_from(T_prediction);
   if (!irregular_) return predicted;
-  Alignment rival = align_rigid(scan.source, map_, T_odom_base_, threshold_.sigma(), config_);
+  Alignment rival = align_from(T_odom_base_);
   if (rival.status != StepStatus::ok) return predicted;
   if (predicted.status != StepStatus::ok) return rival;
   return misfit(rival, scan, map_) < misfit(predicted, scan, map_) ? rival : predicted;
@@ -58,7 +89,7 @@ OdometryStep KissIcp::registered(const ThinnedScan& scan, const Pose& T_predicti
     threshold_.add(T_prediction.inverse() * alignment.T_map_base);
   else
     threshold_.failed();
-  return step_of(alignment, scan.source, map_, 3.0 * sigma, config_);
+  return step_of(alignment, scan.source, map_, 3.0 * sigma, config_.scan_to_map);
 }
 
 }  // namespace adit

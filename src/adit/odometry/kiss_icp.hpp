@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <optional>
-#include <string>
+#include <string_view>
 
 #include "adit/core/config.hpp"
 #include "adit/core/records.hpp"
@@ -14,28 +15,19 @@
 
 namespace adit {
 
-struct KissIcpConfig : ScanToMapConfig {
+/// Whether scans are taken to come at an unsteady pace.
+enum class IrregularSteps { automatic, on, off };
+inline constexpr std::array kIrregularSteps{IrregularSteps::automatic, IrregularSteps::on,
+                                            IrregularSteps::off};
+[[nodiscard]] std::string_view to_string(IrregularSteps steps);
+
+struct KissIcpConfig {
+  ScanToMapConfig scan_to_map;
   double initial_threshold = 2.0;
   double min_motion = 0.1;
-  std::string irregular_steps = "auto";
+  IrregularSteps irregular_steps = IrregularSteps::automatic;
 };
-
-inline Fields fields_of(KissIcpConfig& c) {
-  Fields fields = fields_of(static_cast<ScanToMapConfig&>(c));
-  fields.push_back(
-      {"initial_threshold", &c.initial_threshold, "m", 0.01, 100.0, "first sigma of the motion model"});
-  fields.push_back({"min_motion", &c.min_motion, "m", 0.0, 10.0, "smaller deviations do not train sigma"});
-  fields.push_back(
-      {"irregular_steps",
-       &c.irregular_steps,
-       "",
-       0,
-       0,
-       "also start from the last pose and keep the better fit, for scans that do not come at a steady pace; "
-       "auto: where points carry no times",
-       {"auto", "on", "off"}});
-  return fields;
-}
+[[nodiscard]] Fields fields_of(KissIcpConfig& config);
 
 /// LiDAR-only odometry: I. Vizzo, T. Guadagnino, B. Mersch, L. Wiesmann, J. Behley, C. Stachniss, "KISS-ICP:
 /// In Defense of Point-to-Point ICP - Simple, Accurate, and Robust Registration If Done the Right Way", RA-L

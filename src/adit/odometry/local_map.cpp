@@ -6,29 +6,19 @@
 #include <array>
 #include <limits>
 
-#include "adit/core/vectors.hpp"
+#include "adit/core/simd.hpp"
 
 namespace adit {
 namespace {
 
 constexpr float kNowhere = std::numeric_limits<float>::infinity();
 
-// Distances near a voxel's face are wrong by some roundings of the coordinate.
+// Error of distances near a voxel's face, as a share of the coordinate: some roundings of a float.
 constexpr float kRounding = 5e-7F;
 
-// Four floats, compared and added lane by lane. Not `using`: GCC 12 then drops the size.
-typedef float Four __attribute__((vector_size(16), aligned(4), may_alias));  // NOLINT(modernize-use-using)
-typedef std::int32_t FourInts __attribute__((vector_size(16)));              // NOLINT(modernize-use-using)
-
-Four load(const float* x) { return *reinterpret_cast<const Four*>(x); }
-Four min(Four a, Four b) { return a < b ? a : b; }
-Four max(Four a, Four b) { return a < b ? b : a; }
-Four all(float x) { return Four{x, x, x, x}; }
-float sum(Four v) { return (v[0] + v[1]) + (v[2] + v[3]); }
-float least(Four v) {
-  v = min(v, __builtin_shuffle(v, FourInts{2, 3, 0, 1}));
-  return std::min(v[0], v[1]);
-}
+using simd::all4;
+using simd::Float4;
+using simd::Int4;
 
 // A block of points is a row of groups: four x, four y, four z.
 constexpr std::size_t kGroup = 12;
@@ -37,41 +27,41 @@ std::size_t position_in_block(std::size_t point, std::size_t axis) {
 }
 
 struct Offsets {
-  Four x, y, z;
+  Float4 x, y, z;
 
   Offsets(const float* group, const Eigen::Vector3f& from)
-      : x(load(group) - all(from.x())),
-        y(load(group + 4) - all(from.y())),
-        z(load(group + 8) - all(from.z())) {}
-  [[nodiscard]] Four squared_norms() const { return x * x + y * y + z * z; }
+      : x(simd::load4(group) - all4(from.x())),
+        y(simd::load4(group + 4) - all4(from.y())),
+        z(simd::load4(group + 8) - all4(from.z())) {}
+  [[nodiscard]] Float4 squared_norms() const { return x * x + y * y + z * z; }
 };
 
 // Smallest of the squared distances from `q` to the points of a block.
 float nearest_in_block(const float* block, std::size_t num_points, const Eigen::Vector3f& q) {
-  Four first = all(kNowhere);
+  Float4 first = all4(kNowhere);
   for (const float* group = block; group < block + num_points * kGroup / 4; group += kGroup)
-    first = min(first, Offsets(group, q).squared_norms());
-  return least(first);
+    first = simd::min(first, Offsets(group, q).squared_norms());
+  return simd::least(first);
 }
 
 // In each of four lanes the two smallest squared distances seen, where their points are, and the third.
 struct NearestOfLanes {
-  Four first = all(kNowhere);
-  Four second = all(kNowhere);
-  Four third = all(kNowhere);
-  FourInts first_at = {};
-  FourInts second_at = {};
+  Float4 first = all4(kNowhere);
+  Float4 second = all4(kNowhere);
+  Float4 third = all4(kNowhere);
+  Int4 first_at = {};
+  Int4 second_at = {};
 
-  void add(const Four& d2, std::int32_t at) {
-    const FourInts ats = {at, at, at, at};
-    const FourInts before_first = d2 < first;
-    const Four rest = max(first, d2);
-    const FourInts rest_at = before_first ? first_at : ats;
-    first = min(first, d2);
+  void add(const Float4& d2, std::int32_t at) {
+    const Int4 ats = {at, at, at, at};
+    const Int4 before_first = d2 < first;
+    const Float4 rest = simd::max(first, d2);
+    const Int4 rest_at = before_first ? first_at : ats;
+    first = simd::min(first, d2);
     first_at = before_first ? ats : first_at;
-    const FourInts before_second = rest < second;
-    third = min(third, max(second, rest));
-    second = min(second, rest);
+    const Int4 before_second = rest < second;
+    third = simd::min(third, simd::max(second, rest));
+    second = simd::min(second, rest);
     second_at = before_second ? rest_at : second_at;
   }
 };
@@ -107,6 +97,57 @@ struct Slabs {
     gap2 = {0.0F, near * near, far * far};
   }
 };
+
+// Around a query, along each axis.
+using Neighbourhood = std::array<Slabs, 3>;
+
+// Calls `visit(dx, dy, dz)` for the 27 voxels around a query that are nearer than the square root of
+// `limit2`, from near to far along each axis: where one voxel is beyond the limit, so are those behind it.
+// `visit` returns the new limit. The result is the smallest squared distance from a voxel left out.
+template <class Visit>
+[[gnu::always_inline]] inline float visit_voxels_within(const Neighbourhood& slabs, float limit2,
+                                                        const Visit& visit) {
+  float skipped2 = kNowhere;
+  for (std::size_t z = 0; z < 3; ++z) {
+    const float gap2_z = slabs[2].gap2[z];
+    if (gap2_z >= limit2) {
+      skipped2 = std::min(skipped2, gap2_z);
+      break;
+    }
+    for (std::size_t y = 0; y < 3; ++y) {
+      const float gap2_yz = slabs[1].gap2[y] + gap2_z;
+      if (gap2_yz >= limit2) {
+        skipped2 = std::min(skipped2, gap2_yz);
+        break;
+      }
+      for (std::size_t x = 0; x < 3; ++x) {
+        const float gap2 = slabs[0].gap2[x] + gap2_yz;
+        if (gap2 >= limit2) {
+          skipped2 = std::min(skipped2, gap2);
+          break;
+        }
+        limit2 = visit(slabs[0].offset[x], slabs[1].offset[y], slabs[2].offset[z]);
+      }
+    }
+  }
+  return skipped2;
+}
+
+// The points found, of groups that lie at `coordinates`.
+std::array<Eigen::Vector3f, LocalMap::Candidates::kNumber> points_of(const NearestOfLanes& near,
+                                                                     const float* coordinates) {
+  std::array<Eigen::Vector3f, LocalMap::Candidates::kNumber> points;
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    const auto point = [&](float d2, std::int32_t group) -> Eigen::Vector3f {
+      if (d2 == kNowhere) return Eigen::Vector3f::Constant(LocalMap::Candidates::kNowhere);
+      const float* x = coordinates + static_cast<std::size_t>(group) * kGroup + lane;
+      return {x[0], x[4], x[8]};
+    };
+    points[2 * lane] = point(near.first[lane], near.first_at[lane]);
+    points[2 * lane + 1] = point(near.second[lane], near.second_at[lane]);
+  }
+  return points;
+}
 
 }  // namespace
 
@@ -211,63 +252,35 @@ LocalMap::Candidates LocalMap::search(const Eigen::Vector3f& query, float max_di
   if (!key) return out;
   const float size = grid_.voxel_size();
   const Eigen::Vector3f to_lower = query - key->indices().cast<float>() * size;
-  const std::array<Slabs, 3> slabs = {Slabs(to_lower.x(), size), Slabs(to_lower.y(), size),
-                                      Slabs(to_lower.z(), size)};
+  const Neighbourhood slabs = {Slabs(to_lower.x(), size), Slabs(to_lower.y(), size),
+                               Slabs(to_lower.z(), size)};
   float best2 = max_distance * max_distance;
   float limit2 = (max_distance + margin) * (max_distance + margin);
-  float skipped2 = kNowhere;
   NearestOfLanes near;
   VoxelBricks::Reader voxels(voxels_);
-  // From near to far along each axis: where one voxel is out of the limit, so are those behind it.
-  for (std::size_t z = 0; z < 3; ++z) {
-    const float gap2_z = slabs[2].gap2[z];
-    if (gap2_z >= limit2) {
-      skipped2 = std::min(skipped2, gap2_z);
-      break;
+  const float skipped2 = visit_voxels_within(slabs, limit2, [&](int dx, int dy, int dz) {
+    const std::uint32_t voxel = voxels(key->shifted(dx, dy, dz));
+    if (voxel == 0) return limit2;
+    const std::size_t begin = block_of(voxel) * block_size_ / kGroup;
+    const std::size_t end = begin + (count_of(voxel) + 3) / 4;
+    for (std::size_t group = begin; group < end; ++group)
+      near.add(Offsets(&coordinates_[group * kGroup], query).squared_norms(),
+               static_cast<std::int32_t>(group));
+    const float nearest2 = simd::least(near.first);
+    if (nearest2 < best2) {
+      best2 = nearest2;
+      const float limit = std::sqrt(best2) + margin;
+      limit2 = limit * limit;
     }
-    for (std::size_t y = 0; y < 3; ++y) {
-      const float gap2_yz = slabs[1].gap2[y] + gap2_z;
-      if (gap2_yz >= limit2) {
-        skipped2 = std::min(skipped2, gap2_yz);
-        break;
-      }
-      for (std::size_t x = 0; x < 3; ++x) {
-        const float gap2 = slabs[0].gap2[x] + gap2_yz;
-        if (gap2 >= limit2) {
-          skipped2 = std::min(skipped2, gap2);
-          break;
-        }
-        const std::uint32_t voxel =
-            voxels(key->shifted(slabs[0].offset[x], slabs[1].offset[y], slabs[2].offset[z]));
-        if (voxel == 0) continue;
-        const std::size_t begin = block_of(voxel) * block_size_ / kGroup;
-        const std::size_t end = begin + (count_of(voxel) + 3) / 4;
-        for (std::size_t group = begin; group < end; ++group)
-          near.add(Offsets(&coordinates_[group * kGroup], query).squared_norms(),
-                   static_cast<std::int32_t>(group));
-        const float nearest2 = least(near.first);
-        if (nearest2 < best2) {
-          best2 = nearest2;
-          const float limit = std::sqrt(best2) + margin;
-          limit2 = limit * limit;
-        }
-      }
-    }
-  }
-  for (std::size_t lane = 0; lane < 4; ++lane) {
-    const auto point = [&](float d2, std::int32_t group) -> Eigen::Vector3f {
-      if (d2 == kNowhere) return Eigen::Vector3f::Constant(Candidates::kNowhere);
-      const float* x = &coordinates_[static_cast<std::size_t>(group) * kGroup + lane];
-      return {x[0], x[4], x[8]};
-    };
-    out.points[2 * lane] = point(near.first[lane], near.first_at[lane]);
-    out.points[2 * lane + 1] = point(near.second[lane], near.second_at[lane]);
-  }
+    return limit2;
+  });
+  out.points = points_of(near, coordinates_.data());
+
   // Beyond the neighbourhood nothing is nearer than its border, wherever the query goes. That settles it
   // where the nearest point is within; else the query must stay in its voxel.
   const float rounding = kRounding * query.cwiseAbs().maxCoeff();
   const float to_face = std::min({slabs[0].near, slabs[1].near, slabs[2].near});
-  out.clearance = std::sqrt(std::min(skipped2, least(near.third))) - rounding;
+  out.clearance = std::sqrt(std::min(skipped2, simd::least(near.third))) - rounding;
   out.room = kNowhere;
   if (out.clearance > size + to_face - rounding) {
     if (best2 < size * size)
@@ -281,9 +294,9 @@ LocalMap::Candidates LocalMap::search(const Eigen::Vector3f& query, float max_di
 LocalMap::Moments LocalMap::moments_within(const Eigen::Vector3f& centre, float radius) const {
   const auto key = grid_.key_of(centre);
   if (!key) return {};
-  Four count = {};
-  Four sums[3] = {};
-  Four squares[6] = {};
+  Float4 count = {};
+  Float4 sums[3] = {};
+  Float4 squares[6] = {};
   VoxelBricks::Reader voxels(voxels_);
   for (int i = 0; i < 27; ++i) {
     const std::uint32_t voxel = voxels(key->shifted(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
@@ -292,12 +305,12 @@ LocalMap::Moments LocalMap::moments_within(const Eigen::Vector3f& centre, float 
     const float* end = points + count_of(voxel) * kGroup / 4;
     for (const float* group = points; group < end; group += kGroup) {
       const Offsets offset(group, centre);
-      const FourInts within = offset.squared_norms() < radius * radius;
+      const Int4 within = offset.squared_norms() < radius * radius;
       // Unused places: infinity times 0 would not be 0.
-      const Four x = within ? offset.x : all(0.0F);
-      const Four y = within ? offset.y : all(0.0F);
-      const Four z = within ? offset.z : all(0.0F);
-      count += within ? all(1.0F) : all(0.0F);
+      const Float4 x = within ? offset.x : all4(0.0F);
+      const Float4 y = within ? offset.y : all4(0.0F);
+      const Float4 z = within ? offset.z : all4(0.0F);
+      count += within ? all4(1.0F) : all4(0.0F);
       sums[0] += x;
       sums[1] += y;
       sums[2] += z;
@@ -310,11 +323,11 @@ LocalMap::Moments LocalMap::moments_within(const Eigen::Vector3f& centre, float 
     }
   }
   Moments out;
-  out.count = static_cast<int>(sum(count));
-  out.sum = {sum(sums[0]), sum(sums[1]), sum(sums[2])};
-  out.squares << sum(squares[0]), sum(squares[1]), sum(squares[2]),  //
-      sum(squares[1]), sum(squares[3]), sum(squares[4]),             //
-      sum(squares[2]), sum(squares[4]), sum(squares[5]);
+  out.count = static_cast<int>(simd::sum(count));
+  out.sum = {simd::sum(sums[0]), simd::sum(sums[1]), simd::sum(sums[2])};
+  out.squares << simd::sum(squares[0]), simd::sum(squares[1]), simd::sum(squares[2]),  //
+      simd::sum(squares[1]), simd::sum(squares[3]), simd::sum(squares[4]),             //
+      simd::sum(squares[2]), simd::sum(squares[4]), simd::sum(squares[5]);
   return out;
 }
 

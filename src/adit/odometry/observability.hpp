@@ -7,35 +7,22 @@
 #include <span>
 #include <vector>
 
+#include "adit/geometry/point_to_plane.hpp"
 #include "adit/odometry/local_map.hpp"
 
 namespace adit {
 
-/// A plane that points of the map lie on.
-struct MapPlane {
-  Vector3 point;
-  Vector3 normal;  ///< Unit length; its sign is chance.
-};
-
+/// Which patches of the map count as planes.
 struct PlaneLimits {
   double radius = 1.0;     ///< Of the patch, voxels (at most one).
-  double thickness = 1.0;  ///< Of the patch, variance along the normal over that of its second extent.
+  double thickness = 1.0;  ///< Largest variance along the normal, as a share of that along the second axis.
 };
 
-/// The plane of the map's points around `place`. None where they are too few, on a line (one scan ring: the
-/// normal is chance) or scattered.
-[[nodiscard]] std::optional<MapPlane> plane_at(const LocalMap& map, const Eigen::Vector3f& place,
-                                               const PlaneLimits& limits);
-
-/// The distance of a scan's point from a plane of the map, and its derivative by a right perturbation of
-/// T_map_base.
-struct PlaneRow {
-  Vector6 jacobian;
-  double residual = 0.0;
-};
-/// `point` in the base frame; R_map_base, t_map_base: the pose.
-[[nodiscard]] PlaneRow plane_row(const Vector3& point, const MapPlane& plane, const Matrix3& R_map_base,
-                                 const Vector3& t_map_base);
+/// The plane through the map's points around `place` (map frame, metres); the sign of its normal is
+/// arbitrary. None where the points are too few, lie on a line (one scan ring, whose normal is arbitrary) or
+/// are scattered.
+[[nodiscard]] std::optional<Plane> plane_at(const LocalMap& map, const Eigen::Vector3f& place,
+                                            const PlaneLimits& limits);
 
 /// How well the scene fixes the pose. Point-to-point residuals hide open directions (two samplings of one
 /// smooth wall always leave residuals along it), so this looks at the normals of the map around the
@@ -43,18 +30,19 @@ struct PlaneRow {
 /// nothing along open directions.
 struct Observability {
   Matrix6 information = Matrix6::Zero();  ///< Of T_map_base, right perturbation.
-  /// Smallest eigenvalue of the mean information a correspondence, with rotations about each body axis
-  /// measured by the displacement at the scene's root-mean-square distance from it: 0 is open, 1/3 as good as
-  /// can be.
+  /// Smallest eigenvalue of the mean information per correspondence, with rotations about each body axis
+  /// measured by the displacement at the scene's root-mean-square distance from it: 0 is open, 1/3 the best
+  /// possible.
   double weakest = 0.0;
   bool degenerate = true;  ///< `weakest` is below `degeneracy_threshold`.
 };
-/// Of some of the source points, those whose nearest neighbour in the map is nearer than `max_distance`.
+/// From a sample of the source points (base frame), those whose nearest neighbour in the map is nearer than
+/// `max_distance` metres.
 [[nodiscard]] Observability observability(std::span<const Eigen::Vector3f> source, const LocalMap& map,
                                           const Pose& T_map_base, double max_distance,
                                           double degeneracy_threshold);
-/// Of rows at hand, each of which speaks for `weight` correspondences.
-[[nodiscard]] Observability observability(const std::vector<PlaneRow>& rows,
+/// From given residuals, each of which represents `weight` correspondences.
+[[nodiscard]] Observability observability(const std::vector<PlaneResidual>& residuals,
                                           std::span<const Eigen::Vector3f> source, double weight,
                                           double degeneracy_threshold);
 

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <optional>
-#include <string>
+#include <string_view>
 #include <variant>
 
 #include "adit/odometry/kinematic_icp.hpp"
@@ -12,37 +13,30 @@
 
 namespace adit {
 
+enum class OdometryMethod { plane_icp, kinematic_icp, kiss_icp };
+inline constexpr std::array kOdometryMethods{OdometryMethod::plane_icp, OdometryMethod::kinematic_icp,
+                                             OdometryMethod::kiss_icp};
+/// "plane-icp", "kinematic-icp", "kiss-icp".
+[[nodiscard]] std::string_view to_string(OdometryMethod method);
+
 struct OdometryConfig {
-  std::string method = "plane-icp";
+  OdometryMethod method = OdometryMethod::plane_icp;
   KissIcpConfig kiss_icp;
   KinematicIcpConfig kinematic_icp;
   PlaneIcpConfig plane_icp;
 
-  [[nodiscard]] bool needs_wheels() const { return method != "kiss-icp"; }
+  [[nodiscard]] bool needs_wheels() const { return method != OdometryMethod::kiss_icp; }
 };
-
-inline Fields fields_of(OdometryConfig& c) {
-  Fields fields = {{"method",
-                    &c.method,
-                    "",
-                    0,
-                    0,
-                    "LiDAR and wheels, as adit does it or as the paper does; or LiDAR alone",
-                    {"plane-icp", "kinematic-icp", "kiss-icp"}}};
-  append(fields, "kiss_icp", fields_of(c.kiss_icp));
-  append(fields, "kinematic_icp", fields_of(c.kinematic_icp));
-  append(fields, "plane_icp", fields_of(c.plane_icp));
-  return fields;
-}
+[[nodiscard]] Fields fields_of(OdometryConfig& config);
 
 /// The odometry that the configuration names.
 class Odometry {
  public:
-  /// Throws ContractViolation when the configuration is outside its ranges or names no known method.
+  /// Throws ContractViolation when the configuration is outside its ranges.
   Odometry(const OdometryConfig& config, const Pose& T_base_lidar);
 
-  /// `wheel`: motion of the base since the last scan. KISS-ICP does not look at it; the others
-  /// throw ContractViolation without it, the first scan excepted.
+  /// `wheel`: motion of the base since the last scan. KISS-ICP ignores it; the other methods throw
+  /// ContractViolation without it, the first scan excepted.
   OdometryStep register_scan(const Scan& scan, const std::optional<WheelDelta>& wheel);
   /// The last scan, deskewed and range-cropped at full density, in the base frame at its stamp.
   [[nodiscard]] PointCloud cloud_of_last_scan() const;

@@ -35,14 +35,14 @@ struct Outcome {
   double true_along = 0.0;
 };
 
-OdometryConfig config_of(const std::string& method, double voxel_size = 0.5) {
+OdometryConfig config_of(OdometryMethod method, double voxel_size = 0.5) {
   OdometryConfig config;
   config.method = method;
-  config.kiss_icp.voxel_size = config.kinematic_icp.voxel_size = voxel_size;
+  config.kiss_icp.scan_to_map.voxel_size = config.kinematic_icp.scan_to_map.voxel_size = voxel_size;
   return config;
 }
 
-Outcome run(const std::string& method, const Trip& trip) {
+Outcome run(OdometryMethod method, const Trip& trip) {
   Odometry odometry(config_of(method), kMount);
   Outcome out;
   for (int i = 0; i < trip.num_scans; ++i) {
@@ -76,7 +76,7 @@ Trip room_trip() {
 Trip tube_trip() { return {test::smooth_tube(), lidar_of(64, 512, 0.2), {Pose(), twist(2.0, 0.0)}, 80}; }
 
 TEST(Odometry, KissIcpTracksARoomToTwoCentimetres) {
-  const Outcome outcome = run("kiss-icp", room_trip());
+  const Outcome outcome = run(OdometryMethod::kiss_icp, room_trip());
   EXPECT_LT(outcome.max_error, 0.025);
   EXPECT_EQ(outcome.steps[0].status, StepStatus::no_map);
   EXPECT_EQ(count(outcome, StepStatus::ok), 49);
@@ -86,7 +86,7 @@ TEST(Odometry, KinematicIcpCorrectsPoorWheels) {
   Trip trip = room_trip();
   trip.wheel_scale = 1.04;
   trip.wheel_yaw_error = 0.003;  // 8 degrees on the way
-  const Outcome outcome = run("kinematic-icp", trip);
+  const Outcome outcome = run(OdometryMethod::kinematic_icp, trip);
   Pose T_wheels;
   for (int i = 1; i < trip.num_scans; ++i)
     T_wheels = T_wheels * test::wheels_of(trip.lidar, trip.drive, i, 1.04, 0.003).T_base0_base1;
@@ -100,14 +100,14 @@ TEST(Odometry, KinematicIcpCorrectsPoorWheels) {
 // The paper's failure: with nothing to hold on to along the axis, LiDAR alone believes that it hardly moves.
 // The steps say `degenerate`, and the scans enter the map all the same, as in the original.
 TEST(Odometry, KissIcpSlipsInASmoothTube) {
-  const Outcome outcome = run("kiss-icp", tube_trip());
+  const Outcome outcome = run(OdometryMethod::kiss_icp, tube_trip());
   EXPECT_LT(outcome.along, 0.8 * outcome.true_along);
   EXPECT_GE(count(outcome, StepStatus::degenerate), 75);
   for (const OdometryStep& step : outcome.steps) EXPECT_LT(std::abs(step.T_odom_base.translation().y()), 0.1);
 }
 
 TEST(Odometry, KinematicIcpHoldsToTheWheelsInASmoothTube) {
-  const Outcome outcome = run("kinematic-icp", tube_trip());
+  const Outcome outcome = run(OdometryMethod::kinematic_icp, tube_trip());
   EXPECT_GT(outcome.true_along, 13.0);
   EXPECT_NEAR(outcome.along, outcome.true_along, 0.01 * outcome.true_along);
   EXPECT_GE(count(outcome, StepStatus::degenerate), 75);
@@ -119,7 +119,7 @@ TEST(Odometry, PlaneIcpCorrectsPoorWheels) {
   Trip trip = room_trip();
   trip.wheel_scale = 1.04;
   trip.wheel_yaw_error = 0.003;
-  const Outcome outcome = run("plane-icp", trip);
+  const Outcome outcome = run(OdometryMethod::plane_icp, trip);
   const Pose T_truth = trip.drive.at(0).inverse() * trip.drive.at(4.9);
   EXPECT_LT((T_truth.inverse() * outcome.steps.back().T_odom_base).angle(), 0.01);
   EXPECT_LT(outcome.max_error, 0.05);
@@ -131,7 +131,7 @@ TEST(Odometry, PlaneIcpCorrectsPoorWheels) {
 TEST(Odometry, PlaneIcpHoldsToTheWheelsInASmoothTubeFromTheFirstScanOn) {
   Trip trip = tube_trip();
   trip.lidar.jitter = 0.0;
-  const Outcome outcome = run("plane-icp", trip);
+  const Outcome outcome = run(OdometryMethod::plane_icp, trip);
   for (int i = 0; i < trip.num_scans; ++i) {
     const double truth =
         (trip.drive.at(0).inverse() * trip.drive.at(i * to_seconds(trip.lidar.period))).translation().x();
@@ -148,7 +148,7 @@ TEST(Odometry, PlaneIcpMeasuresTheClimbThatWheelsDoNot) {
   Trip trip = room_trip();
   trip.drive.velocity[2] = 0.15;   // up,
   trip.drive.velocity[4] = -0.04;  // nose up
-  Odometry odometry(config_of("plane-icp"), kMount);
+  Odometry odometry(config_of(OdometryMethod::plane_icp), kMount);
   Pose T_wheels, T_odom_base;
   for (int i = 0; i < trip.num_scans; ++i) {
     WheelDelta wheel = test::wheels_of(trip.lidar, trip.drive, i);
@@ -167,18 +167,18 @@ TEST(Odometry, PlaneIcpMeasuresTheClimbThatWheelsDoNot) {
 TEST(Odometry, TurningOnTheSpot) {
   Trip trip = room_trip();
   trip.drive.velocity = twist(0.0, 0.6);
-  for (const char* method : {"kiss-icp", "kinematic-icp", "plane-icp"}) {
+  for (const OdometryMethod method : kOdometryMethods) {
     const Outcome outcome = run(method, trip);
-    EXPECT_LT(outcome.max_error, 0.05) << method;
+    EXPECT_LT(outcome.max_error, 0.05) << to_string(method);
     EXPECT_NEAR(outcome.steps.back().T_odom_base.yaw(), wrap_angle(0.6 * (3.9 + std::exp(-4.9))), 0.01)
-        << method;
+        << to_string(method);
   }
 }
 
 TEST(Odometry, SameBytesWithOneAndTwoThreads) {
   Trip trip = room_trip();
   trip.num_scans = 8;
-  for (const char* method : {"kiss-icp", "kinematic-icp", "plane-icp"}) {
+  for (const OdometryMethod method : kOdometryMethods) {
     const int before = num_threads();
     set_num_threads(1);
     const Outcome one = run(method, trip);
@@ -200,7 +200,7 @@ Scan still_scan(int index) {
 
 TEST(Odometry, EmptyAndNanScansLeaveThePredictionAndTheMap) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  for (const char* method : {"kiss-icp", "kinematic-icp", "plane-icp"}) {
+  for (const OdometryMethod method : kOdometryMethods) {
     Odometry odometry(config_of(method), kMount);
     WheelDelta wheel;
     wheel.duration = std::chrono::milliseconds(100);
@@ -208,19 +208,19 @@ TEST(Odometry, EmptyAndNanScansLeaveThePredictionAndTheMap) {
     EXPECT_EQ(odometry.register_scan({Stamp{0}, {}}, wheel).status, StepStatus::too_few_points);
     EXPECT_EQ(odometry.register_scan(still_scan(1), wheel).status, StepStatus::no_map);
     const OdometryStep good = odometry.register_scan(still_scan(2), wheel);
-    EXPECT_EQ(good.status, StepStatus::ok) << method;
+    EXPECT_EQ(good.status, StepStatus::ok) << to_string(method);
     const PointCloud all_nan{{{nan, nan, nan}, {nan, 0, 0}, {0, 0, 0}}, {}, {}};
     const OdometryStep bad = odometry.register_scan({still_scan(3).stamp, all_nan}, wheel);
     EXPECT_EQ(bad.status, StepStatus::too_few_points);
     EXPECT_EQ(bad.information, Matrix6::Zero());
     EXPECT_TRUE(odometry.cloud_of_last_scan().empty());
     EXPECT_LT((bad.T_odom_base.translation() - good.T_odom_base.translation()).norm(), 0.05);
-    EXPECT_EQ(odometry.register_scan(still_scan(4), wheel).status, StepStatus::ok) << method;
+    EXPECT_EQ(odometry.register_scan(still_scan(4), wheel).status, StepStatus::ok) << to_string(method);
   }
 }
 
 TEST(Odometry, NanPointsAmongGoodOnesChangeNothing) {
-  for (const char* method : {"kiss-icp", "kinematic-icp", "plane-icp"}) {
+  for (const OdometryMethod method : kOdometryMethods) {
     Odometry clean(config_of(method), kMount);
     Odometry dirty(config_of(method), kMount);
     WheelDelta wheel;
@@ -240,7 +240,7 @@ TEST(Odometry, NanPointsAmongGoodOnesChangeNothing) {
 }
 
 TEST(Odometry, WithoutTimesScansAreUsedAsTheyAre) {
-  for (const char* method : {"kiss-icp", "kinematic-icp", "plane-icp"}) {
+  for (const OdometryMethod method : kOdometryMethods) {
     Odometry odometry(config_of(method), Pose());
     WheelDelta wheel;  // no duration either: nothing needs it
     wheel.T_base0_base1 = Pose::translation_of(0.05, 0, 0);
@@ -257,7 +257,7 @@ TEST(Odometry, WithoutTimesScansAreUsedAsTheyAre) {
 TEST(Odometry, CloudOfLastScanIsDeskewedIntoTheBase) {
   const Trip trip{
       test::furnished_room(), {32, 256, 0.35, 120.0, 0.0}, {Pose::planar(-6, 0, 0.1), twist(1.5, 0.3)}, 30};
-  Odometry odometry(config_of("kinematic-icp"), kMount);
+  Odometry odometry(config_of(OdometryMethod::kinematic_icp), kMount);
   for (int i = 0; i < trip.num_scans; ++i)
     odometry.register_scan(test::scan_of(trip.scene, trip.lidar, kMount, trip.drive, i),
                            test::wheels_of(trip.lidar, trip.drive, i));
@@ -280,8 +280,10 @@ class WheelOdometries : public testing::Test {};
 using Methods = testing::Types<KinematicIcp, PlaneIcp>;
 TYPED_TEST_SUITE(WheelOdometries, Methods);
 
-KinematicIcp made(const KinematicIcp* /*type*/) { return {config_of("kinematic-icp").kinematic_icp, kMount}; }
-PlaneIcp made(const PlaneIcp* /*type*/) { return {config_of("plane-icp").plane_icp, kMount}; }
+KinematicIcp made(const KinematicIcp* /*type*/) {
+  return {config_of(OdometryMethod::kinematic_icp).kinematic_icp, kMount};
+}
+PlaneIcp made(const PlaneIcp* /*type*/) { return {config_of(OdometryMethod::plane_icp).plane_icp, kMount}; }
 
 TYPED_TEST(WheelOdometries, RestingRobotIsNotRegistered) {
   TypeParam odometry = made(static_cast<const TypeParam*>(nullptr));
@@ -328,7 +330,7 @@ TEST(PlaneIcp, ARobotThatLeftItsMapGoesOnWhereTheWheelsSay) {
 }
 
 TEST(KinematicIcp, ARobotThatLeftItsMapStartsANewOne) {
-  KinematicIcp odometry(config_of("kinematic-icp").kinematic_icp, kMount);
+  KinematicIcp odometry(config_of(OdometryMethod::kinematic_icp).kinematic_icp, kMount);
   WheelDelta wheel;
   wheel.duration = std::chrono::milliseconds(100);
   odometry.register_scan(still_scan(0), wheel);
@@ -349,10 +351,8 @@ TEST(KissIcp, StampsMustAscend) {
 
 TEST(Odometry, ContractsOfConfigurationAndWheels) {
   OdometryConfig config;
-  config.method = "kiss";
-  EXPECT_THROW(Odometry(config, Pose()), ContractViolation);
-  config.method = "kinematic-icp";
-  config.kinematic_icp.voxel_size = -1.0;
+  config.method = OdometryMethod::kinematic_icp;
+  config.kinematic_icp.scan_to_map.voxel_size = -1.0;
   EXPECT_THROW(Odometry(config, Pose()), ContractViolation);
   Odometry kinematic(OdometryConfig{}, Pose());
   kinematic.register_scan(still_scan(0), std::nullopt);
@@ -363,7 +363,11 @@ TEST(OdometryConfig, FieldsCarryTheirPrefixAndDefaultsAreInRange) {
   OdometryConfig config;
   EXPECT_TRUE(check_fields(fields_of(config)));
   EXPECT_TRUE(set_field(fields_of(config), "kiss_icp.voxel_size", "0.3"));
-  EXPECT_EQ(config.kiss_icp.voxel_size, 0.3);
+  EXPECT_EQ(config.kiss_icp.scan_to_map.voxel_size, 0.3);
+  for (const OdometryMethod method : kOdometryMethods) {
+    EXPECT_TRUE(set_field(fields_of(config), "method", to_string(method)));
+    EXPECT_EQ(config.method, method);
+  }
   EXPECT_FALSE(set_field(fields_of(config), "method", "icp"));
 }
 

@@ -9,34 +9,30 @@
 
 namespace adit {
 
-struct PlaneIcpConfig : WheelGuidedConfig {
+struct PlaneIcpConfig {
+  ScanToMapConfig scan_to_map{
+      .voxel_size = 0.5, .max_points_per_voxel = 10, .max_iterations = 10, .max_correction = 1.0};
+  double stationary_motion = kStationaryMotion;
   double sigma = 0.05;
   WheelNoise wheels;
-
-  PlaneIcpConfig() {
-    voxel_size = 0.5;
-    max_points_per_voxel = 10;
-    max_iterations = 10;
-    max_correction = 1.0;
-  }
 };
-Fields fields_of(PlaneIcpConfig& config);
+[[nodiscard]] Fields fields_of(PlaneIcpConfig& config);
 
-/// adit's own odometry for tunnels: the scan is aligned with the planes of the local map in all six
-/// directions, and the wheels are one more measurement, with a stated noise. Point-to-point ICP draws a robot
-/// in a smooth tube towards standing still, since the rings of one scan fit those of the last best where they
-/// were; distances from planes do not, so that there the wheels decide, and where the scene has ends, bends
-/// or niches the scan does. Roll, pitch and height are measured, which wheels alone cannot
-/// (docs/decisions/0011-plane-icp.md has the figures).
+/// adit's own odometry for tunnels. It aligns the scan with the planes of the local map in all six directions
+/// and takes the wheels as one more measurement, with a stated noise. In a smooth tube, point-to-point ICP
+/// draws the robot towards standing still, because the rings of one scan fit those of the scan before best
+/// where they were. Distances from planes do not: there the wheels decide, and the scan decides where the
+/// scene has ends, bends or niches. Roll, pitch and height are measured, which wheels alone cannot do
+/// (figures: docs/decisions/0011-plane-icp.md).
 ///
 /// A step is `degenerate` where the scan alone leaves a direction open, and enters the map like a good one.
-/// `too_few_points` and `diverged` steps are the wheels' word and stay out of the map.
+/// Steps that are `too_few_points` or `diverged` keep the wheels' prediction and stay out of the map.
 class PlaneIcp {
  public:
   PlaneIcp(const PlaneIcpConfig& config, const Pose& T_base_lidar)
-      : config_(config), drive_(config, T_base_lidar) {}
+      : config_(config), drive_(config.scan_to_map, config.stationary_motion, T_base_lidar) {}
 
-  /// As WheelGuided's, these three.
+  /// See the same members of WheelGuided.
   OdometryStep register_scan(const Scan& scan, const WheelDelta& wheel);
   [[nodiscard]] PointCloud cloud_of_last_scan() const { return drive_.cloud_of_last_scan(); }
   [[nodiscard]] const LocalMap& map() const { return drive_.map(); }
@@ -47,7 +43,7 @@ class PlaneIcp {
 
   PlaneIcpConfig config_;
   WheelGuided drive_;
-  double usual_share_ = 0.0;  ///< Of a scan's points near a plane of the map.
+  double usual_share_ = 0.0;  ///< Share of the last scan's points that lay near a plane of the map.
 };
 
 }  // namespace adit

@@ -6,25 +6,21 @@
 #include <algorithm>
 
 #include "adit/core/parallel.hpp"
-#include "adit/core/vectors.hpp"
+#include "adit/core/simd.hpp"
 
 namespace adit {
 namespace {
 
-// Blocks of source points a part of the parallel sums; fixed, so that no result depends on the number of
+// Number of point blocks per part of the parallel sums; fixed, so that no result depends on the number of
 // threads.
 constexpr std::size_t kGrain = 2;
+// Square metres: the floor (1 um)^2 of the mean squared residual keeps the weight of the wheels finite.
+constexpr double kMinSquaredResidual = 1e-12;
 
-// Four sums side by side, whatever the machine: same order of additions, same bytes. Not `using`: GCC 12 then
-// drops the size.
-typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));  // NOLINT(modernize-use-using)
+using simd::Double4;
+using simd::fours;
 
 constexpr std::size_t kFours = Correspondences::kBlock / 4;
-
-const Four* fours(const std::array<double, Correspondences::kBlock>& values) {
-  return reinterpret_cast<const Four*>(values.data());
-}
-double total(const Four& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 
 // J^T W J and J^T W r of a block, from the moments of its points: with J = [I, -hat(p)], hat(p)^T hat(p) =
 // |p|^2 I - p p^T.
@@ -37,16 +33,16 @@ struct RigidSums {
 };
 
 ADIT_WIDE_VECTORS void sum_rigid(const Correspondences::Block& block, double kernel_scale, RigidSums& out) {
-  const Four* p[3] = {fours(block.px), fours(block.py), fours(block.pz)};
-  const Four* r[3] = {fours(block.rx), fours(block.ry), fours(block.rz)};
-  Four weight[kFours];
-  Four weights = {}, squares = {}, found = {};
-  Four x = {}, y = {}, z = {};
-  Four rx = {}, ry = {}, rz = {};
+  const Double4* p[3] = {fours(block.px), fours(block.py), fours(block.pz)};
+  const Double4* r[3] = {fours(block.rx), fours(block.ry), fours(block.rz)};
+  Double4 weight[kFours];
+  Double4 weights = {}, squares = {}, found = {};
+  Double4 x = {}, y = {}, z = {};
+  Double4 rx = {}, ry = {}, rz = {};
   for (std::size_t i = 0; i < kFours; ++i) {
-    const Four r2 = r[0][i] * r[0][i] + r[1][i] * r[1][i] + r[2][i] * r[2][i];
-    const Four root = kernel_scale / (kernel_scale + r2);
-    const Four w = fours(block.found)[i] * root * root;
+    const Double4 r2 = r[0][i] * r[0][i] + r[1][i] * r[1][i] + r[2][i] * r[2][i];
+    const Double4 root = kernel_scale / (kernel_scale + r2);
+    const Double4 w = fours(block.found)[i] * root * root;
     weight[i] = w;
     weights += w;
     squares += r2;
@@ -58,12 +54,12 @@ ADIT_WIDE_VECTORS void sum_rigid(const Correspondences::Block& block, double ker
     ry += w * r[1][i];
     rz += w * r[2][i];
   }
-  Four xx = {}, xy = {}, xz = {}, yy = {}, yz = {}, zz = {};
-  Four cx = {}, cy = {}, cz = {};
+  Double4 xx = {}, xy = {}, xz = {}, yy = {}, yz = {}, zz = {};
+  Double4 cx = {}, cy = {}, cz = {};
   for (std::size_t i = 0; i < kFours; ++i) {
-    const Four wx = weight[i] * p[0][i];
-    const Four wy = weight[i] * p[1][i];
-    const Four wz = weight[i] * p[2][i];
+    const Double4 wx = weight[i] * p[0][i];
+    const Double4 wy = weight[i] * p[1][i];
+    const Double4 wz = weight[i] * p[2][i];
     xx += wx * p[0][i];
     xy += wx * p[1][i];
     xz += wx * p[2][i];
@@ -74,11 +70,12 @@ ADIT_WIDE_VECTORS void sum_rigid(const Correspondences::Block& block, double ker
     cy += wz * r[0][i] - wx * r[2][i];
     cz += wx * r[1][i] - wy * r[0][i];
   }
-  out = {total(weights), total(squares), total(found),                                   //
-         total(x),       total(y),       total(z),                                       //
-         total(xx),      total(xy),      total(xz),    total(yy), total(yz), total(zz),  //
-         total(rx),      total(ry),      total(rz),                                      //
-         total(cx),      total(cy),      total(cz)};
+  out = {simd::sum(weights), simd::sum(squares), simd::sum(found),  //
+         simd::sum(x),       simd::sum(y),       simd::sum(z),      //
+         simd::sum(xx),      simd::sum(xy),      simd::sum(xz),
+         simd::sum(yy),      simd::sum(yz),      simd::sum(zz),  //
+         simd::sum(rx),      simd::sum(ry),      simd::sum(rz),  //
+         simd::sum(cx),      simd::sum(cy),      simd::sum(cz)};
 }
 
 NormalEquations<6> rigid_equations(const Correspondences::Block& block, double kernel_scale) {
@@ -105,11 +102,11 @@ struct UnicycleSums {
 };
 
 ADIT_WIDE_VECTORS void sum_unicycle(const Correspondences::Block& block, UnicycleSums& out) {
-  const Four* p[2] = {fours(block.px), fours(block.py)};
-  const Four* r[3] = {fours(block.rx), fours(block.ry), fours(block.rz)};
-  Four found = {}, squares = {}, y = {}, xx_yy = {}, rx = {}, c = {};
+  const Double4* p[2] = {fours(block.px), fours(block.py)};
+  const Double4* r[3] = {fours(block.rx), fours(block.ry), fours(block.rz)};
+  Double4 found = {}, squares = {}, y = {}, xx_yy = {}, rx = {}, c = {};
   for (std::size_t i = 0; i < kFours; ++i) {
-    const Four f = fours(block.found)[i];
+    const Double4 f = fours(block.found)[i];
     found += f;
     squares += r[0][i] * r[0][i] + r[1][i] * r[1][i] + r[2][i] * r[2][i];
     y += f * p[1][i];
@@ -117,7 +114,7 @@ ADIT_WIDE_VECTORS void sum_unicycle(const Correspondences::Block& block, Unicycl
     rx += r[0][i];
     c += p[0][i] * r[1][i] - p[1][i] * r[0][i];
   }
-  out = {total(found), total(squares), total(y), total(xx_yy), total(rx), total(c)};
+  out = {simd::sum(found), simd::sum(squares), simd::sum(y), simd::sum(xx_yy), simd::sum(rx), simd::sum(c)};
 }
 
 NormalEquations<2> unicycle_equations(const Correspondences::Block& block) {
@@ -168,6 +165,24 @@ Alignment gauss_newton(const Pose& T_prediction, const ScanToMapConfig& config, 
 
 }  // namespace
 
+Fields fields_of(ScanToMapConfig& c) {
+  return {
+      {"voxel_size", &c.voxel_size, "m", 0.01, 10.0,
+       "edge of a map voxel; scans are thinned to 0.5 and 1.5 of it"},
+      {"max_range", &c.max_range, "m", 1.0, 1000.0, "points beyond are dropped, and so is the map beyond it"},
+      {"min_range", &c.min_range, "m", 0.0, 100.0, "points nearer are dropped"},
+      {"max_points_per_voxel", &c.max_points_per_voxel, "", 1, 200, "points kept per map voxel"},
+      {"deskew", &c.deskew, "", 0, 1, "remove the motion within the sweep where points carry times"},
+      {"max_iterations", &c.max_iterations, "", 1, 10000, "Gauss-Newton iterations per scan, at most"},
+      {"convergence", &c.convergence, "", 1e-9, 1.0,
+       "norm of the last step [m; rad] at which iterating stops"},
+      {"min_correspondences", &c.min_correspondences, "", 6, 100000, "fewer leave the scan unregistered"},
+      {"max_correction", &c.max_correction, "m", 0.01, 1000.0,
+       "larger corrections of the predicted position count as divergence"},
+      {"degeneracy_threshold", &c.degeneracy_threshold, "", 0.0, 0.33,
+       "share of the information (1/3 = even) below which a direction counts as open"}};
+}
+
 NormalEquations<6> linearize_rigid(Correspondences& pairs, const Pose& T_map_base, double kernel_scale) {
   return sum_of_blocks<NormalEquations<6>>(pairs, T_map_base, [&](const Correspondences::Block& block) {
     return rigid_equations(block, kernel_scale);
@@ -182,8 +197,8 @@ Pose unicycle_motion(double distance, double turn) {
   return Pose::exp((Vector6() << distance, 0.0, 0.0, 0.0, 0.0, turn).finished());
 }
 
-Alignment align_rigid(std::span<const Eigen::Vector3f> source, const LocalMap& map, const Pose& T_prediction,
-                      double sigma, const ScanToMapConfig& config) {
+Alignment align_point_to_point(std::span<const Eigen::Vector3f> source, const LocalMap& map,
+                               const Pose& T_prediction, double sigma, const ScanToMapConfig& config) {
   Correspondences pairs(source, map, 3.0 * sigma);
   return gauss_newton(
       T_prediction, config, [&](const Pose& T_map_base) { return linearize_rigid(pairs, T_map_base, sigma); },
@@ -198,8 +213,7 @@ Alignment align_unicycle(std::span<const Eigen::Vector3f> source, const LocalMap
       T_prediction, config, [&](const Pose& T_map_base) { return linearize_unicycle(pairs, T_map_base); },
       [&](const NormalEquations<2>& equations) -> Vector6 {
         const double n = equations.num_correspondences;
-        // A perfect fit gives an infinite weight to the wheels; the floor (1 um)^2 keeps it a number.
-        if (!beta) beta = 1.0 / (equations.squared_residuals / n + 1e-12);
+        if (!beta) beta = 1.0 / (equations.squared_residuals / n + kMinSquaredResidual);
         Eigen::Matrix2d H = equations.H / n;
         H(0, 0) += *beta;
         const Eigen::Vector2d u = H.ldlt().solve(-equations.g / n);
@@ -207,7 +221,8 @@ Alignment align_unicycle(std::span<const Eigen::Vector3f> source, const LocalMap
       });
 }
 
-ThinnedScan thinned(std::span<const Eigen::Vector3f> points_base, double voxel_size, VoxelThinner& thinner) {
+ThinnedScan thinned_twice(std::span<const Eigen::Vector3f> points_base, double voxel_size,
+                          VoxelThinner& thinner) {
   ThinnedScan out;
   for (const std::uint32_t i : thinner.first_in_voxel(points_base, 0.5 * voxel_size))
     out.map_points.push_back(points_base[i]);

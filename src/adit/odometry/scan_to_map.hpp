@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// What both odometries share: settings, point-to-point alignment of a thinned scan with the local map, and
-/// the judgement on how well the scene fixes the pose.
+/// What all odometries share: settings, point-to-point alignment of a thinned scan with the local map, and
+/// the step that they report. Points are metres in the base frame, poses T_map_base.
 #pragma once
 
 #include <span>
@@ -15,7 +15,9 @@
 
 namespace adit {
 
-/// Defaults of KISS-ICP 1.2; its rule for the voxel is max_range / 100.
+/// How a scan is thinned, aligned with the local map and judged. The defaults are those of KISS-ICP 1.2 (its
+/// rule for the voxel is max_range / 100); each odometry lists in its own configuration what it sets
+/// otherwise.
 struct ScanToMapConfig {
   double voxel_size = 1.0;
   double max_range = 100.0;
@@ -29,23 +31,7 @@ struct ScanToMapConfig {
   double degeneracy_threshold = 0.01;
 };
 
-inline Fields fields_of(ScanToMapConfig& c) {
-  return {
-      {"voxel_size", &c.voxel_size, "m", 0.01, 10.0,
-       "edge of a map voxel; scans are thinned to 0.5 and 1.5 of it"},
-      {"max_range", &c.max_range, "m", 1.0, 1000.0, "points beyond are dropped, and so is the map beyond it"},
-      {"min_range", &c.min_range, "m", 0.0, 100.0, "points nearer are dropped"},
-      {"max_points_per_voxel", &c.max_points_per_voxel, "", 1, 200, "points kept in a map voxel"},
-      {"deskew", &c.deskew, "", 0, 1, "remove the motion within the sweep where points carry times"},
-      {"max_iterations", &c.max_iterations, "", 1, 10000, "Gauss-Newton iterations a scan, at most"},
-      {"convergence", &c.convergence, "", 1e-9, 1.0,
-       "norm of the last step [m; rad] at which iterating stops"},
-      {"min_correspondences", &c.min_correspondences, "", 6, 100000, "fewer leave the scan unregistered"},
-      {"max_correction", &c.max_correction, "m", 0.01, 1000.0,
-       "a larger one of the prediction counts as diverged"},
-      {"degeneracy_threshold", &c.degeneracy_threshold, "", 0.0, 0.33,
-       "share of the information (1/3 = even) below which a direction counts as open"}};
-}
+[[nodiscard]] Fields fields_of(ScanToMapConfig& config);
 
 /// Normal equations of a Gauss-Newton step in N unknowns, and the unweighted sum of squared residuals.
 template <int N>
@@ -87,8 +73,9 @@ struct Alignment {
 
 /// Gauss-Newton on `linearize_rigid` from the prediction; `sigma` is the kernel's scale and correspondences
 /// reach to 3 sigma.
-[[nodiscard]] Alignment align_rigid(std::span<const Eigen::Vector3f> source, const LocalMap& map,
-                                    const Pose& T_prediction, double sigma, const ScanToMapConfig& config);
+[[nodiscard]] Alignment align_point_to_point(std::span<const Eigen::Vector3f> source, const LocalMap& map,
+                                             const Pose& T_prediction, double sigma,
+                                             const ScanToMapConfig& config);
 
 /// Gauss-Newton on `linearize_unicycle` from the prediction. The forward step is damped by beta = 1 / (mean
 /// squared residual at the prediction), so the better the wheels already fit the scene, the more they are
@@ -97,13 +84,13 @@ struct Alignment {
                                        const Pose& T_prediction, double max_distance,
                                        const ScanToMapConfig& config);
 
-/// A scan thinned twice (KISS-ICP, section III-B), base frame.
+/// A scan thinned twice (KISS-ICP, section III-B), metres, base frame.
 struct ThinnedScan {
-  std::vector<Eigen::Vector3f> map_points;  ///< One a cube of half a voxel: what the map takes.
-  std::vector<Eigen::Vector3f> source;      ///< Of those one a cube of 1.5 voxels: what is registered.
+  std::vector<Eigen::Vector3f> map_points;  ///< One point per cube of half a voxel: what the map takes.
+  std::vector<Eigen::Vector3f> source;      ///< Of those one per cube of 1.5 voxels: what is registered.
 };
-[[nodiscard]] ThinnedScan thinned(std::span<const Eigen::Vector3f> points_base, double voxel_size,
-                                  VoxelThinner& thinner);
+[[nodiscard]] ThinnedScan thinned_twice(std::span<const Eigen::Vector3f> points_base, double voxel_size,
+                                        VoxelThinner& thinner);
 
 /// The step of a scan that finds the map empty: it starts the map unless it has too few points for that.
 [[nodiscard]] OdometryStep first_step(const ThinnedScan& scan, const Pose& T_prediction,

@@ -137,7 +137,7 @@ Built built(const test::Scene& scene, double noise) {
   for (int i = 0; i < 12; ++i) {
     lidar.seed = static_cast<std::uint64_t>(i);
     const Scan scan = test::scan_of(scene, lidar, Pose(), {}, 0);
-    const ThinnedScan thin = thinned(scan.cloud.points, 0.5, thinner);
+    const ThinnedScan thin = thinned_twice(scan.cloud.points, 0.5, thinner);
     out.map.add(thin.map_points, Pose());
     out.source = thin.source;
   }
@@ -173,9 +173,9 @@ TEST(Observability, NothingSeenIsDegenerateAndKnowsNothing) {
 TEST(Align, NoCorrespondencesIsAStatusNotANumber) {
   const Pairs pairs;
   const Pose T_far = Pose::translation_of(500.0, 0.0, 0.0);
-  for (const Alignment& a : {align_rigid(pairs.source, pairs.map, T_far, 0.3, {}),
+  for (const Alignment& a : {align_point_to_point(pairs.source, pairs.map, T_far, 0.3, {}),
                              align_unicycle(pairs.source, pairs.map, T_far, 0.9, {}),
-                             align_rigid({}, pairs.map, T_far, 0.3, {})}) {
+                             align_point_to_point({}, pairs.map, T_far, 0.3, {})}) {
     EXPECT_EQ(a.status, StepStatus::too_few_points);
     EXPECT_EQ(a.T_map_base.matrix(), T_far.matrix());
     EXPECT_EQ(a.num_correspondences, 0);
@@ -187,7 +187,7 @@ TEST(Align, LeavingTheTrustRegionIsDivergence) {
   ScanToMapConfig config;
   config.max_correction = 0.01;
   const Pose T_off = pairs.T_map_base * Pose::translation_of(0.2, 0.0, 0.0);
-  const Alignment a = align_rigid(pairs.source, pairs.map, T_off, 1.0, config);
+  const Alignment a = align_point_to_point(pairs.source, pairs.map, T_off, 1.0, config);
   EXPECT_EQ(a.status, StepStatus::diverged);
   EXPECT_EQ(a.T_map_base.matrix(), T_off.matrix());
 }

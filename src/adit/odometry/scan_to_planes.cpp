@@ -7,21 +7,34 @@
 #include <numbers>
 
 #include "adit/core/parallel.hpp"
+#include "adit/core/robust_kernel.hpp"
 
 namespace adit {
 namespace {
 
-// Points of a part of the parallel loop.
+// Points per part of the parallel loop.
 constexpr std::size_t kGrain = 32;
-// Smaller patches follow rough walls better; a tenth is the unevenness of blasted rock.
-constexpr PlaneLimits kPatch{0.7, 0.1};
-// The map's planes are those around the points at the prediction. Should the scan move farther than this from
-// there, voxels, they are looked up once more.
-constexpr double kFar = 0.2;
-// Below this share of the usual points near a plane the prediction is poor.
-constexpr double kPoor = 0.9;
+// Patches of 0.7 voxels follow rough walls better than whole ones; a tenth of thickness is the unevenness of
+// blasted rock.
+constexpr PlaneLimits kPatch{.radius = 0.7, .thickness = 0.1};
+// Voxels. The map's planes are those around the points at the prediction; should the scan move farther than
+// this from there, they are looked up once more.
+constexpr double kLookUpAgain = 0.2;
+// Share of the usual points near a plane below which the prediction is poor.
+constexpr double kPoorShare = 0.9;
+// The kernel's scale, standard deviations.
+constexpr double kKernelSigmas = 3.0;
 
-using Planes = std::vector<std::optional<MapPlane>>;
+using Planes = std::vector<std::optional<Plane>>;
+
+// The problem at hand: what is aligned with what.
+struct Problem {
+  std::span<const Eigen::Vector3f> source;
+  const LocalMap& map;
+  const PosePrior& prior;
+  double sigma;
+  const ScanToMapConfig& config;
+};
 
 Planes planes_around(std::span<const Eigen::Vector3f> source, const LocalMap& map, const Pose& T_map_base) {
   Planes planes(source.size());
@@ -37,63 +50,87 @@ double share_found(const Planes& planes) {
   return static_cast<double>(found) / static_cast<double>(std::max<std::size_t>(1, planes.size()));
 }
 
-std::vector<PlaneRow> rows_of(std::span<const Eigen::Vector3f> source, const Planes& planes,
-                              const Pose& T_map_base) {
+std::vector<PlaneResidual> residuals_at(std::span<const Eigen::Vector3f> source, const Planes& planes,
+                                        const Pose& T_map_base) {
   const Matrix3 R = T_map_base.rotation_matrix();
-  std::vector<PlaneRow> rows;
-  rows.reserve(source.size());
+  std::vector<PlaneResidual> residuals;
+  residuals.reserve(source.size());
   for (std::size_t i = 0; i < source.size(); ++i)
     if (planes[i])
-      rows.push_back(plane_row(source[i].cast<double>(), *planes[i], R, T_map_base.translation()));
-  return rows;
+      residuals.push_back(plane_residual(R, T_map_base.translation(), *planes[i], source[i].cast<double>()));
+  return residuals;
 }
 
-NormalEquations<6> linearize_planes(const std::vector<PlaneRow>& rows, double sigma) {
-  const double scale = 9.0 * sigma * sigma;
+NormalEquations<6> linearize_planes(const std::vector<PlaneResidual>& residuals, double sigma) {
+  const double scale = kKernelSigmas * kKernelSigmas * sigma * sigma;
   NormalEquations<6> out;
-  for (const PlaneRow& row : rows) {
-    const double r2 = row.residual * row.residual;
-    const double root = scale / (scale + r2);
+  for (const PlaneResidual& residual : residuals) {
+    const double r2 = residual.value * residual.value;
+    const double root = geman_mcclure_root(scale, r2);
     const double weight = root * root / (sigma * sigma);
-    out.H.selfadjointView<Eigen::Lower>().rankUpdate(row.jacobian, weight);
-    out.g += weight * row.residual * row.jacobian;
+    out.H.selfadjointView<Eigen::Lower>().rankUpdate(residual.jacobian, weight);
+    out.g += weight * residual.value * residual.jacobian;
     out.squared_residuals += r2;
   }
   out.H = out.H.selfadjointView<Eigen::Lower>();
-  out.num_correspondences = static_cast<int>(rows.size());
+  out.num_correspondences = static_cast<int>(residuals.size());
   return out;
 }
 
-// Gauss-Newton with these planes, from `out.T_map_base` on.
-void refine(std::span<const Eigen::Vector3f> source, const Planes& planes, const Pose& T_prediction,
-            const Matrix6& information, double sigma, const ScanToMapConfig& config, PlaneAlignment& out) {
-  for (int i = 0; i < config.max_iterations; ++i) {
-    const NormalEquations<6> equations = linearize_planes(rows_of(source, planes, out.T_map_base), sigma);
-    const Vector6 off = (T_prediction.inverse() * out.T_map_base).log();
-    const Vector6 step = (equations.H + information).ldlt().solve(-(equations.g + information * off));
-    ++out.iterations;
+// Gauss-Newton with these planes, on from the pose of `so_far`.
+PlaneAlignment refined(const Problem& problem, const Planes& planes, PlaneAlignment so_far) {
+  const PosePrior& prior = problem.prior;
+  for (int i = 0; i < problem.config.max_iterations; ++i) {
+    const NormalEquations<6> equations =
+        linearize_planes(residuals_at(problem.source, planes, so_far.T_map_base), problem.sigma);
+    const Vector6 off = (prior.T_map_base.inverse() * so_far.T_map_base).log();
+    const Vector6 step =
+        (equations.H + prior.information).ldlt().solve(-(equations.g + prior.information * off));
+    ++so_far.iterations;
     if (!step.allFinite()) {
-      out.status = StepStatus::diverged;
-      return;
+      so_far.status = StepStatus::diverged;
+      break;
     }
-    out.T_map_base = out.T_map_base * Pose::exp(step);
-    if (step.norm() < config.convergence) return;
+    so_far.T_map_base = so_far.T_map_base * Pose::exp(step);
+    if (step.norm() < problem.config.convergence) break;
   }
+  return so_far;
+}
+
+// Where to start from, and the planes there.
+struct Start {
+  Pose T_map_base;
+  Planes planes;
+  int iterations = 0;  // of point-to-point ICP
+};
+
+// The prediction, or where point-to-point ICP ends if that puts more points near a plane.
+Start start_of(const Problem& problem) {
+  const auto& [source, map, prior, sigma, config] = problem;
+  Start out{prior.T_map_base, planes_around(source, map, prior.T_map_base)};
+  if (share_found(out.planes) >= kPoorShare * prior.usual_share) return out;
+  const Alignment coarse = align_point_to_point(source, map, prior.T_map_base, map.voxel_size(), config);
+  out.iterations = coarse.iterations;
+  if (coarse.status != StepStatus::ok) return out;
+  Planes at_coarse = planes_around(source, map, coarse.T_map_base);
+  if (share_found(at_coarse) > share_found(out.planes))
+    return {coarse.T_map_base, std::move(at_coarse), coarse.iterations};
+  return out;
 }
 
 }  // namespace
 
 Fields fields_of(WheelNoise& c) {
-  return {{"slip", &c.slip, "", 1e-4, 1.0, "forward, in each metre driven"},
-          {"sideways", &c.sideways, "", 1e-4, 1.0, "sideways, in each metre"},
-          {"climb", &c.climb, "", 1e-4, 10.0, "up and down, in each metre"},
-          {"tilt_deg", &c.tilt_deg, "deg/m", 1e-3, 360.0, "roll and pitch, in each metre"},
-          {"heading_deg", &c.heading_deg, "deg/m", 1e-3, 360.0, "heading, in each metre"},
-          {"turn", &c.turn, "", 1e-4, 1.0, "of the angle turned"}};
+  return {{"slip", &c.slip, "", 1e-4, 1.0, "forward, per metre driven"},
+          {"sideways", &c.sideways, "", 1e-4, 1.0, "sideways, per metre"},
+          {"climb", &c.climb, "", 1e-4, 10.0, "up and down, per metre"},
+          {"tilt_deg", &c.tilt_deg, "deg/m", 1e-3, 360.0, "roll and pitch, per metre"},
+          {"heading_deg", &c.heading_deg, "deg/m", 1e-3, 360.0, "heading, per metre"},
+          {"turn", &c.turn, "", 1e-4, 1.0, "heading again, share of the angle turned"}};
 }
 
 Matrix6 wheel_information(const WheelNoise& noise, const Pose& T_last_now) {
-  // What encoder ticks and the clock leave open of a robot that hardly moves.
+  // Encoder ticks and the clock leave this much open for a robot that hardly moves.
   constexpr double kFloor = 0.001;       // metres
   constexpr double kTurnFloor = 0.0002;  // radians
   constexpr double kSlipFloor = 2 * kFloor;
@@ -107,39 +144,28 @@ Matrix6 wheel_information(const WheelNoise& noise, const Pose& T_last_now) {
   return sigma.array().square().inverse().matrix().asDiagonal();
 }
 
-PlaneAlignment align_planes(std::span<const Eigen::Vector3f> source, const LocalMap& map,
-                            const Pose& T_prediction, const Matrix6& information, double sigma,
-                            double usual_share, const ScanToMapConfig& config) {
+PlaneAlignment align_point_to_plane(std::span<const Eigen::Vector3f> source, const LocalMap& map,
+                                    const PosePrior& prior, double sigma, const ScanToMapConfig& config) {
+  const Problem problem{source, map, prior, sigma, config};
+  auto [T_start, planes, iterations] = start_of(problem);
   PlaneAlignment out;
-  out.T_map_base = T_prediction;
-  Planes planes = planes_around(source, map, T_prediction);
-  if (share_found(planes) < kPoor * usual_share) {
-    const Alignment coarse = align_rigid(source, map, T_prediction, map.voxel_size(), config);
-    out.iterations = coarse.iterations;
-    if (coarse.status == StepStatus::ok) {
-      Planes at_coarse = planes_around(source, map, coarse.T_map_base);
-      if (share_found(at_coarse) > share_found(planes)) {
-        out.T_map_base = coarse.T_map_base;
-        planes = std::move(at_coarse);
-      }
-    }
-  }
-  const Pose T_looked_up = out.T_map_base;
-  refine(source, planes, T_prediction, information, sigma, config, out);
-  if ((T_looked_up.inverse() * out.T_map_base).translation().norm() > kFar * map.voxel_size()) {
+  out.T_map_base = T_start;
+  out.iterations = iterations;
+  out = refined(problem, planes, out);
+  if ((T_start.inverse() * out.T_map_base).translation().norm() > kLookUpAgain * map.voxel_size()) {
     planes = planes_around(source, map, out.T_map_base);
-    refine(source, planes, T_prediction, information, sigma, config, out);
+    out = refined(problem, planes, out);
   }
-  if ((T_prediction.inverse() * out.T_map_base).translation().norm() > config.max_correction)
+  if ((prior.T_map_base.inverse() * out.T_map_base).translation().norm() > config.max_correction)
     out.status = StepStatus::diverged;
   if (out.status == StepStatus::diverged) {
-    out.T_map_base = T_prediction;
+    out.T_map_base = prior.T_map_base;
     return out;
   }
-  const std::vector<PlaneRow> rows = rows_of(source, planes, out.T_map_base);
-  out.num_correspondences = static_cast<int>(rows.size());
+  const std::vector<PlaneResidual> residuals = residuals_at(source, planes, out.T_map_base);
+  out.num_correspondences = static_cast<int>(residuals.size());
   out.share_near = share_found(planes);
-  out.seen = observability(rows, source, 1.0, config.degeneracy_threshold);
+  out.seen = observability(residuals, source, 1.0, config.degeneracy_threshold);
   return out;
 }
 

@@ -26,7 +26,7 @@ Scene room() {
   for (int i = 0; i < 13; ++i) {
     lidar.seed = static_cast<std::uint64_t>(i);
     const ThinnedScan thin =
-        thinned(test::scan_of(test::furnished_room(), lidar, Pose(), {}, 0).cloud.points, 0.5, thinner);
+        thinned_twice(test::scan_of(test::furnished_room(), lidar, Pose(), {}, 0).cloud.points, 0.5, thinner);
     if (i < 12) out.map.add(thin.map_points, Pose());
     out.source = thin.source;
   }
@@ -35,19 +35,9 @@ Scene room() {
 
 const Matrix6 kHardly = Matrix6::Identity() * 1e-6;
 
-TEST(PlaneRow, JacobianAgainstFiniteDifferences) {
-  const Pose T(so3::exp({0.3, -0.5, 1.1}), Vector3(4.0, -2.0, 0.5));
-  const Vector3 p(3.0, -7.0, 1.5);
-  const MapPlane plane{{1.0, 2.0, 3.0}, Vector3(0.2, -0.7, 0.4).normalized()};
-  const auto row = [&](const Pose& pose) {
-    return plane_row(p, plane, pose.rotation_matrix(), pose.translation());
-  };
-  EXPECT_NEAR(row(T).residual, plane.normal.dot(T * p - plane.point), 1e-12);
-  for (int k = 0; k < 6; ++k) {
-    const Vector6 step = 1e-6 * Vector6::Unit(k);
-    const double slope = (row(T * Pose::exp(step)).residual - row(T * Pose::exp(-step)).residual) / 2e-6;
-    EXPECT_NEAR(row(T).jacobian[k], slope, 1e-7) << k;
-  }
+PlaneAlignment aligned(const Scene& scene, const PosePrior& prior,
+                       const ScanToMapConfig& config = PlaneIcpConfig().scan_to_map) {
+  return align_point_to_plane(scene.source, scene.map, prior, 0.05, config);
 }
 
 TEST(PlaneAt, NeitherALineNorAScatterNorTooFewPointsArePlanes) {
@@ -83,11 +73,10 @@ TEST(WheelInformation, IsThatOfADistributionEvenAtRest) {
   for (int k = 0; k < 6; ++k) EXPECT_LT(far(k, k), near(k, k)) << k;
 }
 
-TEST(AlignPlanes, FindsThePoseFromAPoorPrediction) {
+TEST(AlignPointToPlane, FindsThePoseFromAPoorPrediction) {
   const Scene scene = room();
   const Pose T_prediction(so3::exp({0.01, -0.02, 0.02}), Vector3(0.1, -0.08, 0.05));
-  const PlaneAlignment found =
-      align_planes(scene.source, scene.map, T_prediction, kHardly, 0.05, 0.0, PlaneIcpConfig());
+  const PlaneAlignment found = aligned(scene, {T_prediction, kHardly});
   EXPECT_EQ(found.status, StepStatus::ok);
   EXPECT_LT(found.T_map_base.translation().norm(), 0.01);
   EXPECT_LT(found.T_map_base.angle(), 0.001);
@@ -96,35 +85,32 @@ TEST(AlignPlanes, FindsThePoseFromAPoorPrediction) {
 }
 
 // A kerb or the foot of a ramp: the planes around the points are not theirs any more.
-TEST(AlignPlanes, WhereFewPointsLieNearAPlanePointsFindTheWayFirst) {
+TEST(AlignPointToPlane, WhereFewPointsLieNearAPlanePointToPointComesFirst) {
   const Scene scene = room();
   const Pose T_prediction(so3::exp({0.0, 0.14, 0.0}), Vector3(0.0, 0.0, 0.1));
-  const double usual =
-      align_planes(scene.source, scene.map, Pose(), kHardly, 0.05, 0.0, PlaneIcpConfig()).share_near;
+  const double usual = aligned(scene, {Pose(), kHardly}).share_near;
   const auto error = [&](double usual_share) {
-    return align_planes(scene.source, scene.map, T_prediction, kHardly, 0.05, usual_share, PlaneIcpConfig())
-        .T_map_base.angle();
+    return aligned(scene, {T_prediction, kHardly, usual_share}).T_map_base.angle();
   };
   EXPECT_LT(error(usual), 0.002);
   EXPECT_GT(error(0.0), 5.0 * error(usual));
 }
 
-TEST(AlignPlanes, WithoutPlanesTheWheelsDecideAndNothingIsKnown) {
+TEST(AlignPointToPlane, WithoutPlanesTheWheelsDecideAndNothingIsKnown) {
   const Pose T_prediction = Pose::planar(1.0, 2.0, 0.3);
-  const PlaneAlignment found = align_planes(room().source, LocalMap(0.5, 10), T_prediction,
-                                            wheel_information({}, Pose()), 0.05, 0.0, PlaneIcpConfig());
+  const PlaneAlignment found =
+      aligned({.source = room().source}, {T_prediction, wheel_information({}, Pose())});
   EXPECT_LT((T_prediction.inverse() * found.T_map_base).log().norm(), 1e-9);
   EXPECT_TRUE(found.seen.degenerate);
   EXPECT_EQ(found.seen.information, Matrix6::Zero());
 }
 
-TEST(AlignPlanes, ACorrectionBeyondTheBoundIsDivergence) {
+TEST(AlignPointToPlane, ACorrectionBeyondTheBoundIsDivergence) {
   const Scene scene = room();
-  PlaneIcpConfig config;
+  ScanToMapConfig config = PlaneIcpConfig().scan_to_map;
   config.max_correction = 0.02;
   const Pose T_prediction = Pose::translation_of(0.1, -0.08, 0.05);
-  const PlaneAlignment found =
-      align_planes(scene.source, scene.map, T_prediction, kHardly, 0.05, 0.0, config);
+  const PlaneAlignment found = aligned(scene, {T_prediction, kHardly}, config);
   EXPECT_EQ(found.status, StepStatus::diverged);
   EXPECT_EQ(found.T_map_base.matrix(), T_prediction.matrix());
 }

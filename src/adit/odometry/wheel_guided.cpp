@@ -6,16 +6,20 @@
 
 namespace adit {
 
-Fields fields_of(WheelGuidedConfig& c) {
-  Fields fields = fields_of(static_cast<ScanToMapConfig&>(c));
-  fields.push_back(
-      {"stationary_motion", &c.stationary_motion, "", 0.0, 1.0,
-       "norm of the wheel motion [m; rad] since the last registered scan up to which none is registered"});
-  return fields;
+Field stationary_motion_field(double* stationary_motion) {
+  return {"stationary_motion",
+          stationary_motion,
+          "",
+          0.0,
+          1.0,
+          "norm of the wheel motion [m; rad] since the last registered scan up to which none is registered"};
 }
 
-WheelGuided::WheelGuided(const WheelGuidedConfig& config, const Pose& T_base_lidar)
-    : config_(config), T_base_lidar_(T_base_lidar), map_(config.voxel_size, config.max_points_per_voxel) {}
+WheelGuided::WheelGuided(const ScanToMapConfig& config, double stationary_motion, const Pose& T_base_lidar)
+    : config_(config),
+      stationary_motion_(stationary_motion),
+      T_base_lidar_(T_base_lidar),
+      map_(config.voxel_size, config.max_points_per_voxel) {}
 
 OdometryStep WheelGuided::register_scan(const Scan& scan, const WheelDelta& wheel,
                                         const Register& register_with_map) {
@@ -35,7 +39,7 @@ OdometryStep WheelGuided::register_scan(const Scan& scan, const WheelDelta& whee
 
 bool WheelGuided::is_at_rest(const Pose& T_prediction) const {
   return last_registered_ &&
-         (last_registered_->T_odom_base.inverse() * T_prediction).log().norm() <= config_.stationary_motion;
+         (last_registered_->T_odom_base.inverse() * T_prediction).log().norm() <= stationary_motion_;
 }
 
 OdometryStep WheelGuided::resting(const Pose& T_prediction) const {
@@ -49,7 +53,7 @@ OdometryStep WheelGuided::resting(const Pose& T_prediction) const {
 
 OdometryStep WheelGuided::moving(const Pose& T_prediction, const Pose& T_last_now,
                                  const Register& register_with_map) {
-  const ThinnedScan thin = thinned(cloud_.points, config_.voxel_size, thinner_);
+  const ThinnedScan thin = thinned_twice(cloud_.points, config_.voxel_size, thinner_);
   const OdometryStep step = map_.empty() ? first_step(thin, T_prediction, config_)
                                          : register_with_map(thin, T_prediction, T_last_now);
   update_map(map_, thin, step, config_);

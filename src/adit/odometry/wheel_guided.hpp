@@ -12,13 +12,13 @@
 
 namespace adit {
 
-struct WheelGuidedConfig : ScanToMapConfig {
-  double stationary_motion = 1e-3;
-};
-Fields fields_of(WheelGuidedConfig& config);
+/// Norm of the wheels' motion [m; rad] since the last registered scan up to which the robot counts as at
+/// rest; the value of Kinematic-ICP (Guadagnino et al., ICRA 2025).
+inline constexpr double kStationaryMotion = 1e-3;
+[[nodiscard]] Field stationary_motion_field(double* stationary_motion);
 
-/// What odometries with wheels share, whatever they make of a scan: the wheels predict and deskew, a robot at
-/// rest is not registered, the first scan starts the map and those that are registered enter it.
+/// What odometries with wheels share, however they register a scan: the wheels predict and deskew, a robot at
+/// rest is not registered, the first scan starts the map, and scans that were registered enter it.
 class WheelGuided {
  public:
   /// Registers a thinned scan with the map, which is not empty. `T_prediction`: T_odom_base by the wheels,
@@ -26,9 +26,9 @@ class WheelGuided {
   using Register =
       std::function<OdometryStep(const ThinnedScan& scan, const Pose& T_prediction, const Pose& T_last_now)>;
 
-  WheelGuided(const WheelGuidedConfig& config, const Pose& T_base_lidar);
+  WheelGuided(const ScanToMapConfig& config, double stationary_motion, const Pose& T_base_lidar);
 
-  /// `wheel` is the motion of the base since the last scan; of the first scan it is ignored. Its duration
+  /// `wheel` is the motion of the base since the last scan; it is ignored for the first scan. Its duration
   /// must be positive where the scan has per-point times.
   OdometryStep register_scan(const Scan& scan, const WheelDelta& wheel, const Register& register_with_map);
   /// The last scan, deskewed and range-cropped at full density, in the base frame at its stamp.
@@ -41,7 +41,8 @@ class WheelGuided {
   [[nodiscard]] OdometryStep moving(const Pose& T_prediction, const Pose& T_last_now,
                                     const Register& register_with_map);
 
-  WheelGuidedConfig config_;
+  ScanToMapConfig config_;
+  double stationary_motion_;
   Pose T_base_lidar_;
   LocalMap map_;
   Pose T_odom_base_;

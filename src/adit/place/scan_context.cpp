@@ -10,7 +10,7 @@
 
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
-#include "adit/core/vectors.hpp"
+#include "adit/core/simd.hpp"
 
 namespace adit {
 namespace {
@@ -272,11 +272,6 @@ ContextMatch compare(const ScanContext& query, const ScanContext& match) {
   check_same_grid(query, match);
   const int reach = static_cast<int>(std::lround(0.05 * query.num_sectors));
   return best_around(query, match, aligned_shift(query, match), reach);
-}
-
-ContextMatch compare_all_shifts(const ScanContext& query, const ScanContext& match) {
-  check_same_grid(query, match);
-  return best_around(query, match, query.num_sectors / 2, query.num_sectors / 2);
 }
 
 // Byte 0: rings; bytes 1 and 2: sectors, low byte first; bytes 3 to 6: greatest height in millimetres, low

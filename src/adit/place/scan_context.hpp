@@ -81,9 +81,6 @@ struct ContextMatch {
 /// section III-B and III-C.
 [[nodiscard]] ContextMatch compare(const ScanContext& query, const ScanContext& match);
 
-/// The least distance over all shifts: slower than `compare`, never worse; its oracle.
-[[nodiscard]] ContextMatch compare_all_shifts(const ScanContext& query, const ScanContext& match);
-
 /// A shift as an angle in (-pi, pi].
 [[nodiscard]] double yaw_of_shift(int shift, int num_sectors);
 

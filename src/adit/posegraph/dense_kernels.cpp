@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "adit/core/parallel.hpp"
+#include "adit/core/simd.hpp"
 
 namespace adit::dense {
 namespace {
@@ -14,11 +15,7 @@ namespace {
 constexpr std::size_t kPanelColumns = 24;  // columns that are factorized together before the rest is updated
 
 template <std::size_t kWidth>
-struct VectorOf {
-  // Not `using`: GCC 12 then drops the size.
-  typedef double Type  // NOLINT(modernize-use-using)
-      __attribute__((vector_size(kWidth * sizeof(double)), aligned(alignof(double)), may_alias));
-};
+using VectorOf = simd::Unaligned<double, kWidth>;
 
 // Written once, compiled for several vector widths: always inlined into a function of each instruction set.
 #define ADIT_INLINE [[gnu::always_inline]] static inline

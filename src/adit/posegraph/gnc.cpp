@@ -7,6 +7,7 @@
 
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
+#include "adit/core/robust_kernel.hpp"
 #include "adit/posegraph/loop_clusters.hpp"
 
 namespace adit {
@@ -50,13 +51,6 @@ constexpr double kSmallestBound = 1e-6;  // share of the given one; less is roun
 template <class P>
 std::size_t num_rejected(const Solution<P>& s) {
   return static_cast<std::size_t>(std::ranges::count_if(s.edge_weights, [](double w) { return w < 0.5; }));
-}
-
-// Prop. 4 of the paper: closed-form weight of a residual's chi2 at this mu.
-double truncated_weight(double chi2, double bound, double mu) {
-  if (chi2 <= mu / (mu + 1.0) * bound) return 1.0;
-  if (chi2 >= (mu + 1.0) / mu * bound) return 0.0;
-  return std::clamp(std::sqrt(bound * mu * (mu + 1.0) / chi2) - mu, 0.0, 1.0);
 }
 
 // Loops' weights by their chi2; odometry edges are known inliers.
@@ -112,7 +106,7 @@ class Search {
     mu = std::max(mu, first_mu(largest_loop_cost(graph_, costs), bound_));
     for (int outer = 0; s.ok() && outer < config_.max_outer_iterations; ++outer, mu *= config_.mu_step) {
       const auto weights =
-          weights_of(graph_, costs, [&](double chi2) { return truncated_weight(chi2, bound_, mu); });
+          weights_of(graph_, costs, [&](double chi2) { return tls_weight(chi2, bound_, mu); });
       if (mu >= kLargestMu || all_binary(weights)) break;
       s = continued(s, s.poses, inner, weights);
       costs = edge_costs(graph_, s.poses);

@@ -73,7 +73,7 @@ std::size_t largest_patch(const std::vector<Eigen::Vector3f>& points, float cell
   return largest;
 }
 
-OrientedPoints thinned(const OrientedPoints& all) {
+OrientedPoints every_nth(const OrientedPoints& all) {
   const std::size_t step = std::max<std::size_t>(all.size() / kEnoughToAlign, 1);
   OrientedPoints some;
   for (std::size_t i = 0; i < all.size(); i += step) {
@@ -133,7 +133,7 @@ void SeenSurface::Ranges::add(const Ranges& other) {
 
 SeenSurface::SeenSurface(OrientedPoints points, const Vector3& viewpoint)
     : points_(std::move(points)),
-      some_(thinned(points_)),
+      some_(every_nth(points_)),
       tree_(points_.points),
       viewpoint_(viewpoint.cast<float>()),
       ranges_(std::size_t{kRows} * kColumns) {

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "adit/core/check.hpp"
-#include "adit/core/vectors.hpp"
+#include "adit/core/simd.hpp"
 
 namespace adit {
 namespace {

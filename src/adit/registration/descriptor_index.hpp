@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "adit/core/simd.hpp"
 #include "adit/registration/descriptor_block.hpp"
 #include "adit/registration/features.hpp"
 
@@ -43,8 +44,8 @@ class DescriptorIndex {
  private:
   static constexpr std::size_t kDirections = 4;
   static constexpr std::uint32_t kShelf = 16;
-  /// One vector register (a type of GCC and Clang on every processor).
-  using Projection [[gnu::vector_size(4 * kDirections)]] = float;
+  using Projection = simd::Float4;
+  static_assert(sizeof(Projection) == kDirections * sizeof(float));
   struct Item {
     Projection at;
     std::uint32_t index;

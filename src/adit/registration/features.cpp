@@ -11,20 +11,22 @@ namespace adit {
 
 namespace {
 
-/// One point a voxel, visited cell by cell, so that neighbours in space are neighbours in memory.
-struct Thinned {
-  Thinned(const PointCloud& cloud, double voxel_size, float cell_size) {
+/// The mean point of each voxel, in the order of larger cells, so that neighbours in space are neighbours in
+/// memory.
+struct VoxelMeans {
+  VoxelMeans(const PointCloud& cloud, double voxel_size, float cell_size) {
     const std::vector<Eigen::Vector3f> centroids = voxel_centroids(cloud, voxel_size).points;
     const std::vector<std::uint32_t> order = order_by_cell(centroids, cell_size);
     points.resize(order.size());
-    places.resize(order.size());
+    positions.resize(order.size());
     for (std::uint32_t k = 0; k < order.size(); ++k) {
       points[k] = centroids[order[k]];
-      places[order[k]] = k;
+      positions[order[k]] = k;
     }
   }
   std::vector<Eigen::Vector3f> points;
-  std::vector<std::uint32_t> places;  ///< In `points`, of the voxels in the order in which they first occur.
+  std::vector<std::uint32_t>
+      positions;  ///< In `points`, of the voxels in the order in which they first occur.
 };
 
 }  // namespace
@@ -34,16 +36,16 @@ Features compute_features(const PointCloud& cloud, const RegistrationConfig& con
   const auto voxel = static_cast<float>(config.voxel_size);
   const float feature_radius = voxel * static_cast<float>(config.feature_radius_voxels);
   const float normal_radius = voxel * static_cast<float>(config.normal_radius_voxels);
-  const Thinned thinned(cloud, config.voxel_size, feature_radius);
-  const NeighborPairs pairs = find_pairs_within(thinned.points, feature_radius);
-  std::vector<SurfacePoint> surface = estimate_surface(thinned.points, pairs, normal_radius);
+  const VoxelMeans means(cloud, config.voxel_size, feature_radius);
+  const NeighborPairs pairs = find_pairs_within(means.points, feature_radius);
+  std::vector<SurfacePoint> surface = estimate_surface(means.points, pairs, normal_radius);
   for (SurfacePoint& s : surface)
     s.valid = s.valid && s.linearity <= static_cast<float>(config.max_linearity);
-  const FpfhResult fpfh = compute_fpfh(thinned.points, surface, pairs);
+  const FpfhResult fpfh = compute_fpfh(means.points, surface, pairs);
   Features features;
-  for (const std::uint32_t k : thinned.places) {
+  for (const std::uint32_t k : means.positions) {
     if (!fpfh.usable[k]) continue;
-    features.points.push_back(thinned.points[k]);
+    features.points.push_back(means.points[k]);
     features.normals.push_back(surface[k].normal);
     features.descriptors.push_back(fpfh.descriptors[k]);
   }
@@ -52,13 +54,13 @@ Features compute_features(const PointCloud& cloud, const RegistrationConfig& con
 
 OrientedPoints compute_surface(const PointCloud& cloud, const RegistrationConfig& config) {
   const auto radius = static_cast<float>(config.voxel_size * config.normal_radius_voxels);
-  const Thinned thinned(cloud, config.voxel_size, radius);
-  const NeighborPairs pairs = find_pairs_within(thinned.points, radius);
-  const std::vector<SurfacePoint> surface = estimate_surface(thinned.points, pairs, radius);
+  const VoxelMeans means(cloud, config.voxel_size, radius);
+  const NeighborPairs pairs = find_pairs_within(means.points, radius);
+  const std::vector<SurfacePoint> surface = estimate_surface(means.points, pairs, radius);
   OrientedPoints out;
-  for (const std::uint32_t k : thinned.places) {
+  for (const std::uint32_t k : means.positions) {
     if (!surface[k].valid) continue;
-    out.points.push_back(thinned.points[k]);
+    out.points.push_back(means.points[k]);
     out.normals.push_back(surface[k].normal);
   }
   return out;

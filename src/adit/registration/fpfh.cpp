@@ -7,7 +7,7 @@
 #include <span>
 
 #include "adit/core/check.hpp"
-#include "adit/core/vectors.hpp"
+#include "adit/core/simd.hpp"
 
 namespace adit {
 namespace {

@@ -9,18 +9,19 @@
 #include <limits>
 
 #include "adit/core/check.hpp"
+#include "adit/core/robust_kernel.hpp"
 
 namespace adit {
 namespace {
 
-struct Alignment {
+struct WeightedRotation {
   Matrix3 R_a_b;
   bool is_unique;  ///< False when the weighted directions are all parallel.
 };
 
 /// The rotation that maximises sum w a . R b (Kabsch; Umeyama's sign keeps it a rotation).
-Alignment weighted_alignment(std::span<const Vector3> a, std::span<const Vector3> b,
-                             std::span<const double> weights) {
+WeightedRotation weighted_rotation(std::span<const Vector3> a, std::span<const Vector3> b,
+                                   std::span<const double> weights) {
   constexpr double kMinRelativeSingularValue = 1e-9;
   Matrix3 moment = Matrix3::Zero();
   for (std::size_t k = 0; k < a.size(); ++k) moment += weights[k] * a[k] * b[k].transpose();
@@ -31,20 +32,12 @@ Alignment weighted_alignment(std::span<const Vector3> a, std::span<const Vector3
           s[1] > kMinRelativeSingularValue * s[0] && s[0] > 0.0};
 }
 
-/// Weights of the TLS surrogate with control parameter mu (RA-L 2020, eq. 14).
-double tls_weight(double squared_residual, double squared_bound, double mu) {
-  const double upper = (mu + 1.0) / mu * squared_bound;
-  const double lower = mu / (mu + 1.0) * squared_bound;
-  if (squared_residual >= upper) return 0.0;
-  if (squared_residual <= lower) return 1.0;
-  return std::sqrt(squared_bound * mu * (mu + 1.0) / squared_residual) - mu;
-}
-
-/// One closed chain through all points. Points come in spatial order, so the next link is some way (the
-/// golden section of the list) down it: differences of neighbours are short, and a short lever tells little
-/// of a rotation.
+/// Differences along one closed chain through all points. Points come in spatial order, so the next link is
+/// not the next point but one farther down the list, by its golden section: differences of neighbours are
+/// short, and a short lever constrains a rotation little.
 std::vector<Vector3> chained_differences(std::span<const Eigen::Vector3f> points) {
-  const std::size_t stride = std::max<std::size_t>(1, points.size() * 382 / 1000);
+  constexpr std::size_t kGoldenPermille = 382;  // (3 - sqrt(5)) / 2
+  const std::size_t stride = std::max<std::size_t>(1, points.size() * kGoldenPermille / 1000);
   std::vector<Vector3> out;
   out.reserve(points.size());
   for (std::size_t k = 0; k < points.size(); ++k) {
@@ -64,9 +57,9 @@ std::optional<GncRotation> gnc_rotation(std::span<const Vector3> a, std::span<co
   double mu = 0.0;
   double previous_cost = std::numeric_limits<double>::infinity();
   for (; out.iterations < config.gnc_max_iterations; ++out.iterations) {
-    const Alignment alignment = weighted_alignment(a, b, out.weights);
-    if (!alignment.is_unique) return std::nullopt;
-    out.R_a_b = alignment.R_a_b;
+    const WeightedRotation best = weighted_rotation(a, b, out.weights);
+    if (!best.is_unique) return std::nullopt;
+    out.R_a_b = best.R_a_b;
     double largest = 0.0;
     double cost = 0.0;
     std::vector<double> squared_residuals(a.size());

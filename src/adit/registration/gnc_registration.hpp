@@ -16,16 +16,16 @@
 
 namespace adit {
 
-/// Which R best turns b_k into a_k, k = 1 .. n, although many pairs are wrong: graduated non-convexity with
-/// the truncated least-squares cost, sum of min(|a_k - R b_k|^2, bound^2), R from a singular value
-/// decomposition in each iteration (Yang et al., RA-L 2020, eqs. 12 to 14).
+/// The rotation that best turns b_k into a_k, k = 1 .. n, although many pairs are wrong: graduated
+/// non-convexity with the truncated least-squares cost, sum of min(|a_k - R b_k|^2, bound^2), R from a
+/// singular value decomposition in each iteration (Yang et al., RA-L 2020, eqs. 12 to 14).
 struct GncRotation {
   Matrix3 R_a_b = Matrix3::Identity();
-  std::vector<double> weights;  ///< One a pair, 0 to 1; 1/2 and more is an inlier.
+  std::vector<double> weights;  ///< One per pair, 0 to 1; 1/2 and more is an inlier.
   int iterations = 0;
 };
-/// None with fewer than 2 pairs, or when all inliers point in one direction, which leaves the turn about it
-/// open.
+/// None with fewer than 2 pairs, or when all inliers point in one direction, which leaves the rotation about
+/// it open. `bound` in the unit of the vectors.
 [[nodiscard]] std::optional<GncRotation> gnc_rotation(std::span<const Vector3> a, std::span<const Vector3> b,
                                                       double bound, const RegistrationConfig& config);
 
@@ -40,8 +40,8 @@ struct GlobalSolution {
       inliers;  ///< Of the correspondences, ascending: those that agree in all three axes.
 };
 /// Registers points_a[k] with points_b[k]. The rotation is found from the differences of consecutive points
-/// (translation cancels), the translation axis by axis from what the rotation leaves. `bound` is the noise of
-/// a point, metres; that of a difference is twice it. None with fewer than 3 correspondences, or where the
+/// (translation cancels), the translation axis by axis from the rotated points. `bound` is the noise of a
+/// point, metres; that of a difference is twice it. None with fewer than 3 correspondences, or where the
 /// rotation is open.
 [[nodiscard]] std::optional<GlobalSolution> solve_robustly(std::span<const Eigen::Vector3f> points_a,
                                                            std::span<const Eigen::Vector3f> points_b,

@@ -68,13 +68,6 @@ std::vector<Pose> starts_around(const Pose& T_a_b) {
 
 }  // namespace
 
-PlaneResidual plane_residual(const Pose& T_a_b, const Vector3& p_a, const Vector3& n_a, const Vector3& p_b) {
-  const Vector3 n_b = T_a_b.rotation().conjugate() * n_a;
-  PlaneResidual out{.value = n_a.dot(T_a_b * p_b - p_a)};
-  out.jacobian << n_b.transpose(), p_b.cross(n_b).transpose();
-  return out;
-}
-
 std::vector<PointPair> associate(const KdTree& tree_a, const OrientedPoints& b, const Pose& T_a_b,
                                  double max_distance) {
   constexpr auto kNone = static_cast<std::uint32_t>(-1);

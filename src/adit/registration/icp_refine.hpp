@@ -14,15 +14,6 @@
 
 namespace adit {
 
-/// The signed distance of a point from a plane of the other cloud, and how it changes with the pose.
-struct PlaneResidual {
-  double value = 0.0;  ///< n_a . (T_a_b p_b - p_a), metres.
-  Eigen::Matrix<double, 1, 6> jacobian =
-      Eigen::Matrix<double, 1, 6>::Zero();  ///< With respect to xi in T_a_b * exp(xi).
-};
-[[nodiscard]] PlaneResidual plane_residual(const Pose& T_a_b, const Vector3& p_a, const Vector3& n_a,
-                                           const Vector3& p_b);
-
 /// A point of b with its nearest point of a.
 struct PointPair {
   std::uint32_t a = 0;

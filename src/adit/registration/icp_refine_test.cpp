@@ -9,27 +9,6 @@
 namespace adit {
 namespace {
 
-Vector3 random_vector(Rng& rng, double size) {
-  return size * Vector3(rng.normal(), rng.normal(), rng.normal());
-}
-
-TEST(PlaneResidual, JacobianAgreesWithFiniteDifferences) {
-  Rng rng(1);
-  for (int k = 0; k < 50; ++k) {
-    const Pose T(so3::exp(random_vector(rng, 1.5)), random_vector(rng, 10.0));
-    const Vector3 p_a = random_vector(rng, 10.0);
-    const Vector3 n_a = random_vector(rng, 1.0).normalized();
-    const Vector3 p_b = random_vector(rng, 10.0);
-    const PlaneResidual r = plane_residual(T, p_a, n_a, p_b);
-    for (int d = 0; d < 6; ++d) {
-      constexpr double kStep = 1e-6;
-      const double ahead = plane_residual(T * Pose::exp(kStep * Vector6::Unit(d)), p_a, n_a, p_b).value;
-      const double behind = plane_residual(T * Pose::exp(-kStep * Vector6::Unit(d)), p_a, n_a, p_b).value;
-      EXPECT_NEAR(r.jacobian[d], (ahead - behind) / (2.0 * kStep), 1e-7);
-    }
-  }
-}
-
 /// Points on three walls of a corner, with their true normals.
 OrientedPoints corner(std::size_t n, std::uint64_t seed) {
   Rng rng(seed);

@@ -6,17 +6,17 @@
 #include <limits>
 
 #include "adit/core/parallel.hpp"
+#include "adit/core/robust_kernel.hpp"
 
 namespace adit {
 namespace {
 
-constexpr float kAgreeingNormals = 0.8F;  ///< Cosine of the angle between them.
-/// A search looks this much farther than pairs may be apart, so that a point without a partner need not be
-/// searched again at once.
+constexpr float kAgreeingNormals = 0.8F;  ///< Least cosine between the normals of a pair: 37 degrees.
+/// A search looks this many times farther than pairs may be apart, so that a point without a partner need not
+/// be searched again at once.
 constexpr float kReach = 1.25F;
-constexpr std::size_t kGrain = 64;  ///< Blocks.
-/// Row by row of the upper triangle.
-constexpr std::size_t kTriangle = 21;
+constexpr std::size_t kGrain = 64;     ///< Blocks per part of the parallel sum.
+constexpr std::size_t kTriangle = 21;  ///< Entries of the upper triangle of H, row by row.
 
 }  // namespace
 
@@ -29,12 +29,32 @@ struct PlaneAligner::Motion {
       t[i] = static_cast<float>(T_a_b.translation()[i]);
     }
   }
+  void apply(const Row (&p)[3], Row (&q)[3]) const {
+    for (std::size_t k = 0; k < kWidth; ++k) {
+      for (int d = 0; d < 3; ++d) q[d][k] = R[d][0] * p[0][k] + R[d][1] * p[1][k] + R[d][2] * p[2][k] + t[d];
+    }
+  }
   float R[3][3];
   float t[3];
 };
 
+/// What eight pairs contribute, as `plane_residual` defines it: residual and Jacobian by the plane of a, and
+/// by that of b ("own"), both in the frame of b. Weights are 0 where there is no pair.
+struct PlaneAligner::Terms {
+  Row J[6];
+  Row J_own[6];
+  Row r;
+  Row r_own;
+  Row weight;
+  Row weight_own;
+  Row fit;
+  Row is_pair;
+};
+
 /// Lane by lane, until the end of a part.
 struct PlaneAligner::Sums {
+  void add(const Terms& terms);
+
   Row H[kTriangle] = {};
   Row g[6] = {};
   Row fit = {};
@@ -86,8 +106,8 @@ PlaneAligner::PlaneAligner(const OrientedPoints& a, const KdTree& tree_a, const 
   }
 }
 
-/// Where nothing lies within reach, nothing will lie within `max_distance_` before the point has moved by the
-/// difference.
+/// Searches for the partner of point k. Where nothing lies within reach, nothing will lie within
+/// `max_distance_` before the point has moved by the difference.
 void PlaneAligner::search(Block& block, const Row (&q)[3], std::size_t k) const {
   constexpr float kRounding = 0.9999F;
   const float reach = kReach * max_distance_;
@@ -101,17 +121,9 @@ void PlaneAligner::search(Block& block, const Row (&q)[3], std::size_t k) const 
   }
 }
 
-void PlaneAligner::add(Block& block, const Motion& motion, float kernel, Sums& sums) const {
-  const auto& R = motion.R;
-  const auto& p = block.p;
-  const auto& n = block.n;
-  const auto& n_a = block.n_a;
-  Row q[3];
-  for (std::size_t k = 0; k < kWidth; ++k) {
-    for (int d = 0; d < 3; ++d)
-      q[d][k] = R[d][0] * p[0][k] + R[d][1] * p[1][k] + R[d][2] * p[2][k] + motion.t[d];
-  }
-  Row slack;
+/// Searches for those points that may have another partner at `q` than the one they have.
+void PlaneAligner::search_stale(Block& block, const Row (&q)[3]) const {
+  Row slack;  // metres
   for (std::size_t k = 0; k < kWidth; ++k) {
     float to_partner = 0.0F;
     float moved = 0.0F;
@@ -124,64 +136,82 @@ void PlaneAligner::add(Block& block, const Motion& motion, float kernel, Sums& s
   for (std::size_t k = 0; k < kWidth; ++k) {
     if (slack[k] <= 0.0F) search(block, q, k);
   }
+}
 
-  // Everything in the frame of b: m is a's normal there, and J = [m, p x m], [n, p x n].
-  Row J[6];
-  Row J_own[6];
-  Row weight;
-  Row weight_own;
-  Row r;
-  Row r_own;
-  const float k2 = kernel * kernel;
+/// `squared_kernel`: the kernel's scale k^2, square metres.
+void PlaneAligner::evaluate(const Block& block, const Motion& motion, const Row (&q)[3], float squared_kernel,
+                            Terms& out) const {
+  const auto& R = motion.R;
+  const auto& p = block.p;
+  const auto& n = block.n;
+  const auto& n_a = block.n_a;
   for (std::size_t k = 0; k < kWidth; ++k) {
     const float dx = q[0][k] - block.a[0][k];
     const float dy = q[1][k] - block.a[1][k];
     const float dz = q[2][k] - block.a[2][k];
-    float m[3];
+    float m[3];  // a's normal in the frame of b
     for (int d = 0; d < 3; ++d) m[d] = R[0][d] * n_a[0][k] + R[1][d] * n_a[1][k] + R[2][d] * n_a[2][k];
     float n_own[3];  // b's normal in the frame of a
     for (int d = 0; d < 3; ++d) n_own[d] = R[d][0] * n[0][k] + R[d][1] * n[1][k] + R[d][2] * n[2][k];
-    r[k] = n_a[0][k] * dx + n_a[1][k] * dy + n_a[2][k] * dz;
-    r_own[k] = n_own[0] * dx + n_own[1] * dy + n_own[2] * dz;
+    const float r = n_a[0][k] * dx + n_a[1][k] * dy + n_a[2][k] * dz;
+    const float r_own = n_own[0] * dx + n_own[1] * dy + n_own[2] * dz;
     const float cosine = m[0] * n[0][k] + m[1] * n[1][k] + m[2] * n[2][k];
     const float is_real = n_a[0][k] * n_a[0][k] + n_a[1][k] * n_a[1][k] + n_a[2][k] * n_a[2][k];
     const bool is_pair = dx * dx + dy * dy + dz * dz <= max_distance_ * max_distance_ && is_real > 0.0F;
     const bool agree = std::abs(cosine) >= kAgreeingNormals;
-    const float root = k2 / (k2 + r[k] * r[k]);
-    const float root_own = k2 / (k2 + r_own[k] * r_own[k]);
-    weight[k] = is_pair && agree ? root * root : 0.0F;
-    weight_own[k] = is_pair && agree ? root_own * root_own : 0.0F;
-    sums.fit[k] += is_pair ? root : 0.0F;
-    sums.num_pairs[k] += is_pair ? 1.0F : 0.0F;
+    const float root = geman_mcclure_root(squared_kernel, r * r);
+    const float root_own = geman_mcclure_root(squared_kernel, r_own * r_own);
+    out.r[k] = r;
+    out.r_own[k] = r_own;
+    out.weight[k] = is_pair && agree ? root * root : 0.0F;
+    out.weight_own[k] = is_pair && agree ? root_own * root_own : 0.0F;
+    out.fit[k] = is_pair ? root : 0.0F;
+    out.is_pair[k] = is_pair ? 1.0F : 0.0F;
     for (int d = 0; d < 3; ++d) {
       const int e = (d + 1) % 3;
       const int f = (d + 2) % 3;
-      J[d][k] = m[d];
-      J[3 + d][k] = p[e][k] * m[f] - p[f][k] * m[e];
-      J_own[d][k] = n[d][k];
-      J_own[3 + d][k] = p[e][k] * n[f][k] - p[f][k] * n[e][k];
+      out.J[d][k] = m[d];
+      out.J[3 + d][k] = p[e][k] * m[f] - p[f][k] * m[e];
+      out.J_own[d][k] = n[d][k];
+      out.J_own[3 + d][k] = p[e][k] * n[f][k] - p[f][k] * n[e][k];
     }
+  }
+}
+
+void PlaneAligner::Sums::add(const Terms& terms) {
+  for (std::size_t k = 0; k < kWidth; ++k) {
+    fit[k] += terms.fit[k];
+    num_pairs[k] += terms.is_pair[k];
   }
   std::size_t entry = 0;
   for (int i = 0; i < 6; ++i) {
     Row w;
     Row w_own;
     for (std::size_t k = 0; k < kWidth; ++k) {
-      w[k] = weight[k] * J[i][k];
-      w_own[k] = weight_own[k] * J_own[i][k];
-      sums.g[i][k] += w[k] * r[k] + w_own[k] * r_own[k];
+      w[k] = terms.weight[k] * terms.J[i][k];
+      w_own[k] = terms.weight_own[k] * terms.J_own[i][k];
+      g[i][k] += w[k] * terms.r[k] + w_own[k] * terms.r_own[k];
     }
     for (int j = i; j < 6; ++j, ++entry) {
-      for (std::size_t k = 0; k < kWidth; ++k) sums.H[entry][k] += w[k] * J[j][k] + w_own[k] * J_own[j][k];
+      for (std::size_t k = 0; k < kWidth; ++k)
+        H[entry][k] += w[k] * terms.J[j][k] + w_own[k] * terms.J_own[j][k];
     }
   }
 }
 
 PlaneEquations PlaneAligner::linearize(const Pose& T_a_b, double kernel) {
   const Motion motion(T_a_b);
+  const auto squared_kernel = static_cast<float>(kernel) * static_cast<float>(kernel);
   return parallel_sum(blocks_.size(), kGrain, PlaneEquations{}, [&](std::size_t begin, std::size_t end) {
     Sums sums;
-    for (std::size_t i = begin; i < end; ++i) add(blocks_[i], motion, static_cast<float>(kernel), sums);
+    Row q[3];
+    Terms terms;
+    for (std::size_t i = begin; i < end; ++i) {
+      motion.apply(blocks_[i].p, q);
+      search_stale(blocks_[i], q);
+      evaluate(blocks_[i], motion, q, squared_kernel, terms);
+      sums.add(terms);
+    }
     return sums.total();
   });
 }

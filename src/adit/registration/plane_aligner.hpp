@@ -16,14 +16,14 @@ namespace adit {
 struct PlaneEquations {
   Matrix6 H = Matrix6::Zero();
   Vector6 g = Vector6::Zero();
-  double fit = 0.0;  ///< Sum over the pairs of k^2 / (k^2 + r^2), r from the plane of a: 1 a pair at best.
+  double fit = 0.0;  ///< Sum over pairs of k^2 / (k^2 + r^2), r from the plane of a: at best 1 per pair.
   double num_pairs = 0.0;
   PlaneEquations& operator+=(const PlaneEquations& other);
 };
 
 /// Pairs a sample of cloud b with the nearest points of cloud a, pose after pose. A pair is kept from one
-/// pose to the next as long as its point moved too little for any other point of a to become the nearest; so
-/// the pairs are always the exact ones, and near convergence nothing is searched.
+/// pose to the next as long as its point has moved too little for any other point of a to become the nearest:
+/// pairs are always exact, and near convergence nothing is searched.
 class PlaneAligner {
  public:
   /// Takes every `stride`-th point of b. Pairs lie within `max_distance` metres. `a` and `tree_a` must
@@ -31,9 +31,9 @@ class PlaneAligner {
   PlaneAligner(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b, std::size_t stride,
                double max_distance);
 
-  /// Both clouds' planes count (Rusinkiewicz, "A symmetric objective function for ICP", 2019), and only where
-  /// they agree: far out, a spinning sensor sees the ground as the line of one ring, and that normal is
-  /// noise.
+  /// The planes of both clouds count (Rusinkiewicz, "A symmetric objective function for ICP", 2019), and only
+  /// where they agree: far out, a spinning sensor sees the ground as the line of one ring, whose normal is
+  /// noise. `kernel`: scale k of the Geman-McClure kernel, metres.
   [[nodiscard]] PlaneEquations linearize(const Pose& T_a_b, double kernel);
 
   [[nodiscard]] std::size_t sample_size() const { return sample_size_; }
@@ -51,9 +51,12 @@ class PlaneAligner {
     Row others;   ///< No other point of a was nearer to `seen` than this.
   };
   struct Motion;
+  struct Terms;
   struct Sums;
   void search(Block& block, const Row (&q)[3], std::size_t k) const;
-  void add(Block& block, const Motion& motion, float kernel, Sums& sums) const;
+  void search_stale(Block& block, const Row (&q)[3]) const;
+  void evaluate(const Block& block, const Motion& motion, const Row (&q)[3], float squared_kernel,
+                Terms& out) const;
 
   const OrientedPoints& a_;
   const KdTree& tree_a_;

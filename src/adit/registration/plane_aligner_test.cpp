@@ -8,7 +8,8 @@
 
 #include "adit/core/parallel.hpp"
 #include "adit/core/rng.hpp"
-#include "adit/registration/icp_refine.hpp"
+#include "adit/core/robust_kernel.hpp"
+#include "adit/geometry/point_to_plane.hpp"
 
 namespace adit {
 namespace {
@@ -34,9 +35,9 @@ PlaneEquations by_definition(const OrientedPoints& a, const OrientedPoints& b, s
                              double max_distance, const Pose& T_a_b, double kernel) {
   PlaneEquations sum;
   const auto add = [&](const PlaneResidual& r) {
-    const double root = kernel * kernel / (kernel * kernel + r.value * r.value);
-    sum.H += root * root * r.jacobian.transpose() * r.jacobian;
-    sum.g += root * root * r.jacobian.transpose() * r.value;
+    const double root = geman_mcclure_root(kernel * kernel, r.value * r.value);
+    sum.H += root * root * r.jacobian * r.jacobian.transpose();
+    sum.g += root * root * r.jacobian * r.value;
     return root;
   };
   for (std::size_t j = 0; j < b.size(); j += stride) {
@@ -52,11 +53,14 @@ PlaneEquations by_definition(const OrientedPoints& a, const OrientedPoints& b, s
     const Vector3 n_a = a.normals[nearest].cast<double>();
     const Vector3 n_b = T_a_b.rotation() * b.normals[j].cast<double>();
     sum.num_pairs += 1.0;
-    const PlaneResidual r = plane_residual(T_a_b, p_a, n_a, p_b);
+    const auto residual_with = [&](const Vector3& normal) {
+      return plane_residual(T_a_b.rotation_matrix(), T_a_b.translation(), {p_a, normal}, p_b);
+    };
+    const PlaneResidual r = residual_with(n_a);
     sum.fit += kernel * kernel / (kernel * kernel + r.value * r.value);
     if (std::abs(n_a.dot(n_b)) < 0.8) continue;
     add(r);
-    add(plane_residual(T_a_b, p_a, n_b, p_b));
+    add(residual_with(n_b));
   }
   return sum;
 }

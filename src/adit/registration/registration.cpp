@@ -46,7 +46,7 @@ MatchedPoints pruned(const MatchedPoints& points, const RegistrationConfig& conf
   const double bound = std::min(config.graph_noise_voxels * config.voxel_size, config.max_noise_bound);
   const BitGraph graph = consistency_graph(points.a, points.b, static_cast<float>(bound));
   MatchedPoints out;
-  const bool exact = config.pruning == "clique";
+  const bool exact = config.pruning == Pruning::clique;
   const auto max_nodes = static_cast<std::uint64_t>(config.clique_max_search_nodes);
   for (const std::uint32_t k : exact ? max_clique(graph, max_nodes).vertices : max_core(graph)) {
     out.a.push_back(points.a[k]);

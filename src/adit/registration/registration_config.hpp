@@ -2,11 +2,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <string>
+#include <array>
+#include <string_view>
 
 #include "adit/core/config.hpp"
 
 namespace adit {
+
+/// What is left of the consistency graph: its innermost k-core, or its maximum clique.
+enum class Pruning { k_core, clique };
+inline constexpr std::array kPrunings{Pruning::k_core, Pruning::clique};
+[[nodiscard]] std::string_view to_string(Pruning pruning);
 
 /// Parameters of KISS-Matcher (Lim et al., arXiv 2409.15615) with its published defaults, then those of the
 /// refinement and of the verdict. Lengths named `_voxels` are multiples of `voxel_size`, so one number scales
@@ -26,7 +32,7 @@ struct RegistrationConfig {
   double max_descriptor_distance = 30.0;
   int max_correspondences = 5000;
 
-  std::string pruning = "k_core";
+  Pruning pruning = Pruning::k_core;
   double graph_noise_voxels = 1.0;
   int clique_max_search_nodes = 20000;
 

@@ -113,7 +113,7 @@ TEST(Registration, AlignsCloudsFromAGuess) {
 
 TEST(Registration, CliquePruningFindsTheSamePose) {
   RegistrationConfig config;
-  config.pruning = "clique";
+  config.pruning = Pruning::clique;
   const Pose T_b_a = Pose::planar(2.0, 1.0, -2.0);
   const Registration r = register_clouds(hall(2, 1), transformed(T_b_a, hall(2, 2)), config);
   ASSERT_EQ(r.verdict, LoopVerdict::accepted) << r.reason;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adit/core/format.hpp"
+#include "adit/geometry/point_to_plane.hpp"
 #include "adit/registration/icp_refine.hpp"
 
 namespace adit {
@@ -24,16 +25,17 @@ struct PairSums {
 PairSums sum_over_pairs(const Features& a, const Features& b, const std::vector<PointPair>& pairs,
                         const Pose& T_a_b, double max_residual) {
   PairSums sums;
+  const Matrix3 R = T_a_b.rotation_matrix();
   for (const auto [i, j] : pairs) {
     const Vector3 p_b = b.points[j].cast<double>();
-    const PlaneResidual r =
-        plane_residual(T_a_b, a.points[i].cast<double>(), a.normals[i].cast<double>(), p_b);
+    const Plane plane{a.points[i].cast<double>(), a.normals[i].cast<double>()};
+    const PlaneResidual r = plane_residual(R, T_a_b.translation(), plane, p_b);
     if (std::abs(r.value) > max_residual) continue;
     Vector3 n_b = b.normals[j].cast<double>();
     if (r.jacobian.head<3>().dot(n_b) < 0.0) n_b = -n_b;  // each was turned to its own sensor
-    Eigen::Matrix<double, 1, 6> jacobian_b;
-    jacobian_b << n_b.transpose(), p_b.cross(n_b).transpose();
-    sums.cross_hessian += r.jacobian.transpose() * jacobian_b;
+    Vector6 jacobian_b;
+    jacobian_b << n_b, p_b.cross(n_b);
+    sums.cross_hessian += r.jacobian * jacobian_b.transpose();
     sums.squared_residuals += r.value * r.value;
     sums.num_pairs += 1.0;
   }

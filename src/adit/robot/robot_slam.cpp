@@ -78,7 +78,7 @@ Result<> check_wheels(const Recording& recording, const OdometryConfig& config,
                       std::string_view without_wheels) {
   if (!config.needs_wheels() || !recording.wheel.empty()) return {};
   return fail(format("{}: {} needs wheel odometry and the recording has none; use {}", recording.name,
-                     config.method, without_wheels));
+                     to_string(config.method), without_wheels));
 }
 
 Result<std::optional<WheelDelta>> wheel_before(const Recording& recording, std::size_t index) {

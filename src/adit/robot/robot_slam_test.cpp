@@ -19,10 +19,11 @@ test::Drive straight_drive() {
   return drive;
 }
 
-RobotSlamConfig config_of(const std::string& method) {
+RobotSlamConfig config_of(OdometryMethod method) {
   RobotSlamConfig config;
   config.odometry.method = method;
-  config.odometry.kiss_icp.voxel_size = config.odometry.kinematic_icp.voxel_size = 0.5;
+  config.odometry.kiss_icp.scan_to_map.voxel_size = config.odometry.kinematic_icp.scan_to_map.voxel_size =
+      0.5;
   return config;
 }
 
@@ -77,11 +78,11 @@ void expect_sound(const RobotMap& map, const Recording& recording) {
 }
 
 TEST(RobotSlam, MapsARoomWithEachOdometry) {
-  for (const char* method : {"kiss-icp", "kinematic-icp", "plane-icp"}) {
+  for (const OdometryMethod method : kOdometryMethods) {
     const Recording recording = room_recording(true);
     const Result<RobotMap> map = map_recording(recording, {7}, config_of(method));
     ASSERT_TRUE(map.has_value()) << map.error().message;
-    SCOPED_TRACE(method);
+    SCOPED_TRACE(to_string(method));
     expect_sound(*map, recording);
     EXPECT_EQ(map->num_refused, 0);
   }
@@ -89,7 +90,7 @@ TEST(RobotSlam, MapsARoomWithEachOdometry) {
 
 TEST(RobotSlam, KeyframeCloudsLieInTheBaseFrame) {
   const Recording recording = room_recording(false);
-  const Result<RobotMap> map = map_recording(recording, {7}, config_of("kiss-icp"));
+  const Result<RobotMap> map = map_recording(recording, {7}, config_of(OdometryMethod::kiss_icp));
   ASSERT_TRUE(map.has_value()) << map.error().message;
   for (const Keyframe& keyframe : map->keyframes) {
     float lowest = 1e9F;
@@ -100,13 +101,16 @@ TEST(RobotSlam, KeyframeCloudsLieInTheBaseFrame) {
 
 TEST(RobotSlam, SeveralConfigurationsReadTheRecordingOnce) {
   const Recording recording = room_recording(true);
-  const Result<std::vector<RobotMap>> maps =
-      map_recording(recording, {7}, std::vector{config_of("kinematic-icp"), config_of("plane-icp")});
+  const Result<std::vector<RobotMap>> maps = map_recording(
+      recording, {7},
+      std::vector{config_of(OdometryMethod::kinematic_icp), config_of(OdometryMethod::plane_icp)});
   ASSERT_TRUE(maps.has_value()) << maps.error().message;
   ASSERT_EQ(maps->size(), 2U);
   for (std::size_t i = 0; i < 2; ++i) {
     const RobotMap alone =
-        map_recording(recording, {7}, config_of(i == 0 ? "kinematic-icp" : "plane-icp")).value();
+        map_recording(recording, {7},
+                      config_of(i == 0 ? OdometryMethod::kinematic_icp : OdometryMethod::plane_icp))
+            .value();
     ASSERT_EQ((*maps)[i].odometry.size(), alone.odometry.size());
     EXPECT_EQ((*maps)[i].odometry.back().T_world_body.matrix(), alone.odometry.back().T_world_body.matrix());
   }
@@ -114,25 +118,26 @@ TEST(RobotSlam, SeveralConfigurationsReadTheRecordingOnce) {
 
 TEST(RobotSlam, StepsThatWereGuessedAreNoisier) {
   Recording recording = room_recording(true);
-  RobotSlamConfig config = config_of("kiss-icp");
+  RobotSlamConfig config = config_of(OdometryMethod::kiss_icp);
   const RobotMap steady = map_recording(recording, {7}, config).value();
-  config.odometry.kiss_icp.irregular_steps = "on";
+  config.odometry.kiss_icp.irregular_steps = IrregularSteps::on;
   const RobotMap guessed = map_recording(recording, {7}, config).value();
   ASSERT_GT(guessed.keyframes.size(), 1U);
   EXPECT_NEAR(guessed.step_covariances[1](0, 0) / steady.step_covariances[1](0, 0), 25.0, 1.0);
 }
 
 TEST(RobotSlam, KinematicIcpWithoutWheelsIsRefusedWithTheRemedy) {
-  const Result<RobotMap> map = map_recording(room_recording(false), {0}, config_of("kinematic-icp"));
+  const Result<RobotMap> map =
+      map_recording(room_recording(false), {0}, config_of(OdometryMethod::kinematic_icp));
   ASSERT_FALSE(map.has_value());
   EXPECT_NE(map.error().message.find("walker"), std::string::npos);
-  EXPECT_NE(map.error().message.find("kiss-icp"), std::string::npos);
+  EXPECT_NE(map.error().message.find(OdometryMethod::kiss_icp), std::string::npos);
 }
 
 TEST(RobotSlam, UnreadableScanNamesTheRobot) {
   Recording recording = room_recording(false);
   recording.read_scan = [](std::size_t) -> Result<Scan> { return fail("0003.pcd: no such file"); };
-  const Result<RobotMap> map = map_recording(recording, {0}, config_of("kiss-icp"));
+  const Result<RobotMap> map = map_recording(recording, {0}, config_of(OdometryMethod::kiss_icp));
   ASSERT_FALSE(map.has_value());
   EXPECT_EQ(map.error().message, "walker: 0003.pcd: no such file");
 }
@@ -140,25 +145,25 @@ TEST(RobotSlam, UnreadableScanNamesTheRobot) {
 TEST(RobotSlam, ScansWithoutPointsBecomeNoKeyframe) {
   Recording recording = room_recording(false);
   recording.read_scan = [stamps = recording.scan_stamps](std::size_t i) { return Scan{stamps[i], {}}; };
-  const Result<RobotMap> map = map_recording(recording, {0}, config_of("kiss-icp"));
+  const Result<RobotMap> map = map_recording(recording, {0}, config_of(OdometryMethod::kiss_icp));
   ASSERT_FALSE(map.has_value());
   EXPECT_NE(map.error().message.find("too few points"), std::string::npos);
 }
 
 TEST(RobotSlam, ObserverCountsAndStops) {
   std::size_t last = 0;
-  const Result<RobotMap> map =
-      map_recording(room_recording(false), {0}, config_of("kiss-icp"), [&](std::size_t num_done) {
-        last = num_done;
-        return num_done < 5;
-      });
+  const Result<RobotMap> map = map_recording(room_recording(false), {0}, config_of(OdometryMethod::kiss_icp),
+                                             [&](std::size_t num_done) {
+                                               last = num_done;
+                                               return num_done < 5;
+                                             });
   ASSERT_FALSE(map.has_value());
   EXPECT_EQ(last, 5U);
   EXPECT_NE(map.error().message.find("interrupted"), std::string::npos);
 }
 
 TEST(RobotSlam, ConfigOutOfRangeIsABug) {
-  RobotSlamConfig config = config_of("kiss-icp");
+  RobotSlamConfig config = config_of(OdometryMethod::kiss_icp);
   config.cloud_voxel = -1.0;
   EXPECT_THROW(RobotSlam({0}, "walker", config, kBaseLidar), ContractViolation);
 }

@@ -11,7 +11,7 @@
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/rng.hpp"
-#include "adit/core/vectors.hpp"
+#include "adit/core/simd.hpp"
 
 namespace adit {
 namespace {

@@ -12,7 +12,7 @@
 #include "adit/core/check.hpp"
 #include "adit/core/pose.hpp"
 #include "adit/core/progress.hpp"
-#include "adit/core/vectors.hpp"
+#include "adit/core/simd.hpp"
 
 namespace adit {
 namespace {
