@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/odometry/odometry.hpp"
