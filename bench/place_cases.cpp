@@ -8,7 +8,6 @@
 #include "adit/geometry/oriented_box.hpp"
 #include "adit/geometry/voxel_grid.hpp"
 #include "adit/io/cloud_files.hpp"
-#include "adit/keyframes/alignability.hpp"
 #include "adit/place/scan_context.hpp"
 #include "harness/bench_case.hpp"
 #include "tunnel_inputs.hpp"
@@ -80,19 +79,6 @@ const Side box_adit("keyframes/oriented_box", "adit", []() -> Work {
     return Figures{{"length_m", sum / 20}};
   };
 });
-const Case alignable({.name = "keyframes/alignability",
-                      .work = "how well one scan can be aligned",
-                      .scene = "a scan of zab, 124,000 points",
-                      .per_run = 20,
-                      .unit = "scan"});
-const Side alignable_adit("keyframes/alignability", "adit", []() -> Work {
-  return [cloud = full_scan()] {
-    double sum = 0.0;
-    for (int k = 0; k < 20; ++k) sum += alignability_of_points(cloud.points)->weakest();
-    return Figures{{"weakest", sum / 20}};
-  };
-});
-
 // describe_8k.bin, describe_122k.bin, compare_0.bin, compare_1.bin: KITTI format, in the base frame.
 void write_scans(const std::filesystem::path& folder) {
   (void)write_cloud(folder / "describe_8k.bin", thin_scan());

@@ -154,7 +154,8 @@ CheckedPlace Agent::compared(const PlannedCheck& check, const SeenSurface& their
   const LocalFit fit = fit_near(own, theirs, check.T_own_theirs, limit, config_.registration_in_use());
   CheckedPlace place{fit.agreement.largest_difference / limit, is_distinctive};
   if (!place.differs())
-    place.offsets = patch_offsets(own, theirs, fit.T_a_b, map_->keyframes[check.own].T_odom_base);
+    place.offsets = patch_offsets(own, theirs, fit.T_a_b, map_->keyframes[check.own].T_odom_base,
+                                  config_.registration_in_use().relief);
   return place;
 }
 

@@ -144,7 +144,7 @@ Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryCha
 
 const Measured& Discernment::measured() {
   if (!measured_) {
-    Measured measured;
+    Measured measured{.look_alikes = {}, .walls = StandingShares(registration_.relief)};
     measured.walls.set_same(compare_own_walls().counted());
     follow(walks_from(find_look_alikes_()), measured);
     measured_ = measured;
@@ -204,7 +204,7 @@ StandingOffsets Discernment::compare_own_walls() {
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (!differ(found[i].agreement))
       offsets.add(patch_offsets(surfaces_.at(pairs[i].a), surfaces_.at(pairs[i].b), found[i].T_a_b,
-                                chain_.pose(pairs[i].a)));
+                                chain_.pose(pairs[i].a), registration_.relief));
   return offsets;
 }
 
@@ -302,7 +302,8 @@ void Discernment::follow(std::vector<Walk> walks, Measured& measured) {
       walks[w].is_over = differ(found[w].agreement);
       if (!walks[w].is_over)
         offsets[walks[w].look_alike].add(patch_offsets(surfaces_.at(next[w].a), surfaces_.at(next[w].b),
-                                                       found[w].T_a_b, chain_.pose(next[w].a)));
+                                                       found[w].T_a_b, chain_.pose(next[w].a),
+                                                       registration_.relief));
       if (walks[w].is_over || tells[w]) measured.look_alikes.add(walks[w].num_passed, !walks[w].is_over);
       if (tells[w]) ++walks[w].num_passed;
     }

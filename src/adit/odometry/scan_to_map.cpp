@@ -193,10 +193,6 @@ NormalEquations<2> linearize_unicycle(Correspondences& pairs, const Pose& T_map_
   return sum_of_blocks<NormalEquations<2>>(pairs, T_map_base, unicycle_equations);
 }
 
-Pose unicycle_motion(double distance, double turn) {
-  return Pose::exp((Vector6() << distance, 0.0, 0.0, 0.0, 0.0, turn).finished());
-}
-
 Alignment align_point_to_point(std::span<const Eigen::Vector3f> source, const LocalMap& map,
                                const Pose& T_prediction, double sigma, const ScanToMapConfig& config) {
   Correspondences pairs(source, map, 3.0 * sigma);

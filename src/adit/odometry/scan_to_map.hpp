@@ -59,10 +59,6 @@ struct NormalEquations {
 /// motions of a vehicle that does not slip sideways: forward and about its z axis.
 [[nodiscard]] NormalEquations<2> linearize_unicycle(Correspondences& pairs, const Pose& T_map_base);
 
-/// The pose a vehicle reaches that drives `distance` along an arc on which its heading turns by `turn`: exact
-/// for every turn, 0 included.
-[[nodiscard]] Pose unicycle_motion(double distance, double turn);
-
 /// Where iterating ended. With too few correspondences or after divergence the pose is the prediction.
 struct Alignment {
   Pose T_map_base;

@@ -190,12 +190,6 @@ void check_same_grid(const ScanContext& a, const ScanContext& b) {
 
 }  // namespace
 
-Result<ScanContextConfig> scan_context_preset(std::string_view name) {
-  if (name == "paper") return ScanContextConfig{};
-  if (name == "tunnel") return ScanContextConfig{.max_radius_m = 30.0};
-  return fail(format("no scan context preset '{}'; there are paper and tunnel", name));
-}
-
 float ScanContext::height(int ring, int sector) const {
   ADIT_CHECK(ring >= 0 && ring < num_rings && sector >= 0 && sector < num_sectors,
              "the cell lies in the grid");

@@ -32,10 +32,6 @@ inline Fields fields_of(ScanContextConfig& c) {
            "added to z, metres above the base frame's floor"}};
 }
 
-/// "paper": the defaults above. "tunnel": a radius of 30 m in rings of 1.5 m, because rings of 4 m put a tube
-/// of 5 to 10 m into one to three cells a sector. Errors: any other name.
-[[nodiscard]] Result<ScanContextConfig> scan_context_preset(std::string_view name);
-
 /// What a place looks like: the greatest height in each cell of a polar grid around the robot. Made by
 /// `describe`, `from_heights` or `decode`. Cells are kept as the unit vectors of the columns (sectors) and
 /// the columns' norms, which is all that a comparison needs; `height` gives the cell back.

@@ -256,11 +256,5 @@ TEST(ScanContext, DecodeRefusesOtherBytes) {
   EXPECT_FALSE(decode(std::vector<std::uint8_t>(5, 255)));
 }
 
-TEST(ScanContext, Presets) {
-  EXPECT_EQ(scan_context_preset("paper")->max_radius_m, 80.0);
-  EXPECT_LT(scan_context_preset("tunnel")->max_radius_m, 41.0);
-  EXPECT_FALSE(scan_context_preset("cave"));
-}
-
 }  // namespace
 }  // namespace adit

@@ -55,12 +55,39 @@ Fields verdict_fields(RegistrationConfig& c) {
 
 std::string_view to_string(Pruning pruning) { return pruning == Pruning::k_core ? "k_core" : "clique"; }
 
+Fields fields_of(ReliefConfig& c) {
+  return {{"patch_m", &c.patch_m, "m", 0.1, 10.0, "edge of the cells that cut walls into patches"},
+          {"max_range_m", &c.max_range_m, "m", 1.0, 100.0,
+           "points farther from the sensor are left out: beams are too far apart there"},
+          {"pairing_distance_m", &c.pairing_distance_m, "m", 0.01, 1.0,
+           "from a point of one scan to the nearest of the other, at most"},
+          {"max_offset_m", &c.max_offset_m, "m", 0.01, 1.0,
+           "between the walls of a pair; more is another object, not relief"},
+          {"min_offset_m", &c.min_offset_m, "m", 0.0, 0.1,
+           "smaller mean offsets of a patch are left out: they depend on where the beams fall"},
+          {"min_normal_cosine", &c.min_normal_cosine, "", 0.0, 1.0,
+           "between the normals of a pair of points, at least"},
+          {"min_points", &c.min_points, "", 1, 1000, "per patch and pair of scans, at least"},
+          {"same_share", &c.same_share, "", 0.5, 1.0,
+           "share of equal signs on one wall, from three tuning worlds (decision 0015)"},
+          {"same_sigma", &c.same_sigma, "", 0.0, 0.5, "its standard deviation from stretch to stretch"},
+          {"prior_sigma", &c.prior_sigma, "", 0.0, 5.0,
+           "prior of the log share's standard deviation over look-alikes"},
+          {"prior_stretches", &c.prior_stretches, "", 0.0, 1000.0, "look-alikes that the prior is worth"},
+          {"may_be_same", &c.may_be_same, "", 0.0, 1.0,
+           "a look-alike whose share is this likely for one wall says nothing about different walls"},
+          {"min_patches", &c.min_patches, "", 1, 1000000, "needed before a share counts as evidence"},
+          {"min_patches_to_refute", &c.min_patches_to_refute, "", 1, 1000000,
+           "needed before a share refutes a merge by itself; fewer, and a few bad fits decide"}};
+}
+
 Fields fields_of(RegistrationConfig& c) {
   Fields all;
   for (Fields (*const stage)(RegistrationConfig&) :
        {feature_fields, matching_fields, solver_fields, verdict_fields}) {
     for (Field& field : stage(c)) all.push_back(std::move(field));
   }
+  append(all, "relief", fields_of(c.relief));
   return all;
 }
 

@@ -9,6 +9,25 @@
 
 namespace adit {
 
+/// How two walls are compared to the millimetre (relief.hpp; decisions 0013 and 0015), lengths in metres.
+struct ReliefConfig {
+  double patch_m = 1.0;
+  double max_range_m = 15.0;
+  double pairing_distance_m = 0.2;
+  double max_offset_m = 0.15;
+  double min_offset_m = 0.002;
+  double min_normal_cosine = 0.95;
+  int min_points = 6;
+  double same_share = 0.52;
+  double same_sigma = 0.015;
+  double prior_sigma = 0.35;
+  double prior_stretches = 4.0;
+  double may_be_same = 0.05;
+  int min_patches = 100;
+  int min_patches_to_refute = 200;
+};
+[[nodiscard]] Fields fields_of(ReliefConfig& config);
+
 /// What is left of the consistency graph: its innermost k-core, or its maximum clique.
 enum class Pruning { k_core, clique };
 inline constexpr std::array kPrunings{Pruning::k_core, Pruning::clique};
@@ -50,6 +69,8 @@ struct RegistrationConfig {
   int min_inliers = 20;
   double overlap_distance_voxels = 1.5;
   double min_overlap = 0.3;
+
+  ReliefConfig relief;
 };
 
 [[nodiscard]] Fields fields_of(RegistrationConfig& c);

@@ -9,25 +9,10 @@
 namespace adit {
 namespace {
 
-constexpr float kPatch = 1.0F;            // metres
-constexpr float kRange = 15.0F;           // metres; farther away the beams are too far apart
-constexpr float kNear = 0.2F;             // metres along a wall, from a point of b to one of a
-constexpr float kOff = 0.15F;             // metres; what stands farther off is another thing, not relief
-constexpr float kSameSide = 0.95F;        // cosine between two normals
-constexpr std::size_t kEnoughPoints = 6;  // of b, in a patch: from afar the beams are too few
-constexpr double kTells = 0.002;  // metres; what is less is left by where on a wall the beams happen to fall
-constexpr double kChance = 0.5;
-// Between two robots' drives through one tunnel, in three tuning worlds (decision 0015).
-constexpr SameWalls kSame = {0.52, 0.015};
-// What is believed of look-alikes before any is seen, worth as many stretches.
-constexpr double kPriorSigma = 0.35;
-constexpr double kPriorStretches = 4.0;
-constexpr double kMayBeSame = 0.05;     // chance below which a share is not one of the same walls
-constexpr std::size_t kEnough = 200;    // patches: below, a few bad fits are a large part of them
-constexpr std::size_t kSeenWell = 100;  // patches that make a share worth something
+constexpr double kChance = 0.5;  ///< Share of equal signs that noise gives.
 
-// That so large a share, or a larger one, is found.
-double at_least(const StandingShare& found, const SameWalls& walls) {
+/// The chance of so large a share, or a larger one.
+double chance_of_at_least(const StandingShare& found, const SameWalls& walls) {
   return 0.5 *
          std::erfc((found.share - walls.mean) / std::hypot(walls.sigma, found.sigma) / std::numbers::sqrt2);
 }
@@ -40,6 +25,7 @@ double density(const StandingShare& found, const SameWalls& walls) {
   return normal_density(found.share - walls.mean, std::hypot(walls.sigma, found.sigma));
 }
 
+/// Averages over the distribution of `walls` by steps in its standard deviation.
 double density(const StandingShare& found, const OtherWalls& walls) {
   constexpr double kStep = 0.1;  // sigmas
   constexpr int kSteps = 60;     // to each side
@@ -61,7 +47,7 @@ std::int32_t side_of(const Eigen::Vector3f& normal) {
 }  // namespace
 
 std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
-                                       const Pose& T_map_a) {
+                                       const Pose& T_map_a, const ReliefConfig& config) {
   struct Sum {
     double metres = 0.0;
     std::size_t num_points = 0;
@@ -70,31 +56,37 @@ std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& 
   const Eigen::Vector3f t = T_a_b.translation().cast<float>();
   const Eigen::Matrix3f R_map = T_map_a.rotation_matrix().cast<float>();
   const Eigen::Vector3f t_map = T_map_a.translation().cast<float>();
+  const auto patch = static_cast<float>(config.patch_m);
+  const auto max_range = static_cast<float>(config.max_range_m);
+  const auto pairing_distance = static_cast<float>(config.pairing_distance_m);
+  const auto max_offset = static_cast<float>(config.max_offset_m);
+  const auto min_cosine = static_cast<float>(config.min_normal_cosine);
   std::map<WallPatch, Sum> sums;
   for (std::size_t i = 0; i < b.points().size(); ++i) {
     const Eigen::Vector3f p = R * b.points().points[i] + t;
-    if ((p - a.viewpoint()).norm() > kRange) continue;
-    const auto near = a.tree().nearest(p, kNear);
+    if ((p - a.viewpoint()).norm() > max_range) continue;
+    const auto near = a.tree().nearest(p, pairing_distance);
     if (!near) continue;
     const Eigen::Vector3f& normal = a.points().normals[near->index];
     const float off = normal.dot(p - a.points().points[near->index]);
-    if (std::abs(off) > kOff || (R * b.points().normals[i]).dot(normal) < kSameSide) continue;
-    const Eigen::Array3f cell = ((R_map * p + t_map) / kPatch).array().floor();
+    if (std::abs(off) > max_offset || (R * b.points().normals[i]).dot(normal) < min_cosine) continue;
+    const Eigen::Array3f cell = ((R_map * p + t_map) / patch).array().floor();
     Sum& sum = sums[{static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()),
                      static_cast<std::int32_t>(cell.z()), side_of(R_map * normal)}];
     sum.metres += static_cast<double>(off);
     ++sum.num_points;
   }
   std::vector<PatchOffset> out;
-  for (const auto& [patch, sum] : sums)
-    if (sum.num_points >= kEnoughPoints)
-      out.push_back({patch, sum.metres / static_cast<double>(sum.num_points)});
+  for (const auto& [where, sum] : sums) {
+    if (sum.num_points < static_cast<std::size_t>(config.min_points)) continue;
+    const double mean = sum.metres / static_cast<double>(sum.num_points);
+    if (std::abs(mean) > config.min_offset_m) out.push_back({where, mean});
+  }
   return out;
 }
 
 void StandingOffsets::add(const std::vector<PatchOffset>& of_a_pair) {
   for (const PatchOffset& offset : of_a_pair) {
-    if (std::abs(offset.metres) <= kTells) continue;
     Sides& sides = patches_[offset.patch];
     ++(offset.metres > 0.0 ? sides.num_in_front : sides.num_behind);
   }
@@ -128,13 +120,14 @@ StandingShare StandingOffsets::counted() const {
 
 bool StandingOffsets::are_of_other_walls(const StandingShares& shares, double rate) const {
   const StandingShare found = counted();
-  return found.num_patches >= kEnough && at_least(found, shares.same()) < rate;
+  const auto needed = static_cast<std::size_t>(shares.config().min_patches_to_refute);
+  return found.num_patches >= needed && chance_of_at_least(found, shares.same()) < rate;
 }
 
 double StandingOffsets::evidence(const StandingShares& shares) const {
   const std::optional<OtherWalls> other = shares.other();
   StandingShare found = counted();
-  if (!other || found.num_patches < kSeenWell) return 0.0;
+  if (!other || found.num_patches < static_cast<std::size_t>(shares.config().min_patches)) return 0.0;
   found.share = std::max(found.share, kChance);  // less than chance is chance
   constexpr double kLeast = 1e-300;              // for the logarithm
   return std::log(std::max(density(found, shares.same()), kLeast)) -
@@ -144,12 +137,13 @@ double StandingOffsets::evidence(const StandingShares& shares) const {
 void StandingShares::set_same(const StandingShare& share) { same_ = share; }
 
 void StandingShares::add_other(const StandingShare& share) {
-  if (share.num_patches >= kSeenWell) others_.push_back(share);
+  if (share.num_patches >= static_cast<std::size_t>(config_.min_patches)) others_.push_back(share);
 }
 
 SameWalls StandingShares::same() const {
-  SameWalls walls = kSame;
-  if (same_.num_patches >= kEnough) walls.mean = std::max(walls.mean, same_.share);
+  SameWalls walls{config_.same_share, config_.same_sigma};
+  if (same_.num_patches >= static_cast<std::size_t>(config_.min_patches_to_refute))
+    walls.mean = std::max(walls.mean, same_.share);
   return walls;
 }
 
@@ -158,16 +152,16 @@ std::optional<OtherWalls> StandingShares::other() const {
   const auto num = static_cast<double>(others_.size());
   double mean = 0.0;
   for (const StandingShare& one : others_) {
-    if (at_least(one, same()) > kMayBeSame) return {};
+    if (chance_of_at_least(one, same()) > config_.may_be_same) return {};
     mean += std::log(one.share - kChance) / num;
   }
-  double beyond_chance = kPriorStretches * kPriorSigma * kPriorSigma;
+  double beyond_chance = config_.prior_stretches * config_.prior_sigma * config_.prior_sigma;
   for (const StandingShare& one : others_) {
     const double beyond_half = one.share - kChance;
     beyond_chance +=
         std::max(0.0, std::pow(std::log(beyond_half) - mean, 2) - std::pow(one.sigma / beyond_half, 2));
   }
-  const double variance = beyond_chance / (kPriorStretches + num - 1.0);
+  const double variance = beyond_chance / (config_.prior_stretches + num - 1.0);
   return OtherWalls{mean, std::sqrt(variance * (1.0 + 1.0 / num))};
 }
 

@@ -50,7 +50,7 @@ StandingOffsets driven(std::uint64_t first, std::uint64_t second, int num_pairs 
     const double x = 3.0 * i;
     const auto noise = static_cast<std::uint64_t>(2 * i + 100);
     offsets.add(patch_offsets(seen(first, x, noise), seen(second, x + ahead, noise + 1),
-                              Pose::translation_of(ahead, 0.0, 0.0), Pose::translation_of(x, 0.0, 0.0)));
+                              Pose::translation_of(ahead, 0.0, 0.0), Pose::translation_of(x, 0.0, 0.0), {}));
   }
   return offsets;
 }
@@ -116,7 +116,7 @@ TEST(Relief, WhatStandsFarOffIsNoRelief) {
   const SeenSurface a = seen(1, 0.0, 1);
   OrientedPoints points = a.points();
   for (Eigen::Vector3f& p : points.points) p.tail<2>() *= 3.7F / 4.0F;
-  EXPECT_TRUE(patch_offsets(a, {points, Vector3::Zero()}, Pose(), Pose()).empty());
+  EXPECT_TRUE(patch_offsets(a, {points, Vector3::Zero()}, Pose(), Pose(), {}).empty());
 }
 
 TEST(Relief, OffsetsAreTowardsTheFreeSide) {
@@ -128,7 +128,7 @@ TEST(Relief, OffsetsAreTowardsTheFreeSide) {
   for (Eigen::Vector3f& p : bulged.points)
     if (is_bulged(p)) p.tail<2>() *= 3.95F / 4.0F;
   int num = 0;
-  for (const PatchOffset& one : patch_offsets(a, {bulged, Vector3::Zero()}, Pose(), Pose())) {
+  for (const PatchOffset& one : patch_offsets(a, {bulged, Vector3::Zero()}, Pose(), Pose(), {})) {
     const bool is_there = one.patch[0] == 2 && one.patch[1] == 3;
     EXPECT_NEAR(one.metres, is_there ? 0.05 : 0.0, 0.01);
     num += is_there ? 1 : 0;
@@ -141,7 +141,7 @@ TEST(Relief, PatchesStayWhereTheyAreInTheMap) {
   const SeenSurface a = seen(1, 0.0, 1);
   const SeenSurface b = seen(1, 0.0, 2);
   const Pose T_map_a = Pose::planar(7.0, -3.0, 1.0);
-  const std::vector<PatchOffset> found = patch_offsets(a, b, Pose(), T_map_a);
+  const std::vector<PatchOffset> found = patch_offsets(a, b, Pose(), T_map_a, {.min_offset_m = 0.0});
   ASSERT_GT(found.size(), 100U);
   for (const PatchOffset& one : found) {
     const Vector3 middle(one.patch[0] + 0.5, one.patch[1] + 0.5, one.patch[2] + 0.5);
@@ -162,12 +162,26 @@ TEST(StandingOffsets, EveryTwoPairsThatSawAPatchAgreeOrNot) {
   EXPECT_DOUBLE_EQ(offsets.counted().share, (2.0 / 3.0 + 0.0) / (2.0 + 1.0));
 }
 
-TEST(StandingOffsets, AMillimetreTellsNothing) {
-  StandingOffsets offsets;
-  for (const double metres : {0.01, 0.001}) offsets.add({{{0, 0, 0, 0}, metres}});
-  EXPECT_EQ(offsets.counted().num_patches, 0U);
-  offsets.add({{{0, 0, 0, 0}, 0.003}});
-  EXPECT_EQ(offsets.counted().share, 1.0);
+TEST(Relief, SmallOffsetsAreLeftOut) {
+  const SeenSurface a = seen(1, 0.0, 1);
+  const SeenSurface b = seen(11, 0.0, 2);
+  const auto offsets = [&](double minimum) {
+    return patch_offsets(a, b, Pose(), Pose(), {.min_offset_m = minimum});
+  };
+  std::vector<WallPatch> expected;
+  for (const PatchOffset& one : offsets(0.0))
+    if (std::abs(one.metres) > 0.002) expected.push_back(one.patch);
+  std::vector<WallPatch> found;
+  for (const PatchOffset& one : offsets(ReliefConfig{}.min_offset_m)) found.push_back(one.patch);
+  EXPECT_EQ(found, expected);
+  EXPECT_GT(found.size(), 20U);
+  EXPECT_LT(found.size(), offsets(0.0).size());
+}
+
+TEST(StandingOffsets, TheShareOfOneWallAndTheNumberOfPatchesAreSettings) {
+  EXPECT_TRUE(of_a_thousand(600).are_of_other_walls({}, 0.01));
+  EXPECT_FALSE(of_a_thousand(600).are_of_other_walls(StandingShares({.same_share = 0.6}), 0.01));
+  EXPECT_FALSE(of_a_thousand(600).are_of_other_walls(StandingShares({.min_patches_to_refute = 1001}), 0.01));
 }
 
 TEST(StandingOffsets, TheShareIsAsUncertainAsTheTossOfACoin) {
