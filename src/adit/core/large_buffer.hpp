@@ -7,8 +7,8 @@
 
 namespace adit {
 
-/// Room for `size` numbers that nobody has written yet. Large ones come in huge pages where the system has
-/// them: the first touch of each 4 kB page costs as much as computing with it.
+/// `size` uninitialised numbers. Large buffers come in huge pages where the system has them: the first touch
+/// of each 4 kB page costs as much as computing with it.
 class LargeBuffer {
  public:
   LargeBuffer() = default;

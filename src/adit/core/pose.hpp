@@ -34,11 +34,11 @@ class Pose {
   using Jacobian = Matrix6;
 
   Pose() = default;  ///< Identity.
-  /// Throws ContractViolation when a number is not finite or the quaternion's norm is off 1 by more than
-  /// 1e-3; within that it is normalised.
+  /// Throws ContractViolation when a number is not finite or the quaternion's norm differs from 1 by more
+  /// than 1e-3; within that it is normalised.
   Pose(const Eigen::Quaterniond& rotation, const Vector3& translation);
-  /// Throws ContractViolation when `rotation` is no rotation matrix (to 1e-3); within that the nearest one is
-  /// taken.
+  /// Throws ContractViolation when `rotation` is off a rotation matrix by more than 1e-3; within that the
+  /// nearest rotation is taken.
   Pose(const Matrix3& rotation, const Vector3& translation);
   [[nodiscard]] static Pose translation_of(double x, double y, double z) {
     return {Eigen::Quaterniond::Identity(), Vector3(x, y, z)};

@@ -20,14 +20,14 @@ struct ConstantVelocity {
   Pose T_start_end;
   Duration duration{};
 
-  /// The body at `offset` from a moment, seen from the body at that moment: exp(offset / duration *
-  /// log(T_start_end)).
+  /// The pose of the body `offset` after a moment, in the body's frame at that moment: exp(offset / duration
+  /// * log(T_start_end)).
   [[nodiscard]] Pose pose_after(Duration offset) const;
 };
 
 /// p_body_at_stamp = SweepTransform(offset) * p_sensor_at_offset, for the many points of one sweep. The pose
-/// is exact at knots over the span of offsets and its matrix linear between them; the knots are so many that
-/// the error is at most 3e-6 of the range (0.3 mm at 100 m), far below any sensor's noise.
+/// is exact at knots over the span of offsets, and its matrix is linear between them. There are enough knots
+/// for an error of at most 3e-6 of the range (0.3 mm at 100 m), far below the noise of any sensor.
 class SweepTransform {
  public:
   using Matrix34 = Eigen::Matrix<float, 3, 4>;
@@ -56,9 +56,8 @@ void transform_points(const SweepTransform::Matrix34& T_a_b, std::span<const Eig
                       std::span<Eigen::Vector3f> p_a);
 
 /// The cloud as if all of it had been measured at the scan's stamp: each point moved from where the sensor
-/// was at the point's own time. `motion` is the sensor's. The result holds no times any more, since none is
-/// left to remove; a cloud without times (`has_times()` is false: nothing is known about when its points were
-/// taken) comes back unchanged.
+/// was at the point's own time. `motion` is the sensor's. The result holds no times; a cloud without times
+/// comes back unchanged, since it is not known when its points were measured.
 [[nodiscard]] PointCloud deskewed(PointCloud cloud, const ConstantVelocity& motion);
 
 }  // namespace adit

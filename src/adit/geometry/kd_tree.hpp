@@ -21,7 +21,7 @@ struct Neighbor {
   bool operator==(const Neighbor&) const = default;
 };
 
-/// The nearest point, and how near any other one can be at most.
+/// The nearest point, and a lower bound of the distance of all others.
 struct NearestAlone {
   std::uint32_t index = 0;
   float squared_distance = 0.0F;

@@ -10,7 +10,7 @@
 
 namespace adit {
 
-/// What the scatter of a point's surroundings says; eigenvalues l1 >= l2 >= l3.
+/// The surface around a point, from the scatter of its surroundings with eigenvalues l1 >= l2 >= l3.
 struct SurfacePoint {
   Eigen::Vector3f normal =
       Eigen::Vector3f::Zero();  ///< Unit length, turned to the sensor; zero: not `valid`.
@@ -20,7 +20,7 @@ struct SurfacePoint {
       false;  ///< False with fewer than 3 neighbours, or when all of them lie on one line with the point.
 };
 
-/// One surface point a point, from itself and its neighbours no farther than `radius` metres among `pairs`
+/// One result per point, from the point and its neighbours no farther than `radius` metres among `pairs`
 /// (found with at least that radius). Normals are turned to the origin of the points' frame, where the sensor
 /// is.
 [[nodiscard]] std::vector<SurfacePoint> estimate_surface(const std::vector<Eigen::Vector3f>& points,

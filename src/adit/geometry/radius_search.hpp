@@ -14,14 +14,14 @@
 namespace adit {
 
 /// Every pair of neighbours once, in compressed sparse rows: the row of a point holds those of its neighbours
-/// that no earlier search found. What is symmetric in a pair (a covariance, a pair feature) is thus computed
-/// once for both.
+/// that no earlier search found. Whatever is symmetric in a pair (a covariance, a pair feature) is thus
+/// computed once for both.
 struct NeighborPairs {
   struct Row {
     std::uint32_t begin = 0;
     std::uint32_t end = 0;
   };
-  std::vector<Row> rows;  ///< One a point, in any order of `neighbors`.
+  std::vector<Row> rows;  ///< One per point, in any order of `neighbors`.
   std::vector<Neighbor> neighbors;
 
   [[nodiscard]] std::size_t num_points() const { return rows.size(); }

@@ -21,7 +21,7 @@ struct TriangleMesh {
 };
 
 /// Fails when the mesh has no triangle, an index outside its vertices or a vertex that is not finite; the
-/// message names the first offender.
+/// message names the first of them.
 Result<> check_mesh(const TriangleMesh& mesh);
 
 /// The smallest axis-aligned box around all vertices; Eigen's empty box when there are none.

@@ -13,9 +13,9 @@ namespace adit {
 /// scale and never a reflection. Source: Umeyama, "Least-squares estimation of transformation parameters
 /// between two point patterns", PAMI 1991, equations 40 to 42 with c = 1.
 ///
-/// Where the points leave the rotation open, the smallest rotation among the best ones is returned: points on
-/// one line (a robot that drove straight ahead) turn that line onto the other and do not roll about it;
-/// points in one spot, or a single point, do not turn at all.
+/// Where the points leave the rotation open, the smallest of the best rotations is returned: points on one
+/// line (a robot that drove straight ahead) turn that line onto the other and do not roll about it;
+/// coincident points, or a single point, do not turn at all.
 ///
 /// Fails when there is no point or when a coordinate is not finite. Throws ContractViolation when the two
 /// spans differ in length.

@@ -10,13 +10,13 @@
 
 namespace adit {
 
-/// A number, 0 unless set, for each voxel of space. Voxels lie in bricks of 4 x 4 x 4, so that those around a
-/// place share few cache lines; bricks that hold anything are found by hashing.
+/// A number, 0 unless set, for each voxel of space. Voxels lie in bricks of 4 x 4 x 4, so that neighbours
+/// share few cache lines; bricks that hold anything are found by hashing.
 class VoxelBricks {
  public:
   static constexpr std::uint32_t kBrickVoxels = 64;
 
-  /// Looks at voxels near one another; stands until the next change of the bricks.
+  /// Reads voxels near one another; valid until the bricks change.
   class Reader {
    public:
     explicit Reader(const VoxelBricks& bricks) : bricks_(bricks) {}
@@ -35,12 +35,12 @@ class VoxelBricks {
     const std::uint32_t* values_ = nullptr;
   };
 
-  /// Where a voxel's number lies, for `operator[]`. It stays there until the voxel is set to 0 by `clear`.
+  /// The position of a voxel's number, for `operator[]`; valid until `clear` sets the voxel to 0.
   [[nodiscard]] std::uint32_t position_of(VoxelKey key);
   [[nodiscard]] std::uint32_t& operator[](std::uint32_t position) { return values_[position]; }
   /// Sets the voxel's number to 0.
   void clear(VoxelKey key);
-  /// Says that `key` will soon be asked for.
+  /// Prefetches the brick of `key` for a query that comes soon.
   void prefetch(VoxelKey key) const { table_.prefetch(brick_of(key)); }
 
  private:

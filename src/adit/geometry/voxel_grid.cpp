@@ -119,8 +119,8 @@ void VoxelSet::grow() {
     if (key != VoxelKey::none()) insert(key);
 }
 
-// Each part of the cloud drops in parallel what it knows to be no first point; what is left meets the set in
-// the order of the cloud.
+// In parallel, each part of the cloud drops points that are certainly not the first of their voxel; survivors
+// are inserted serially, in cloud order.
 std::span<const std::uint32_t> VoxelThinner::first_in_voxel(std::span<const Eigen::Vector3f> points,
                                                             double voxel_size) {
   const VoxelGrid grid(voxel_size);

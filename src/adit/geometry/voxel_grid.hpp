@@ -14,8 +14,8 @@
 
 namespace adit {
 
-/// A voxel's three indices (floor of coordinate / edge) in one word, 21 bits each, so that the key of a
-/// neighbour is a sum. Indices reach from -2^20 to 2^20 - 1: 100 km either way at an edge of 0.1 m.
+/// The three indices of a voxel (floor of coordinate / edge) in one word, 21 bits each, so that the key of a
+/// neighbour is a sum. Indices reach from -2^20 to 2^20 - 1: 100 km in each direction at an edge of 0.1 m.
 struct VoxelKey {
   std::uint64_t value = 0;
 
@@ -83,9 +83,9 @@ class VoxelTable {
     if (slot.key == VoxelKey::none()) return {};
     return slot.number;
   }
-  /// Says that `key` will soon be asked for.
+  /// Prefetches the slot of `key` for a query that comes soon.
   void prefetch(VoxelKey key) const { __builtin_prefetch(&slots_[home_of(key)]); }
-  /// The number that `key` already has; otherwise gives it `number`, and the answer says nothing.
+  /// The number that `key` already has; if it has none, it gets `number` and the answer is empty.
   std::optional<std::uint32_t> find_or_insert(VoxelKey key, std::uint32_t number) {
     Slot& slot = slots_[position_of(key)];
     if (slot.key == key) return slot.number;
@@ -118,7 +118,7 @@ class VoxelTable {
   std::size_t size_ = 0;
 };
 
-/// A set of voxels in the manner of VoxelTable.
+/// A set of voxels, stored as in VoxelTable.
 class VoxelSet {
  public:
   /// Room for `expected` voxels before the first growth.
@@ -162,9 +162,8 @@ class VoxelThinner {
   static std::size_t find_candidates(const VoxelGrid& grid, std::span<const Eigen::Vector3f> points,
                                      std::uint32_t first_index, Candidate* candidates);
 
-  std::vector<Candidate>
-      candidates_;  ///< Each part of the cloud has a stretch of its own, used from its front.
-  std::vector<std::size_t> num_candidates_;  ///< Of each part.
+  std::vector<Candidate> candidates_;  ///< Each part of the cloud has its own range, filled from its front.
+  std::vector<std::size_t> num_candidates_;  ///< Per part.
   VoxelSet seen_;
   std::vector<std::uint32_t> first_;
 };

@@ -8,9 +8,9 @@
 
 namespace adit {
 
-/// The paper's test for keyframes that saw nothing but a tube. Its threshold is knowledge of the site (the
-/// paper says so). The defaults suit tubes of 7 to 10 m: with the cloud cropped at 30 m, a straight tube's
-/// box is as wide as the tube, and a junction's reaches down the side passage.
+/// The paper's test for keyframes that saw nothing but a tube. The threshold depends on the site, as the
+/// paper says. The defaults suit tubes of 7 to 10 m: with the cloud cropped at 30 m, the box of a straight
+/// tube is as wide as the tube, and that of a junction reaches into the side passage.
 struct TunnelFilterConfig {
   double width_threshold_m = 20.0;
   double max_range_m = 30.0;
@@ -19,7 +19,7 @@ inline Fields fields_of(TunnelFilterConfig& c) {
   return {{"width_threshold_m", &c.width_threshold_m, "m", 0.0, 1000.0,
            "a keyframe whose box has a second-largest extent below this is tunnel-like"},
           {"max_range_m", &c.max_range_m, "m", 0.0, 1000.0,
-           "points farther than this from the robot are cropped first; 0: none is"}};
+           "points farther than this from the robot are cropped first; 0: no cropping"}};
 }
 
 struct TunnelVerdict {

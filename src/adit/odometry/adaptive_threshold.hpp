@@ -6,7 +6,7 @@
 
 namespace adit {
 
-/// How far the farthest point in range moves when the prediction is corrected by `correction`, metres:
+/// The displacement of the farthest point in range when the prediction is corrected by `correction`, metres:
 /// |t| + 2 r_max sin(theta / 2) (KISS-ICP, eq. (6)-(7)).
 [[nodiscard]] double point_deviation(const Pose& correction, double max_range);
 
@@ -27,11 +27,11 @@ class DeviationStatistics {
   int count_ = 0;
 };
 
-/// The adaptive threshold of KISS-ICP, section III-C. Deviations up to `min_motion` do not count, so a robot
-/// at rest does not talk the threshold down to nothing. One addition to the paper: sigma can be frozen so
-/// small that no correspondence is ever found again, hence each scan in a row that could not be registered
-/// widens it by half
-/// (`failed`), up to the initial threshold; the first success takes the widening back.
+/// The adaptive threshold of KISS-ICP, section III-C, metres. Deviations up to `min_motion` do not count, so
+/// that a robot at rest does not shrink the threshold to nothing. One addition to the paper: sigma can freeze
+/// at a value so small that no correspondence is ever found again. Therefore each consecutive scan that could
+/// not be registered (`failed`) widens it by half, up to the initial threshold; the first success takes the
+/// widening back.
 class AdaptiveThreshold {
  public:
   AdaptiveThreshold(double initial_threshold, double min_motion, double max_range);

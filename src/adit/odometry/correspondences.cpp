@@ -10,12 +10,12 @@
 namespace adit {
 namespace {
 
-// Share of a voxel by which searches look farther than they must, so that their candidates are enough for
+// Share of a voxel by which searches look farther than they must, so that their candidates suffice for
 // longer.
 constexpr float kMargin = 0.1F;
-// Share of the squared clearance that roundings cannot spoil.
+// Share of the squared clearance that is left after roundings.
 constexpr float kCertain = 0.9999F;
-// Coordinates of points that stand for none, and bounds that are none.
+// Coordinate of placeholders for missing points, and value of missing bounds.
 constexpr float kNowhere = LocalMap::Candidates::kNowhere;
 
 constexpr std::size_t kBlock = Correspondences::kBlock;
@@ -86,8 +86,8 @@ ADIT_WIDE_VECTORS void choose(Followed& block) {
   }
 }
 
-// Marks points that need a search. With m the way from the last one, d the distance to the nearest candidate
-// (or the farthest that counts) and c the clearance, they do not if d + m < c; here in squares.
+// Marks points that need a search. With m the distance from the last one, d the distance to the nearest
+// candidate (or the farthest that counts) and c the clearance, they do not if d + m < c; here in squares.
 ADIT_WIDE_VECTORS void mark_stale(const Followed& block, float max_distance,
                                   std::array<std::uint32_t, kBlock>& stale) {
   for (std::size_t i = 0; i < kBlock; ++i) {

@@ -11,11 +11,11 @@
 
 namespace adit {
 
-/// A scan's nearest neighbours in the map (LocalMap::nearest), from one pose to the next. Each point keeps
-/// the candidates of its last search, when all others were at least c away. As long as it has moved by m
-/// since and a candidate is nearer than c - m, no other point can be the nearest, says the triangle
-/// inequality, and no search is needed. That is exact, and in the later iterations of ICP most points hardly
-/// move.
+/// The nearest neighbours of a scan's points in the map (LocalMap::nearest), from one pose to the next. Each
+/// point keeps the candidates of its last search, when all others were at least c away. While it has moved by
+/// m since and a candidate is nearer than c - m, no other point can be the nearest, by the triangle
+/// inequality, and no search is needed. The answers are exact, and in the later iterations of ICP most points
+/// hardly move.
 class Correspondences {
  public:
   /// Points handled together.
@@ -40,7 +40,7 @@ class Correspondences {
   struct Points {
     std::array<float, kBlock> x, y, z;
   };
-  /// What is kept of a block. Places behind the last point never need a search.
+  /// What is kept of a block. Lanes behind the last point never need a search.
   struct Followed {
     Points source;     ///< Base frame; all others map frame.
     Points at;         ///< The same at the last pose.

@@ -12,9 +12,10 @@
 
 namespace adit {
 
-/// The sparse map that scans are registered to: at most `max_points_per_voxel` points a voxel, none nearer to
-/// another of its voxel than voxel_size / sqrt(max_points_per_voxel) (KISS-ICP, section III-B). Points lie in
-/// one flat float array, a block a voxel, in groups of four, so that four are compared at a time.
+/// The sparse map that scans are registered to: at most `max_points_per_voxel` points per voxel, none nearer
+/// to another of its voxel than voxel_size / sqrt(max_points_per_voxel) (KISS-ICP, section III-B). Points lie
+/// in one flat float array, one block per voxel, in groups of four that are compared at once. Metres, map
+/// frame.
 class LocalMap {
  public:
   struct Neighbour {
@@ -22,8 +23,8 @@ class LocalMap {
     float squared_distance = 0.0F;
   };
 
-  /// Points near a query, and how long they are enough to know the nearest: for a query that has moved by
-  /// m < room it is among them, or farther than clearance - m.
+  /// Points near a query, and how long they suffice to know the nearest: for a query that has moved by m <
+  /// room, the nearest is among them or farther than clearance - m.
   struct Candidates {
     static constexpr std::size_t kNumber = 8;
     static constexpr float kNowhere = 1e9F;  ///< Coordinates of points that stand for none.
@@ -32,7 +33,7 @@ class LocalMap {
     float room = 0.0F;       ///< Metres: so far the query may move until the search is about other points.
   };
 
-  /// The points around a place: how many, and the sums of their offsets d from it and of d d^T.
+  /// The points around a centre: their number, and the sums of their offsets d from it and of d d^T.
   struct Moments {
     int count = 0;
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
@@ -56,13 +57,13 @@ class LocalMap {
 
   /// The nearest point strictly nearer than `max_distance`, of the 27 voxels around the query.
   [[nodiscard]] std::optional<Neighbour> nearest(const Eigen::Vector3f& query, float max_distance) const;
-  /// The same point and others; with more `margin`, metres, they are enough for longer.
+  /// The same point and others; with more `margin`, metres, they suffice for longer.
   [[nodiscard]] Candidates search(const Eigen::Vector3f& query, float max_distance, float margin) const;
   /// Of the points nearer than `radius` (at most one voxel) to `centre`.
   [[nodiscard]] Moments moments_within(const Eigen::Vector3f& centre, float radius) const;
 
  private:
-  // What `voxels_` says of a voxel that holds points: number of its block and of its points.
+  // What `voxels_` holds for a voxel with points: the number of its block, and how many points it has.
   static constexpr std::uint32_t kCountBits = 8;
   [[nodiscard]] static std::uint32_t block_of(std::uint32_t voxel) { return voxel >> kCountBits; }
   [[nodiscard]] static std::uint32_t count_of(std::uint32_t voxel) {
@@ -77,7 +78,7 @@ class LocalMap {
   VoxelGrid grid_;
   std::uint32_t max_points_per_voxel_;
   float min_squared_spacing_;
-  std::size_t block_size_;  ///< Floats a voxel.
+  std::size_t block_size_;  ///< Floats per voxel.
   VoxelBricks voxels_;
   std::vector<VoxelKey> keys_;               ///< Of each block.
   std::vector<Eigen::Vector3f> first_;       ///< First point of each block; NaN where it is free.

@@ -11,7 +11,7 @@
 namespace adit {
 namespace {
 
-// Points of a part of the parallel loop, and points whose ranges are looked at together.
+// Points per part of the parallel loop, and points whose ranges are tested together.
 constexpr std::size_t kGrain = 8192;
 constexpr std::size_t kBlock = 256;
 

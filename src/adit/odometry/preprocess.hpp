@@ -9,8 +9,8 @@
 
 namespace adit {
 
-/// Metres from the sensor; both bounds are exclusive, so that the (0, 0, 0) some drivers write for "no echo"
-/// goes too.
+/// Metres from the sensor; both bounds are exclusive, so that the (0, 0, 0) that some drivers write for "no
+/// echo" is dropped too.
 struct RangeLimits {
   double min_range = 0.0;
   double max_range = 100.0;

@@ -96,13 +96,13 @@ struct ThinnedScan {
 [[nodiscard]] OdometryStep step_of(const Alignment& alignment, std::span<const Eigen::Vector3f> source,
                                    const LocalMap& map, double max_distance, const ScanToMapConfig& config);
 
-/// Whether the scan of such a step may enter the map: it was registered, or it starts the map.
+/// Whether a scan with this status enters the map: it was registered, or it starts the map.
 [[nodiscard]] inline bool enters_map(StepStatus status) {
   return status == StepStatus::ok || status == StepStatus::degenerate || status == StepStatus::no_map;
 }
 
-/// Adds the scan where the step puts it, if it may enter, and forgets what is out of range of the new pose: a
-/// robot that has left its map behind finds it empty and starts a new one where the prediction is.
+/// Adds the scan at the step's pose, if it enters the map, and drops what is out of range of that pose. A
+/// robot that has left its map behind finds it empty and starts a new one at the prediction.
 void update_map(LocalMap& map, const ThinnedScan& scan, const OdometryStep& step,
                 const ScanToMapConfig& config);
 

@@ -22,10 +22,10 @@ void check_config(ScanContextConfig config) {
   ADIT_CHECK(valid.has_value(), valid.error().message.c_str());
 }
 
-/// Points are sorted into cells this many at a time: their columns stay in the first-level cache.
+/// Points that are sorted into cells together: their columns stay in the first-level cache.
 constexpr std::size_t kChunk = 512;
-/// Equal cells often follow each other, and each copy of the grid takes every fourth point, so that no
-/// maximum waits for the one before.
+/// Copies of the grid, each of which takes every fourth point: equal cells often follow each other, and no
+/// maximum has to wait for the one before.
 constexpr std::size_t kCopies = 4;
 
 /// The polar grid in the numbers that the search for a point's cell needs.
@@ -84,9 +84,10 @@ struct Chunk {
   int is_on_border[kChunk];
 };
 
-/// Angles are found to 2e-4 rad, by a minimax polynomial of atan on [0, 1], folded out. That names the sector
-/// of all points but those beside a border, whose sides decide later: an arc tangent a point would be two
-/// thirds of the descriptor's cost. No branches, so that the loop runs in vector registers.
+/// Angles are found to 2e-4 rad by a minimax polynomial of atan on [0, 1], extended to the full turn. That
+/// gives the sector of all points but those beside a border, which are decided later by the side they lie on:
+/// an arc tangent per point would be two thirds of the descriptor's cost. No branches, so that the loop runs
+/// in vector registers.
 ADIT_WIDE_VECTORS void find_cells(const PolarGrid& grid, const Eigen::Vector3f* points, std::size_t n,
                                   Chunk& out) {
   constexpr float kHalfPi = std::numbers::pi_v<float> / 2.0F;

@@ -32,7 +32,7 @@ inline Fields fields_of(ScanContextConfig& c) {
            "added to z, metres above the base frame's floor"}};
 }
 
-/// What a place looks like: the greatest height in each cell of a polar grid around the robot. Made by
+/// The appearance of a place: the greatest height in each cell of a polar grid around the robot. Made by
 /// `describe`, `from_heights` or `decode`. Cells are kept as the unit vectors of the columns (sectors) and
 /// the columns' norms, which is all that a comparison needs; `height` gives the cell back.
 struct ScanContext {
@@ -60,7 +60,7 @@ struct ScanContext {
 /// when the size does not fit or a height is negative or not finite.
 [[nodiscard]] ScanContext from_heights(int num_rings, int num_sectors, std::span<const float> heights);
 
-/// How near two contexts are. T_match_query ~ a turn by `yaw` about z.
+/// The distance of two contexts. T_match_query is about a turn by `yaw` about z.
 struct ContextMatch {
   double distance =
       1.0;           ///< 1 - mean cosine over the sectors that both saw: 0 (same) to 1 (nothing in common).
@@ -80,8 +80,8 @@ struct ContextMatch {
 /// A shift as an angle in (-pi, pi].
 [[nodiscard]] double yaw_of_shift(int shift, int num_sectors);
 
-/// One byte a cell (heights in steps of a 255th of the greatest), for messages: 1.2 kB with the default grid.
-/// `decode` gives heights back to 0.2 % of the greatest. Errors: a truncated or malformed buffer.
+/// One byte per cell (heights in steps of a 255th of the greatest), for messages: 1.2 kB with the default
+/// grid. `decode` gives heights back to 0.2 % of the greatest. Errors: a truncated or malformed buffer.
 [[nodiscard]] std::vector<std::uint8_t> encode(const ScanContext& context);
 [[nodiscard]] Result<ScanContext> decode(std::span<const std::uint8_t> bytes);
 

@@ -14,18 +14,19 @@
 namespace adit {
 namespace {
 
-// A view in directions of three degrees: some points of a thinned cloud fall into each that sees a surface.
+// Cells of a view, three degrees wide: some points of a thinned cloud fall into each that sees a surface.
 constexpr int kColumns = 120;
 constexpr int kRows = 60;
-// A point is before or behind a surface when it is by more than this many voxels and this share of the range.
+// A point lies in front of a surface or behind it when the distance exceeds this many voxels plus this share
+// of the range.
 constexpr float kMarginVoxels = 1.0F;
 constexpr float kMarginShare = 0.01F;
-constexpr std::size_t kEnoughToAlign = 1500;  // points, or up to twice as many
-constexpr double kWideVoxels = 5.0;           // between points that belong together, in the first of two fits
-constexpr double kMaxCorrection = 2.5;        // metres
-constexpr std::array kOtherStarts = {-1.5, 1.5, -0.75, 0.75};  // metres along the way
-constexpr double kHopeless = 10.0;  // times what is enough: no small displacement mends that
-constexpr int kMaxIterations = 10;  // of each fit
+constexpr std::size_t kEnoughToAlign = 1500;                   // points, or up to twice as many
+constexpr double kWideVoxels = 5.0;                            // farthest pairs of the first of two fits
+constexpr double kMaxCorrection = 2.5;                         // metres
+constexpr std::array kOtherStarts = {-1.5, 1.5, -0.75, 0.75};  // metres along the path
+constexpr double kHopeless = 10.0;  // times `enough`: a difference that no small displacement removes
+constexpr int kMaxIterations = 10;  // per fit
 
 std::size_t place(int row, int column) {
   return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
@@ -40,7 +41,7 @@ std::size_t cell_of(const Eigen::Vector3f& direction) {
   return place(row, column);
 }
 
-// How many of the points belong to the largest set that is connected over neighbouring cells of a grid.
+// Number of points in the largest set that is connected over neighbouring cells of a grid.
 std::size_t largest_patch(const std::vector<Eigen::Vector3f>& points, float cell_size) {
   using Cell = std::array<int, 3>;
   std::map<Cell, std::size_t> cells;
@@ -89,7 +90,7 @@ struct Counts {
   std::size_t largest_difference = 0;
 };
 
-// The points of b as a saw the same space.
+// Compares the points of b with what a saw in the same space.
 Counts seen_by(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
                const RegistrationConfig& config) {
   const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
@@ -157,7 +158,7 @@ const SeenSurface::Ranges& SeenSurface::towards(const Eigen::Vector3f& direction
 }
 
 std::size_t SeenSurface::num_bytes() const {
-  // The tree takes 20 bytes a point.
+  // The tree takes 20 bytes per point.
   return (points_.size() + some_.size()) * 2 * sizeof(Eigen::Vector3f) + 20 * points_.size() +
          ranges_.size() * sizeof(Ranges);
 }

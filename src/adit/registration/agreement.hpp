@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Whether two scans could be of one place: surfaces that both saw lie on one another, and nothing of one
-/// stands where the other saw through.
+/// Whether two scans could be of the same place: surfaces that both saw coincide, and nothing in one scan
+/// stands where the other one saw free space.
 #pragma once
 
 #include <limits>
@@ -17,7 +17,7 @@ namespace adit {
 /// A scan as the surfaces that were seen from one point, with the free space in between.
 class SeenSurface {
  public:
-  /// Of the surfaces in one direction and around it; empty where nothing was seen.
+  /// Ranges of the surfaces in and around one direction, metres; empty where nothing was seen.
   struct Ranges {
     float nearest = std::numeric_limits<float>::infinity();
     float farthest = 0.0F;
@@ -25,7 +25,7 @@ class SeenSurface {
     void add(const Ranges& other);
   };
 
-  /// `points` in a frame in which the sensor stood at `viewpoint`.
+  /// `points` and `viewpoint`, where the sensor stood, in the same frame, metres.
   SeenSurface(OrientedPoints points, const Vector3& viewpoint);
 
   [[nodiscard]] const OrientedPoints& points() const { return points_; }
@@ -44,35 +44,36 @@ class SeenSurface {
   std::vector<Ranges> ranges_;
 };
 
-/// What two scans say about their relative pose where both could see. Of each scan those points count that
-/// the other one saw as well: they are confirmed when they lie on its surfaces, and differ when they lie off
-/// a surface near them, or where the other scan saw through. What hides behind the other's surfaces, or lies
-/// between its beams, says nothing.
+/// How well two scans agree at a given relative pose, where both could see. Of each scan, only points count
+/// that lie where the other scan saw too. They are confirmed when they lie on its surfaces. They differ when
+/// they lie off a surface near them, or in space that the other scan saw to be free. Points hidden behind the
+/// other's surfaces, or between its beams, do not count.
 struct Agreement {
   double confirmed = 0.0;  ///< Share of the points that count, the smaller of both directions.
-  /// Points of the largest connected patch that differs, one a voxel, the larger of both directions: a
-  /// niche or a cabinet that only one of two tubes has makes one patch, noise and beams that miss make many.
+  /// Number of points, one per voxel, in the largest connected patch that differs; the larger of both
+  /// directions. A niche or a cabinet that only one of two tubes has makes one large patch; noise and beams
+  /// that miss make many small ones.
   double largest_difference = std::numeric_limits<double>::infinity();
-  [[nodiscard]] bool is_comparable() const { return confirmed > 0.0; }  ///< Some points of both count.
+  [[nodiscard]] bool is_comparable() const { return confirmed > 0.0; }  ///< Points of both scans count.
 };
 
 /// `T_a_b` brings the points of b into the frame of a. Nothing in common: not comparable.
 [[nodiscard]] Agreement agreement(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
                                   const RegistrationConfig& config);
 
-/// A guess as odometry makes it, put right by the surfaces, and how well they agree there.
+/// A guess from odometry, corrected by the surfaces, and how well they agree there.
 struct LocalFit {
   Pose T_a_b;
   Agreement agreement;
 };
-/// From where a fit is tried.
+/// Where a fit starts.
 enum class FitFrom {
   guess,
-  along_the_way,  ///< And from up to 1.5 m before and behind it, along the way of b (its x axis).
+  along_the_way,  ///< Also up to 1.5 m ahead of it and behind it, along the path of b (its x axis).
 };
-/// The fit with the smallest difference that point-to-plane finds; what differs by no more than `enough`
-/// points ends the search. The guess is taken for exact first, then for off by some voxels. Farther than 2.5
-/// m from it nothing is accepted: not comparable.
+/// The point-to-plane fit with the smallest difference. A difference of at most `enough` points ends the
+/// search. The guess counts as exact first, then as some voxels off. Fits more than 2.5 m from the guess are
+/// not accepted; if there is no other, the result is not comparable.
 [[nodiscard]] LocalFit fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b, double enough,
                                 const RegistrationConfig& config, FitFrom from = FitFrom::along_the_way);
 

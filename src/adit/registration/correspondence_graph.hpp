@@ -15,8 +15,8 @@
 namespace adit {
 
 /// Vertex k is the correspondence of points_a[k] and points_b[k]; an edge joins two whose distances in the
-/// two clouds differ by at most `noise_bound` metres. Correspondences that share a point in one cloud but not
-/// nearly in the other are thereby kept apart. Throws ContractViolation when the spans differ in length.
+/// two clouds differ by at most `noise_bound` metres. Two correspondences of one point with two distant
+/// points are thereby not joined. Throws ContractViolation when the spans differ in length.
 [[nodiscard]] BitGraph consistency_graph(std::span<const Eigen::Vector3f> points_a,
                                          std::span<const Eigen::Vector3f> points_b, float noise_bound);
 

@@ -9,11 +9,11 @@
 
 namespace adit {
 
-/// Two bins each, the last one padded with zero: what one instruction multiplies and adds at once.
+/// Pairs of bins, the last one padded with zero: one instruction multiplies and adds a pair at once.
 inline constexpr std::size_t kBinPairs = (kDescriptorSize + 1) / 2;
 
-/// A descriptor to be compared with many blocks. Its bins are at most 127 (one operand of that instruction is
-/// signed).
+/// A descriptor to be compared with many blocks. Bins are at most 127, because one operand of that
+/// instruction is signed.
 struct DescriptorQuery {
   explicit DescriptorQuery(const Descriptor& descriptor);
 
@@ -27,7 +27,7 @@ struct alignas(32) DescriptorBlock {
 
   std::uint8_t pairs[kBinPairs][kLanes][2] = {};
   std::uint16_t squared_norms[kLanes] = {};
-  std::uint32_t indices[kLanes] = {};  ///< Of the descriptors; the caller's.
+  std::uint32_t indices[kLanes] = {};  ///< Of the descriptors, as the caller counts them.
   std::uint32_t count = 0;             ///< Lanes in use, the first ones.
 
   /// Squared norm at most 32767, as in DescriptorIndex.
@@ -40,7 +40,7 @@ struct alignas(32) DescriptorBlock {
                                        std::uint16_t bound,
                                        std::array<std::uint16_t, DescriptorBlock::kLanes>& squared_distances);
 
-/// The same on any processor: its oracle.
+/// The same in plain code: for processors without that instruction, and the oracle of the other.
 [[nodiscard]] std::uint32_t near_lanes_by_definition(
     const DescriptorBlock& block, const DescriptorQuery& query, std::uint16_t bound,
     std::array<std::uint16_t, DescriptorBlock::kLanes>& squared_distances);

@@ -24,7 +24,7 @@ DescriptorVector vector_of(const Descriptor& descriptor) {
   return Eigen::Map<const Eigen::Matrix<std::uint8_t, kDescriptorSize, 1>>(descriptor.data()).cast<float>();
 }
 
-/// The directions of largest variance of a sample, one a column; approximate ones cost time, not exactness.
+/// The directions of largest variance of a sample, one per column; approximate ones cost time, not exactness.
 Eigen::MatrixXf principal_directions(const std::vector<Descriptor>& descriptors, int num_directions) {
   constexpr std::size_t kSample = 512;
   const std::size_t step = descriptors.size() / kSample + 1;
@@ -79,7 +79,7 @@ constexpr std::uint32_t index_in(std::uint32_t key) { return key & ((1U << kInde
 constexpr std::size_t kBoxes = 16;
 constexpr std::size_t kAxes = 4;
 
-/// The keys of sixteen boxes; `low` and `high` hold sixteen values a direction.
+/// The keys of sixteen boxes; `low` and `high` hold sixteen values per direction.
 ADIT_WIDE_VECTORS void box_keys(const float* low, const float* high, const float* at,
                                 std::uint32_t first_index, std::uint32_t* keys) {
   constexpr float kFar = 131071.0F;  // all the other bits

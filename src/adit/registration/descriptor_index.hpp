@@ -24,10 +24,11 @@ struct NearestTwo {
   bool operator==(const NearestTwo&) const = default;
 };
 
-/// Exact nearest neighbours among descriptors: sixteen a block, compared at once, and sixteen blocks a group,
-/// each with its box in the four directions in which descriptors vary most (nine tenths of the variance of
-/// real scans). The boxes' distances are found without a branch and visited in ascending order. Among equally
-/// near descriptors the smaller index wins. Immutable; searches are thread-safe.
+/// Exact nearest neighbours among descriptors. Sixteen descriptors make a block and are compared at once;
+/// sixteen blocks make a group. Each has its box in the four directions in which descriptors vary most (nine
+/// tenths of the variance of real scans). Distances to boxes are found without a branch, and boxes are
+/// visited in ascending order of distance. Among equally near descriptors the smaller index wins. Immutable;
+/// searches are thread-safe.
 class DescriptorIndex {
  public:
   /// Throws ContractViolation when a descriptor has a squared norm above 32767 (three histograms of sum 100
@@ -66,7 +67,7 @@ class DescriptorIndex {
 
   Projection directions_[kDescriptorSize] = {};
   std::vector<Shelf> group_boxes_;
-  std::vector<Shelf> block_boxes_;  ///< One a group.
+  std::vector<Shelf> block_boxes_;  ///< One per group.
   std::vector<DescriptorBlock> blocks_;
 };
 

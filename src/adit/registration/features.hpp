@@ -13,19 +13,19 @@
 namespace adit {
 
 /// A fast point feature histogram (Rusu et al., ICRA 2009): three histograms of 11 bins, each summing to
-/// about 100 and rounded, so one byte a bin.
+/// about 100 and rounded, so one byte per bin.
 inline constexpr int kDescriptorSize = 33;
 using Descriptor = std::array<std::uint8_t, kDescriptorSize>;
 
-/// What registration needs of a cloud; compute it once a keyframe and keep it (57 bytes a point). All three
-/// vectors are equally long. Points that have no reliable descriptor were left out.
+/// What registration needs of a cloud; compute it once per keyframe and keep it (57 bytes per point). All
+/// three vectors are equally long. Points without a reliable descriptor are left out.
 struct Features : OrientedPoints {
   std::vector<Descriptor> descriptors;
 };
 
-/// Thins the cloud to one point (the mean) a voxel and describes each. `cloud` is in the frame of the sensor
-/// or of the robot's base: normals are turned towards its origin. NaN points are dropped. An empty result is
-/// no error; what it means shows in the verdict of the registration.
+/// Thins the cloud to one point (the mean) per voxel and describes each. `cloud` is in the frame of the
+/// sensor or of the robot's base, metres: normals are turned towards its origin. NaN points are dropped. An
+/// empty result is not an error here; the registration says what was missing.
 [[nodiscard]] Features compute_features(const PointCloud& cloud, const RegistrationConfig& config);
 
 /// The same without descriptors, of all points that have a surface around them.

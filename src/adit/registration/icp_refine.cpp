@@ -12,13 +12,13 @@
 namespace adit {
 namespace {
 
-constexpr std::size_t kGrain = 512;
-/// More points make the answer no better.
+constexpr std::size_t kGrain = 512;  ///< Points per part of the parallel loop.
+/// Points: more do not improve the answer.
 constexpr std::size_t kSample = 2500;
-/// Enough to tell which minimum a start leads to.
+/// Points: enough to find which minimum a start leads to.
 constexpr std::size_t kSearchSample = 600;
-constexpr double kLastStepOfSearch = 2e-3;
-constexpr double kArrived = 0.01;
+constexpr double kLastStepOfSearch = 2e-3;  ///< Norm of a step [m; rad] that ends a search.
+constexpr double kArrived = 0.01;  ///< Norm of the last step [m; rad] of a search that found a minimum.
 
 /// Proportional to the mean diagonal of the translational and of the rotational block: free of units.
 Vector6 gauss_newton_step(const PlaneEquations& sum) {
@@ -55,9 +55,9 @@ Minimum descend(PlaneAligner aligner, const Pose& T_a_b, double last_step, const
   return out;
 }
 
-/// The global result itself, and turned by a degree or so about each axis, either way.
+/// The global result itself, and turned by a degree or so about each axis, in both directions.
 std::vector<Pose> starts_around(const Pose& T_a_b) {
-  constexpr double kTurn = 0.02;  // radians: what a global result is off by when it is off
+  constexpr double kTurn = 0.02;  // radians: usual error of a global result that is not exact
   std::vector<Pose> starts{T_a_b};
   for (int axis = 3; axis < 6; ++axis) {
     for (const double sign : {-1.0, 1.0})

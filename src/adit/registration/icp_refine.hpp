@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Point-to-plane refinement of a coarse pose (Chen and Medioni, 1992) with a robust kernel, and what its
-/// Hessian says.
+/// Point-to-plane refinement of a coarse pose (Chen and Medioni, 1992) with a robust kernel. Clouds and poses
+/// are in metres.
 #pragma once
 
 #include <Eigen/Core>
@@ -31,7 +31,7 @@ struct PointPair {
 [[nodiscard]] Pose align_to_planes(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,
                                    const Pose& T_a_b, const RegistrationConfig& config);
 
-/// As a start for `align_to_planes` only: to some millimetres, from fewer points.
+/// The same to some millimetres, from fewer points: a start for `align_to_planes`.
 struct Approach {
   Pose T_a_b;
   bool has_arrived = false;  ///< The last step was shorter than a centimetre: a minimum is near.
@@ -39,8 +39,8 @@ struct Approach {
 [[nodiscard]] Approach approach_planes(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,
                                        const Pose& T_a_b, const RegistrationConfig& config);
 
-/// The best of several such minima around `T_a_b`: the rings of a spinning sensor lock onto one another in
-/// narrow false ones.
+/// The best of several such minima around `T_a_b`. One start is not enough: where the rings of a spinning
+/// sensor lock onto one another there are narrow false minima.
 [[nodiscard]] Pose refine_point_to_plane(const OrientedPoints& a, const KdTree& tree_a,
                                          const OrientedPoints& b, const Pose& T_a_b,
                                          const RegistrationConfig& config);

@@ -10,7 +10,7 @@
 
 namespace adit {
 
-/// Point `a` of one cloud and point `b` of the other look alike.
+/// Point `a` of one cloud and point `b` of the other, whose surroundings look alike.
 struct Correspondence {
   std::uint32_t a = 0;
   std::uint32_t b = 0;

@@ -16,9 +16,8 @@
 
 namespace adit {
 
-/// Two clouds' relative pose with its evidence. `accepted` implies that `T_a_b` is there. A rejected
-/// registration may still carry its best guess, for display and diagnosis only; none when there was nothing
-/// to guess from.
+/// The relative pose of two clouds with its evidence. `accepted` implies that `T_a_b` is there. A rejected
+/// registration may still carry its best guess, for display and diagnosis only.
 struct Registration {
   std::optional<Pose> T_a_b;    ///< p_a = T_a_b * p_b.
   int num_correspondences = 0;  ///< After matching.
@@ -43,8 +42,9 @@ struct Registration {
 [[nodiscard]] Registration register_clouds(const PointCloud& a, const PointCloud& b,
                                            const RegistrationConfig& config);
 
-/// The pose near `T_a_b` at which the clouds' surfaces fit best: point-to-plane from this one guess, without
-/// features and without a verdict. For guesses that are good to `refine_distance_voxels`, as odometry's are.
+/// The pose near `T_a_b` at which the surfaces of the clouds fit best: point-to-plane from this one guess,
+/// without features and without a verdict. For guesses that are good to `refine_distance_voxels`, such as
+/// those of odometry.
 [[nodiscard]] Pose align_clouds(const PointCloud& a, const PointCloud& b, const Pose& T_a_b,
                                 const RegistrationConfig& config);
 

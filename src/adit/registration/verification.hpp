@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// What two registered clouds say about their own registration.
+/// The evidence for a registration, and the verdict on it.
 #pragma once
 
 #include <string>
@@ -13,6 +13,7 @@
 
 namespace adit {
 
+/// As the fields of the same names in Registration.
 struct Evidence {
   double overlap = 0.0;
   Matrix6 information = Matrix6::Zero();
@@ -23,8 +24,8 @@ struct Evidence {
 /// Overlap in both directions, and the information of T_a_b from its point pairs. Each pair holds the
 /// surface's normal twice, as cloud a and as cloud b saw it, and the noise of the two is independent: the
 /// products n_a n_b^T that stand in the Hessian instead of n_a n_a^T have no noise floor. A smooth tube then
-/// really has no information along its axis, where the plain Hessian of noisy normals pretends some (with
-/// sigma 6 degrees, 1 % of that across). Scaled by the variance of the residuals, and divided by the number
+/// has no information along its axis, where the plain Hessian of noisy normals pretends some (with sigma 6
+/// degrees, 1 % of that across). Scaled by the variance of the residuals, and divided by the number
 /// of points that share one normal's neighbourhood, since their errors are not independent.
 [[nodiscard]] Evidence gather_evidence(const Features& a, const KdTree& tree_a, const Features& b,
                                        const KdTree& tree_b, const Pose& T_a_b,
