@@ -19,7 +19,7 @@ adit::Result<adit::Recording> input(int argc, char** argv) {
 
 adit::Result<adit::Trajectory> run_odometry(const adit::Recording& recording) {
   adit::OdometryConfig config;  // every field has a default; docs/configuration.md lists them
-  if (recording.wheel.empty()) config.method = OdometryMethod::kiss_icp;
+  if (recording.wheel.empty()) config.method = adit::OdometryMethod::kiss_icp;
   adit::Odometry odometry(config, recording.T_base_lidar);
   adit::Trajectory trajectory;
   for (std::size_t i = 0; i < recording.num_scans(); ++i) {

@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
   const auto recording = input(argc, argv);
   if (!recording) return failed(recording.error());
   adit::RobotSlamConfig config;
-  if (recording->wheel.empty()) config.odometry.method = OdometryMethod::kiss_icp;
+  if (recording->wheel.empty()) config.odometry.method = adit::OdometryMethod::kiss_icp;
   const auto map = adit::map_recording(*recording, adit::RobotId{0}, config);
   if (!map) return failed(map.error());
   const adit::PointCloud cloud = whole_cloud(*map);

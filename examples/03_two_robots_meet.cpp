@@ -30,7 +30,7 @@ adit::Result<Maps> map_each(const std::vector<adit::Recording>& recordings) {
   Maps maps;
   for (const adit::Recording& recording : recordings) {
     adit::RobotSlamConfig config;
-    if (recording.wheel.empty()) config.odometry.method = OdometryMethod::kiss_icp;
+    if (recording.wheel.empty()) config.odometry.method = adit::OdometryMethod::kiss_icp;
     const adit::RobotId id{static_cast<std::uint8_t>(maps.size())};
     auto map = adit::map_recording(recording, id, config);
     if (!map) return tl::unexpected(map.error());
