@@ -131,7 +131,7 @@ TEST(RobotSlam, KinematicIcpWithoutWheelsIsRefusedWithTheRemedy) {
       map_recording(room_recording(false), {0}, config_of(OdometryMethod::kinematic_icp));
   ASSERT_FALSE(map.has_value());
   EXPECT_NE(map.error().message.find("walker"), std::string::npos);
-  EXPECT_NE(map.error().message.find(OdometryMethod::kiss_icp), std::string::npos);
+  EXPECT_NE(map.error().message.find("kiss-icp"), std::string::npos);
 }
 
 TEST(RobotSlam, UnreadableScanNamesTheRobot) {
