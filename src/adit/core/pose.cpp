@@ -197,6 +197,14 @@ Pose interpolate(const Pose& a, const Pose& b, double s) {
   return a * Pose::exp(s * (a.inverse() * b).log());
 }
 
+Matrix6 carry_covariance(const Matrix6& adjoint, const Matrix6& covariance) {
+  return adjoint * covariance * adjoint.transpose();
+}
+
+Matrix3 carry_covariance(const Matrix3& adjoint, const Matrix3& covariance) {
+  return adjoint * covariance * adjoint.transpose();
+}
+
 double wrap_angle(double angle) {
   const double wrapped = std::remainder(angle, 2.0 * std::numbers::pi);
   return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
@@ -230,6 +238,14 @@ Pose2::Tangent Pose2::log() const {
   const double half = 0.5 * theta_;
   const double a = std::abs(half) < kSmallAngle ? 1.0 - half * half / 3.0 : half / std::tan(half);
   return {a * t_.x() + half * t_.y(), -half * t_.x() + a * t_.y(), theta_};
+}
+
+Matrix3 Pose2::adjoint() const {
+  Matrix3 out = Matrix3::Identity();
+  out.topLeftCorner<2, 2>() = rotation_matrix();
+  out(0, 2) = t_.y();
+  out(1, 2) = -t_.x();
+  return out;
 }
 
 }  // namespace adit

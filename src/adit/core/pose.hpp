@@ -95,11 +95,18 @@ class Pose2 {
   Eigen::Vector2d operator*(const Eigen::Vector2d& p) const { return rotation_matrix() * p + t_; }
   [[nodiscard]] static Pose2 exp(const Tangent& xi);
   [[nodiscard]] Tangent log() const;
+  /// Ad: T exp(xi) = exp(Ad(T) xi) T.
+  [[nodiscard]] Matrix3 adjoint() const;
 
  private:
   Eigen::Vector2d t_ = Eigen::Vector2d::Zero();
   double theta_ = 0.0;
 };
+
+/// The covariance of Ad d, where d has `covariance`: carries the covariance of a perturbation to another
+/// frame.
+[[nodiscard]] Matrix6 carry_covariance(const Matrix6& adjoint, const Matrix6& covariance);
+[[nodiscard]] Matrix3 carry_covariance(const Matrix3& adjoint, const Matrix3& covariance);
 
 /// `angle` brought into (-pi, pi].
 [[nodiscard]] double wrap_angle(double angle);

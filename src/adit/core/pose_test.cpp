@@ -142,18 +142,22 @@ TYPED_TEST(LieGroup, ExpIsTheMatrixExponential) {
   }
 }
 
-class PoseLaws : public LieGroup<Pose> {};
-
-TEST_F(PoseLaws, AdjointMovesATwistThroughThePose) {
+TYPED_TEST(LieGroup, AdjointMovesATwistThroughThePose) {
+  using Jacobian = typename TypeParam::Jacobian;
   for (int i = 0; i < 100; ++i) {
-    const Pose T = random();
-    const Vector6 xi = random_tangent();
-    EXPECT_LT(gap(T * Pose::exp(xi), Pose::exp(T.adjoint() * xi) * T), 1e-12);
-    const Pose S = random();
+    const TypeParam T = this->random();
+    const typename TypeParam::Tangent xi = this->random_tangent();
+    EXPECT_LT(gap(T * TypeParam::exp(xi), TypeParam::exp(T.adjoint() * xi) * T), 1e-12);
+    const TypeParam S = this->random();
     EXPECT_LT(((T * S).adjoint() - T.adjoint() * S.adjoint()).norm(), 1e-12);
-    EXPECT_LT((T.inverse().adjoint() * T.adjoint() - Matrix6::Identity()).norm(), 1e-12);
+    EXPECT_LT((T.inverse().adjoint() * T.adjoint() - Jacobian::Identity()).norm(), 1e-12);
+    const Jacobian covariance = xi * xi.transpose();
+    const typename TypeParam::Tangent carried = T.adjoint() * xi;
+    EXPECT_LT((carry_covariance(T.adjoint(), covariance) - carried * carried.transpose()).norm(), 1e-11);
   }
 }
+
+class PoseLaws : public LieGroup<Pose> {};
 
 TEST_F(PoseLaws, RightJacobianIsTheDerivativeOfExp) {
   constexpr double kStep = 1e-5;

@@ -11,28 +11,10 @@
 namespace adit {
 namespace {
 
-struct Place {
-  std::size_t path;
-  std::size_t position;  // along it
-};
-
-std::vector<Place> places_of(const std::vector<OdometryPath>& paths, std::size_t num_nodes) {
-  std::vector<Place> places(num_nodes);
-  for (std::size_t p = 0; p < paths.size(); ++p)
-    for (std::size_t k = 0; k < paths[p].nodes.size(); ++k) places[paths[p].nodes[k]] = {p, k};
-  return places;
-}
-
-OdometryChain chain_of(const PoseGraph& graph, const OdometryPath& path) {
-  std::vector<Pose> poses = {Pose()};
-  std::vector<Matrix6> covariances;
-  for (const std::size_t e : path.steps) {
-    const Eigen::LLT<Matrix6> llt(graph.edges[e].information);
-    ADIT_CHECK(llt.info() == Eigen::Success, "an odometry edge's information matrix is positive definite");
-    poses.push_back(poses.back() * graph.edges[e].T_from_to);
-    covariances.emplace_back(llt.solve(Matrix6::Identity()));
-  }
-  return {std::move(poses), covariances};
+Matrix6 step_covariance(const Matrix6& information) {
+  const Eigen::LLT<Matrix6> llt(information);
+  ADIT_CHECK(llt.info() == Eigen::Success, "an odometry edge's information matrix is positive definite");
+  return llt.solve(Matrix6::Identity());
 }
 
 // Seen from the other end: T_b_a with the information of its own right perturbation.
@@ -50,20 +32,20 @@ struct LoopSet {
 
 GraphPcm graph_pcm(const PoseGraph& graph, const PcmConfig& config) {
   const std::vector<OdometryPath> paths = odometry_paths(graph);
-  const std::vector<Place> places = places_of(paths, graph.nodes.size());
+  const std::vector<PlaceOnPath> places = places_on(paths, graph.nodes.size());
   std::map<std::pair<std::size_t, std::size_t>, LoopSet> sets;
   for (std::size_t e = 0; e < graph.edges.size(); ++e) {
     const auto& edge = graph.edges[e];
     if (edge.kind != EdgeKind::loop) continue;
-    const Place from = places[edge.from];
-    const Place to = places[edge.to];
+    const PlaceOnPath from = places[edge.from];
+    const PlaceOnPath to = places[edge.to];
     const PcmLoop loop{from.position, to.position, edge.T_from_to, edge.information};
     LoopSet& set = sets[std::minmax(from.path, to.path)];
     set.loops.push_back(from.path <= to.path ? loop : reversed(loop));
     set.edges.push_back(e);
   }
   std::vector<OdometryChain> chains;
-  for (const OdometryPath& path : paths) chains.push_back(chain_of(graph, path));
+  for (const OdometryPath& path : paths) chains.push_back(chain_along(graph, path, step_covariance));
   GraphPcm result{std::vector<double>(graph.edges.size(), 1.0), true};
   for (const auto& [pair, set] : sets) {
     const PcmResult found = pcm(chains[pair.first], chains[pair.second], set.loops, config);

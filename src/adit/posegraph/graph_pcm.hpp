@@ -9,14 +9,14 @@
 
 namespace adit {
 
-/// PCM over a whole graph: the loops between any two of its odometry paths (`odometry_paths`), and those
-/// within one, are a set of their own, of which the largest consistent part is kept.
+/// PCM over a whole graph: the loops between each two of its odometry paths (`odometry_paths`), and those
+/// within each path, form one set, of which the largest consistent subset is kept.
 struct GraphPcm {
-  std::vector<double> edge_weights;  ///< One an edge: 0 for loops that are not kept, else 1.
+  std::vector<double> edge_weights;  ///< One per edge: 0 for loops that are not kept, else 1.
   bool optimal = true;               ///< Every set is proven largest within `max_search_nodes`.
 };
 /// Time and memory grow with the square of the number of loops between two paths. Throws ContractViolation
-/// where an odometry edge or a loop has a singular information matrix.
+/// when an odometry edge or a loop has a singular information matrix.
 [[nodiscard]] GraphPcm graph_pcm(const PoseGraph& graph, const PcmConfig& config = {});
 
 }  // namespace adit

@@ -9,12 +9,12 @@
 
 namespace adit {
 
-/// Loops that confirm one another: two loops agree when the cycle over both and the odometry between their
-/// ends closes within its noise, and loops that agree, directly or over others, form a cluster. Only
-/// neighbours are compared, ends at most `max_steps` odometry edges apart, where odometry hardly drifts and
-/// the test is sharp; each loop with at most `max_neighbours` of them, the nearest. A false loop agrees with
-/// its neighbours by chance only, unless they copy the same mistake: then it ends in a small cluster of its
-/// own. Source: the clusters of RRR (Latif, Cadena, Neira, "Robust loop closing over time", RSS 2012),
+/// Clusters of loops that confirm one another. Two loops agree when the cycle over both and the odometry
+/// between their ends closes within its noise; loops that agree, directly or through others, form a cluster.
+/// Each loop is compared with its `max_neighbours` nearest neighbours only, whose ends are at most
+/// `max_steps` odometry edges away, where odometry hardly drifts and the test is sharp. A false loop agrees
+/// with its neighbours only by chance, unless they repeat the same mistake: then it ends in a small cluster
+/// of its own. Source: the clusters of RRR (Latif, Cadena, Neira, "Robust loop closing over time", RSS 2012),
 /// section III, with the cycle test of PCM (see pcm.hpp).
 struct LoopClusterConfig {
   std::size_t max_steps = 12;
@@ -26,8 +26,8 @@ struct LoopClusterConfig {
 };
 struct LoopClusters {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> of_edge;  ///< Cluster of each edge; kNone for odometry. A loop alone has its own.
-  std::vector<std::size_t> sizes;    ///< Loops in each cluster.
+  std::vector<std::size_t> of_edge;  ///< Cluster of each edge; kNone for odometry.
+  std::vector<std::size_t> sizes;    ///< Loops in each cluster; at least 1.
 };
 template <class P>
 [[nodiscard]] LoopClusters loop_clusters(const BasicPoseGraph<P>& graph,

@@ -36,26 +36,12 @@ struct Marginals<P>::Impl {
   }
 };
 
-namespace {
-
-// d (T_a_b, right perturbation) / d (perturbation of T_w_a): moved to the far end by the adjoint of T_b_a.
-Matrix6 adjoint_of(const Pose& T) { return T.adjoint(); }
-Matrix3 adjoint_of(const Pose2& T) {
-  Matrix3 A = Matrix3::Identity();
-  A.topLeftCorner<2, 2>() = T.rotation_matrix();
-  A(0, 2) = T.translation().y();
-  A(1, 2) = -T.translation().x();
-  return A;
-}
-
-}  // namespace
-
 template <class P>
 Result<Marginals<P>> Marginals<P>::compute(const BasicPoseGraph<P>& graph,
                                            const std::vector<double>& edge_weights) {
   graph.check();
   ADIT_CHECK(edge_weights.empty() || edge_weights.size() == graph.edges.size(),
-             "one weight an edge, or none");
+             "one weight per edge, or none");
   if (const auto bad = indefinite_edges(graph); !bad.empty()) {
     return fail(format("{} of {} information matrices are indefinite", bad.size(), graph.edges.size()));
   }
@@ -87,8 +73,9 @@ template <class P>
 typename Marginals<P>::Covariance Marginals<P>::relative(std::size_t a, std::size_t b) const {
   ADIT_CHECK(a < impl_->poses.size() && b < impl_->poses.size(), "two nodes of the graph");
   constexpr int D = P::kDof;
+  // A perturbation of T_world_a moves to the far end of T_a_b by the adjoint of T_b_a.
   Eigen::Matrix<double, D, 2 * D> J;
-  J << -adjoint_of(impl_->poses[b].inverse() * impl_->poses[a]), Covariance::Identity();
+  J << -(impl_->poses[b].inverse() * impl_->poses[a]).adjoint(), Covariance::Identity();
   return J * joint(a, b) * J.transpose();
 }
 

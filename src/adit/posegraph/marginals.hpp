@@ -10,9 +10,11 @@
 
 namespace adit {
 
-/// Marginal covariances of node poses (right perturbation, [translation; rotation]; metres and radians),
-/// given the anchor of their component, at the linearization point graph.nodes[i].pose: put the solution in
-/// first. Factorizes once; each question then costs two sparse triangular solves a column.
+/// Marginal covariances of node poses (right perturbation, [translation; rotation]; metres and radians), with
+/// the anchor of each component held fixed, at the linearization point graph.nodes[i].pose: put the solution
+/// in first. Factorizes once; each query then costs two sparse triangular solves per column. No command of
+/// `adit` uses it yet: it is kept for reporting the uncertainty of a map. Source: Kaess, Dellaert,
+/// "Covariance recovery from a square root information matrix for data association" (RAS 2009), section 3.
 template <class P>
 class Marginals {
  public:
@@ -28,7 +30,7 @@ class Marginals {
   [[nodiscard]] Covariance covariance(std::size_t node) const;
   /// Of two nodes together: [a; b].
   [[nodiscard]] JointCovariance joint(std::size_t a, std::size_t b) const;
-  /// Of T_a_b, right perturbation. Both nodes must belong to one component for this to mean anything.
+  /// Of T_a_b, right perturbation. Only meaningful for two nodes of one component.
   [[nodiscard]] Covariance relative(std::size_t a, std::size_t b) const;
 
  private:

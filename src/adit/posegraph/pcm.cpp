@@ -13,18 +13,14 @@
 namespace adit {
 namespace {
 
-Matrix6 carried(const Matrix6& adjoint, const Matrix6& covariance) {
-  return adjoint * covariance * adjoint.transpose();
-}
-
 // Both chains are the same object: then steps that both legs of the cycle drive count together.
 bool same_chain(const OdometryChain& a, const OdometryChain& b) { return &a == &b; }
 
 // Of both odometry legs, given how a step, seen from its odom frame, shows at the end of the cycle.
 Matrix6 legs_covariance(const OdometryChain& chain_a, const OdometryChain& chain_b, const PcmLoop& first,
                         const PcmLoop& second, const Matrix6& a_to_end, const Matrix6& b_to_end) {
-  Matrix6 S = carried(a_to_end, chain_a.covariance_in_odom(first.a, second.a)) +
-              carried(b_to_end, chain_b.covariance_in_odom(second.b, first.b));
+  Matrix6 S = carry_covariance(a_to_end, chain_a.covariance_in_odom(first.a, second.a)) +
+              carry_covariance(b_to_end, chain_b.covariance_in_odom(second.b, first.b));
   if (!same_chain(chain_a, chain_b)) return S;
   const std::size_t begin = std::max(std::min(first.a, second.a), std::min(first.b, second.b));
   const std::size_t end = std::min(std::max(first.a, second.a), std::max(first.b, second.b));
@@ -43,8 +39,8 @@ double distance2(const OdometryChain& chain_a, const OdometryChain& chain_b, con
   const Pose E = first.T_a_b.inverse() * chain_a.between(first.a, second.a) * back;
   const Matrix6 a_to_end = (chain_a.pose(second.a) * back).inverse().adjoint();
   const Matrix6 b_to_end = chain_b.pose(first.b).inverse().adjoint();
-  const Matrix6 S = carried(E.inverse().adjoint(), covariances.first) +
-                    carried(X_lk.inverse().adjoint(), covariances.second) +
+  const Matrix6 S = carry_covariance(E.inverse().adjoint(), covariances.first) +
+                    carry_covariance(X_lk.inverse().adjoint(), covariances.second) +
                     legs_covariance(chain_a, chain_b, first, second, a_to_end, b_to_end);
   const Vector6 error = E.log();
   return error.dot(S.ldlt().solve(error));
@@ -65,25 +61,6 @@ Matrix6 covariance_of(const PcmLoop& loop) {
 }
 
 }  // namespace
-
-OdometryChain::OdometryChain(std::vector<Pose> T_odom_keyframe, const std::vector<Matrix6>& step_covariances)
-    : T_odom_keyframe_(std::move(T_odom_keyframe)) {
-  ADIT_CHECK(T_odom_keyframe_.empty() ? step_covariances.empty()
-                                      : step_covariances.size() + 1 == T_odom_keyframe_.size(),
-             "one step covariance between each two consecutive keyframes");
-  if (!T_odom_keyframe_.empty()) prefix_.push_back(Matrix6::Zero());
-  for (std::size_t k = 0; k < step_covariances.size(); ++k) {
-    prefix_.push_back(prefix_.back() + carried(T_odom_keyframe_[k + 1].adjoint(), step_covariances[k]));
-  }
-}
-
-Matrix6 OdometryChain::covariance_in_odom(std::size_t i, std::size_t j) const {
-  return prefix_[std::max(i, j)] - prefix_[std::min(i, j)];
-}
-
-Matrix6 OdometryChain::covariance(std::size_t i, std::size_t j) const {
-  return carried(pose(j).inverse().adjoint(), covariance_in_odom(i, j));
-}
 
 double consistency_distance2(const OdometryChain& chain_a, const OdometryChain& chain_b, const PcmLoop& first,
                              const PcmLoop& second) {

@@ -9,6 +9,7 @@
 #include "adit/core/config.hpp"
 #include "adit/core/pose.hpp"
 #include "adit/geometry/max_clique.hpp"
+#include "adit/posegraph/odometry_chain.hpp"
 
 namespace adit {
 
@@ -22,27 +23,6 @@ inline Fields fields_of(PcmConfig& c) {
           {"max_search_nodes", &c.max_search_nodes, "", 1, 1e15, "budget of the clique search, in branches"}};
 }
 
-/// One robot's odometry over its keyframes. Covariances between any two keyframes compose along it in O(1).
-class OdometryChain {
- public:
-  /// `step_covariances[k]`: of T_k_(k+1), right perturbation, [translation; rotation]; one less than the
-  /// poses.
-  OdometryChain(std::vector<Pose> T_odom_keyframe, const std::vector<Matrix6>& step_covariances);
-
-  [[nodiscard]] std::size_t size() const { return T_odom_keyframe_.size(); }
-  [[nodiscard]] const Pose& pose(std::size_t i) const { return T_odom_keyframe_[i]; }
-  /// T_i_j by odometry.
-  [[nodiscard]] Pose between(std::size_t i, std::size_t j) const { return pose(i).inverse() * pose(j); }
-  /// Covariance of T_i_j, right perturbation, for i before, after or equal to j.
-  [[nodiscard]] Matrix6 covariance(std::size_t i, std::size_t j) const;
-  /// What the steps between i and j (any order) add to the covariance, as seen from the frame odom.
-  [[nodiscard]] Matrix6 covariance_in_odom(std::size_t i, std::size_t j) const;
-
- private:
-  std::vector<Pose> T_odom_keyframe_;
-  std::vector<Matrix6> prefix_;  ///< prefix_[j]: sum over steps k < j of Ad(T_odom_(k+1)) Sigma_k Ad^T.
-};
-
 /// A loop as PCM sees it: keyframe `a` of the first chain, `b` of the second.
 struct PcmLoop {
   std::size_t a = 0;
@@ -52,10 +32,10 @@ struct PcmLoop {
 };
 
 struct PcmResult {
-  BitGraph consistency{0};           ///< One vertex a loop.
+  BitGraph consistency{0};           ///< One vertex per loop.
   std::vector<std::size_t> largest;  ///< Indices of loops, ascending: the loops to keep.
   std::vector<std::size_t>
-      second;           ///< Largest clique among the rest: a rival explanation when nearly as large.
+      second;           ///< Largest clique among the rest: a rival explanation if nearly as large.
   bool optimal = true;  ///< Both cliques are proven largest.
 };
 

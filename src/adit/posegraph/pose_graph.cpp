@@ -11,25 +11,10 @@
 #include <utility>
 
 #include "adit/core/check.hpp"
+#include "adit/core/disjoint_sets.hpp"
 
 namespace adit {
 namespace {
-
-/// Disjoint sets with path halving.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t n) : parent_(n) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-  std::size_t find(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) { parent_[find(a)] = find(b); }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 /// What a path costs: loops first, then hops; the node index breaks ties, so that the tree is always the same
 /// one.
@@ -111,7 +96,7 @@ std::vector<OdometryPath> odometry_paths(const BasicPoseGraph<P>& graph) {
 template <class P>
 std::vector<P> spanning_tree_poses(const BasicPoseGraph<P>& graph, const std::vector<bool>& is_known) {
   const std::size_t n = graph.nodes.size();
-  ADIT_CHECK(is_known.size() == n, "one flag a node");
+  ADIT_CHECK(is_known.size() == n, "one flag per node");
   graph.check();
   std::vector<std::vector<std::size_t>> edges_of(n);
   for (std::size_t e = 0; e < graph.edges.size(); ++e) {

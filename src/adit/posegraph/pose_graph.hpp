@@ -12,15 +12,14 @@
 
 namespace adit {
 
-/// What an edge is, said by whoever made it and never guessed from keys: odometry edges are trusted (known
+/// The kind of an edge, stated by its creator and never guessed from keys: odometry edges are trusted (known
 /// inliers), loops may be false.
 enum class EdgeKind { odometry, loop };
 [[nodiscard]] std::string_view to_string(EdgeKind kind);
 
-/// Poses to be estimated (nodes) and relative poses that were measured (edges), in space (`PoseGraph`) or in
-/// the plane
-/// (`PoseGraph2`). All node poses are in one common frame, called world, though robots that no edge links yet
-/// only share its name.
+/// Poses to be estimated (nodes) and measured relative poses (edges), in space (`PoseGraph`) or in the plane
+/// (`PoseGraph2`). All node poses are in one common frame, called world; robots that no edge links yet only
+/// share its name.
 ///
 /// Gauge: the node with the smallest key of each connected component is its anchor and keeps its pose.
 template <class P>
@@ -41,35 +40,35 @@ struct BasicPoseGraph {
   std::vector<Node> nodes;
   std::vector<Edge> edges;
 
-  /// Throws ContractViolation when an edge names a node that is not there, or joins a node to itself.
+  /// Throws ContractViolation when an edge names a node that does not exist, or joins a node to itself.
   void check() const;
 };
 using PoseGraph = BasicPoseGraph<Pose>;
 using PoseGraph2 = BasicPoseGraph<Pose2>;
 
-/// Which nodes hang together. Components are numbered in the order of their anchors' keys.
+/// The connected components of a graph, numbered in the order of their anchors' keys.
 struct Components {
   std::vector<std::size_t> of_node;  ///< Component of each node.
   std::vector<std::size_t> anchors;  ///< Node index of each component's anchor: its smallest key.
 };
-/// `edge_weights` (empty: all 1): edges of weight 0 link nothing.
+/// `edge_weights`: one per edge (empty: all 1); edges of weight 0 connect nothing.
 template <class P>
 [[nodiscard]] Components connected_components(const BasicPoseGraph<P>& graph,
                                               const std::vector<double>& edge_weights = {});
 
-/// Nodes in the order in which one robot drove them.
+/// A robot's path: nodes in the order in which it drove through them.
 struct OdometryPath {
   std::vector<std::size_t> nodes;  ///< Node indices; at least one.
   std::vector<std::size_t> steps;  ///< Edge indices, one less: steps[k] leads from nodes[k] to nodes[k + 1].
 };
-/// The odometry edges as paths that hold every node once, a node without odometry by itself. Where several
-/// odometry edges leave or reach a node, the first one counts; a ring is cut open.
+/// The odometry edges as paths that contain every node once; a node without odometry is a path by itself.
+/// Where several odometry edges leave or reach a node, the first one counts; a ring is cut open.
 template <class P>
 [[nodiscard]] std::vector<OdometryPath> odometry_paths(const BasicPoseGraph<P>& graph);
 
-/// Poses by composing edges outwards from the nodes whose pose is known, along as few loop edges as can be,
-/// then as few edges as can be. A component with no known pose starts with its anchor at the identity. Known
-/// poses come back unchanged. `is_known`: one a node.
+/// Poses T_world_node by composing edges outwards from the nodes whose pose is known, along as few loop edges
+/// as possible, then as few edges as possible. A component without a known pose starts with its anchor at the
+/// identity. Known poses are returned unchanged. `is_known`: one per node.
 template <class P>
 [[nodiscard]] std::vector<P> spanning_tree_poses(const BasicPoseGraph<P>& graph,
                                                  const std::vector<bool>& is_known);

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <vector>
+
+#include "adit/core/pose.hpp"
+#include "adit/posegraph/pose_graph.hpp"
+
+namespace adit {
+
+/// One robot's odometry over its keyframes, in space or in the plane. Covariances between any two keyframes
+/// compose along it in O(1).
+template <class P>
+class BasicOdometryChain {
+ public:
+  using Covariance = typename P::Jacobian;
+
+  /// `step_covariances[k]`: of T_k_(k+1), right perturbation, [translation; rotation]; one less than the
+  /// poses, or ContractViolation.
+  BasicOdometryChain(std::vector<P> T_odom_keyframe, const std::vector<Covariance>& step_covariances);
+
+  [[nodiscard]] std::size_t size() const { return T_odom_keyframe_.size(); }
+  [[nodiscard]] const P& pose(std::size_t i) const { return T_odom_keyframe_[i]; }
+  /// T_i_j by odometry.
+  [[nodiscard]] P between(std::size_t i, std::size_t j) const { return pose(i).inverse() * pose(j); }
+  /// Covariance of T_i_j, right perturbation, for i before, after or equal to j.
+  [[nodiscard]] Covariance covariance(std::size_t i, std::size_t j) const;
+  /// What the steps between i and j (any order) add to the covariance, as seen from the frame odom.
+  [[nodiscard]] Covariance covariance_in_odom(std::size_t i, std::size_t j) const;
+
+ private:
+  std::vector<P> T_odom_keyframe_;
+  std::vector<Covariance> prefix_;  ///< prefix_[j]: sum over steps k < j of Ad(T_odom_(k+1)) Sigma_k Ad^T.
+};
+using OdometryChain = BasicOdometryChain<Pose>;
+
+/// Where a node of a graph stands: on which of its `odometry_paths`, and at which place along it.
+struct PlaceOnPath {
+  std::size_t path = 0;
+  std::size_t position = 0;
+  auto operator<=>(const PlaceOnPath&) const = default;
+};
+/// The place of each node. The paths must hold every node once.
+[[nodiscard]] std::vector<PlaceOnPath> places_on(const std::vector<OdometryPath>& paths,
+                                                 std::size_t num_nodes);
+
+/// The odometry along a path, which begins at the identity. `covariance_of` gives the covariance that belongs
+/// to an edge's information matrix.
+template <class P, class CovarianceOf>
+[[nodiscard]] BasicOdometryChain<P> chain_along(const BasicPoseGraph<P>& graph, const OdometryPath& path,
+                                                const CovarianceOf& covariance_of) {
+  std::vector<P> poses = {P()};
+  std::vector<typename P::Jacobian> covariances;
+  for (const std::size_t e : path.steps) {
+    poses.push_back(poses.back() * graph.edges[e].T_from_to);
+    covariances.push_back(covariance_of(graph.edges[e].information));
+  }
+  return {std::move(poses), covariances};
+}
+
+}  // namespace adit
