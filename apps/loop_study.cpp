@@ -179,7 +179,7 @@ void take(FalseLoopRun run, int share_pct, const Options& options, std::vector<F
 template <class P>
 Result<> run_injected(const ListedGraph& listed, const BasicPoseGraph<P>& graph, const StudyConfig& config,
                       const Options& options, std::vector<FalseLoopRun>& runs) {
-  const BasicPoseGraph<P> clean = thinned(graph, listed.keep_every);
+  const BasicPoseGraph<P> clean = with_every_nth_loop(graph, listed.keep_every);
   const Result<Reference<P>> reference = solved(clean, config.gnc.optimizer);
   if (!reference) return fail(listed.path, reference.error());
   const FalseLoops kind = listed.injection == "random" ? FalseLoops::random : FalseLoops::clustered;
@@ -200,7 +200,7 @@ double tilt_deg(const Pose& T) {
 /// A graph with false loops of its own. Its robots drove on a floor, so that a loop that tilts is false.
 Result<> run_as_found(const ListedGraph& listed, const PoseGraph& graph, const StudyConfig& config,
                       const Options& options, std::vector<FalseLoopRun>& runs) {
-  LabelledGraph<Pose> labelled{thinned(graph, listed.keep_every), 0};
+  LabelledGraph<Pose> labelled{with_every_nth_loop(graph, listed.keep_every), 0};
   const auto first_false = std::ranges::stable_partition(labelled.graph.edges, [&](const auto& edge) {
     return edge.kind == EdgeKind::odometry || tilt_deg(edge.T_from_to) <= listed.max_tilt_deg;
   });

@@ -103,7 +103,7 @@ Result<> run(const SolveOptions& options, const Common& common) {
   Fields fields;
   append(fields, "gnc", fields_of(config));
   if (const Result<> configured = configure(fields, common); !configured) return configured;
-  if (options.chordal) config.optimizer.initialization = "chordal";
+  if (options.chordal) config.optimizer.initialization = SolveStart::chordal;
   nlohmann::json all = nlohmann::json::array();
   for (const std::string& name : options.graphs) {
     Result<G2oFile> file = read_g2o(std::filesystem::path(name));

@@ -100,7 +100,7 @@ std::vector<GncCase> gnc_case_list() {
 
 PoseGraph clean(const GncCase& c) {
   PoseGraph graph = std::get<PoseGraph>(shared_graph(c.graph));
-  return c.thin ? thinned(graph, 10) : graph;
+  return c.thin ? with_every_nth_loop(graph, 10) : graph;
 }
 LabelledGraph<Pose> spoiled(const GncCase& c) { return with_false_loops(clean(c), c.share, c.kind, 1); }
 

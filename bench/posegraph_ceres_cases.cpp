@@ -167,7 +167,7 @@ Work optimizing_from_chordal(const std::string& name) {
   auto model = std::make_shared<Model<Parameters3, Between3, PoseManifold>>(graph, parameters_of);
   return [model, graph] {
     OptimizerConfig chordal;
-    chordal.initialization = "chordal";
+    chordal.initialization = SolveStart::chordal;
     chordal.max_iterations = 0;
     const Solution<Pose> start = optimize(graph, chordal);
     for (std::size_t i = 0; i < start.poses.size(); ++i) model->x[i] = parameters_of(start.poses[i]);

@@ -102,7 +102,7 @@ Solution<Pose> solve_robustly(const PoseGraph& whole, const GncConfig& config) {
     if (!is_step(whole.edges[e])) weights[e] = found.edge_weights[next++];
   }
   OptimizerConfig from_there = config.optimizer;
-  from_there.initialization = "none";
+  from_there.initialization = SolveStart::given;
   Solution<Pose> solved = optimize(placed, from_there, weights);
   solved.edge_weights = std::move(weights);
   solved.iterations += found.iterations;

@@ -11,7 +11,7 @@
 namespace adit {
 namespace {
 
-constexpr std::size_t kRun = 10;  // loops of a cluster
+constexpr std::size_t kRun = 10;  // loops per cluster
 
 template <class P>
 std::vector<typename BasicPoseGraph<P>::Edge> loops_of(const BasicPoseGraph<P>& graph) {
@@ -75,12 +75,12 @@ std::size_t drop_true_by_chance(LabelledGraph<P>& labelled, const std::vector<P>
 }
 
 template <class P>
-BasicPoseGraph<P> thinned(const BasicPoseGraph<P>& graph, std::size_t every) {
-  ADIT_CHECK(every > 0, "every first loop, or every second, ...");
+BasicPoseGraph<P> with_every_nth_loop(const BasicPoseGraph<P>& graph, std::size_t n) {
+  ADIT_CHECK(n > 0, "every first loop, or every second, ...");
   BasicPoseGraph<P> out{graph.nodes, {}};
   std::size_t loop = 0;
   for (const auto& edge : graph.edges)
-    if (edge.kind == EdgeKind::odometry || loop++ % every == 0) out.edges.push_back(edge);
+    if (edge.kind == EdgeKind::odometry || loop++ % n == 0) out.edges.push_back(edge);
   return out;
 }
 
@@ -88,7 +88,7 @@ template LabelledGraph<Pose> with_false_loops(PoseGraph, double, FalseLoops, std
 template LabelledGraph<Pose2> with_false_loops(PoseGraph2, double, FalseLoops, std::uint64_t);
 template std::size_t drop_true_by_chance(LabelledGraph<Pose>&, const std::vector<Pose>&, double);
 template std::size_t drop_true_by_chance(LabelledGraph<Pose2>&, const std::vector<Pose2>&, double);
-template PoseGraph thinned(const PoseGraph&, std::size_t);
-template PoseGraph2 thinned(const PoseGraph2&, std::size_t);
+template PoseGraph with_every_nth_loop(const PoseGraph&, std::size_t);
+template PoseGraph2 with_every_nth_loop(const PoseGraph2&, std::size_t);
 
 }  // namespace adit

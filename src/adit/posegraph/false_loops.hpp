@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Graphs that are spoiled on purpose, so that what finds false loops can be measured against labels.
+/// Graphs with labelled false loops, to measure how well methods find them.
 #pragma once
 
 #include <cstddef>
@@ -11,9 +11,9 @@
 
 namespace adit {
 
-/// Random: each copies a true measurement onto a wrong pair of nodes, at least two apart. Clustered: runs of
-/// ten neighbouring loops that agree with each other, as in tunnels that look the same; the first of a run is
-/// random, the others follow both paths.
+/// Random: each false loop copies a true measurement onto a wrong pair of nodes, at least two apart.
+/// Clustered: runs of ten neighbouring loops that agree with each other, as between self-similar tunnels; the
+/// first of a run is random, the others follow both paths.
 enum class FalseLoops { random, clustered };
 
 template <class P>
@@ -24,19 +24,19 @@ struct LabelledGraph {
 
 /// Adds false loops until they are `share` of all loops; the edges of `graph` stay first, in their order. A
 /// graph without loops gets none. The same seed gives the same loops. Throws ContractViolation unless
-/// 0 <= share < 1, and when false loops are due in a graph of fewer than three nodes.
+/// 0 <= share < 1, or if a graph of fewer than three nodes has loops.
 template <class P>
 [[nodiscard]] LabelledGraph<P> with_false_loops(BasicPoseGraph<P> graph, double share, FalseLoops kind,
                                                 std::uint64_t seed);
 
-/// Takes the loops labelled false out again that fit `poses` with a chi2 of at most `bound`: they are true by
-/// chance. Returns how many. `poses`: one a node, as of the optimum of the true edges.
+/// Removes the loops labelled false that fit `poses` with a chi2 of at most `bound`: they are true by chance.
+/// Returns how many. `poses`: T_world_node, one per node, such as the optimum of the true edges.
 template <class P>
 std::size_t drop_true_by_chance(LabelledGraph<P>& labelled, const std::vector<P>& poses, double bound);
 
-/// The graph with its odometry and every `every`-th loop, the first among them. Throws ContractViolation when
-/// `every` is 0.
+/// The graph with its odometry and every n-th loop, the first among them. Throws ContractViolation when n is
+/// 0.
 template <class P>
-[[nodiscard]] BasicPoseGraph<P> thinned(const BasicPoseGraph<P>& graph, std::size_t every);
+[[nodiscard]] BasicPoseGraph<P> with_every_nth_loop(const BasicPoseGraph<P>& graph, std::size_t n);
 
 }  // namespace adit

@@ -105,11 +105,11 @@ TEST(FalseLoops, NeedAShareBelowOneAndRoom) {
 
 TEST(Thinned, KeepsOdometryAndEveryNthLoop) {
   const PoseGraph clean = made_graph(6);
-  const PoseGraph thin = thinned(clean, 10);
+  const PoseGraph thin = with_every_nth_loop(clean, 10);
   EXPECT_EQ(num_loops(thin), (num_loops(clean) + 9) / 10);
   EXPECT_EQ(thin.edges.size() - num_loops(thin), clean.edges.size() - num_loops(clean));
-  EXPECT_TRUE(std::ranges::equal(thinned(clean, 1).edges, clean.edges, same_ends));
-  EXPECT_THROW((void)thinned(clean, 0), ContractViolation);
+  EXPECT_TRUE(std::ranges::equal(with_every_nth_loop(clean, 1).edges, clean.edges, same_ends));
+  EXPECT_THROW((void)with_every_nth_loop(clean, 0), ContractViolation);
 }
 
 }  // namespace

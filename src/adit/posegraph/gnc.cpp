@@ -25,28 +25,32 @@ double lower_gamma(double a, double x) {
   return sum * std::exp(a * std::log(x) - x - std::lgamma(a));
 }
 
+// The control parameter mu of Yang et al.; no unit.
 constexpr double kSmallestMu =
-    1e-6;                           // below, loops weigh too little to tie anything down in double precision
+    1e-6;                           // below, loops weigh too little to constrain anything in double precision
 constexpr double kLargestMu = 1e3;  // above, the surrogate is the truncated cost itself
-constexpr int kMaxRounds = 20;      // of settling; a few are the rule
-constexpr int kMaxRestarts = 2;
-// Groups of rejected loops that get a second hearing: loops of one cluster, at least this many, whose ends
-// lie near one another; and how many groups.
-constexpr std::size_t kGroup = 3;
-constexpr std::size_t kNear = 12;
+constexpr double kFirstMu = 0.01;   // of a graduation from a good solution: reaches loops within 100 bounds
+
+constexpr int kMaxRounds = 20;   // of settling; most graphs need a few
+constexpr int kMaxRestarts = 2;  // of the search from the best poses so far
+
+// Groups of rejected loops that are reconsidered: loops of one cluster whose ends are near one another.
+constexpr std::size_t kSmallestGroup = 3;  // loops
+constexpr std::size_t kGroupReach = 12;    // nodes between their ends, at most
 constexpr std::size_t kMaxGroups = 8;
+
 // An odometry edge whose chi2 is this many bounds, twice as many standard deviations, is bent.
-constexpr double kBent = 4.0;
-// A cluster of loops at least this share of the largest one's size is as good a witness; and an answer that
-// turns down no cluster that large stands.
-constexpr double kRival = 0.2;
-// Where loops fit better than their information says, the bound follows: variances this many times those of
-// the loops kept still pass.
-constexpr double kHeadroom = 4.0;
-constexpr double kShare = 0.9;     // of the loops kept: where their chi2 is compared with that of true noise
-constexpr double kFirstMu = 0.01;  // of a graduation that starts at a good solution: loops within 100 bounds
-constexpr double kReach = 30.0;    // times the bound, when it is let out
-constexpr double kSmallestBound = 1e-6;  // share of the given one; less is rounding
+constexpr double kBentBounds = 4.0;
+// A cluster with this share of the loops of the largest one counts as evidence of its own; a solution that
+// rejects no cluster this large is accepted.
+constexpr double kRivalShare = 0.2;
+
+// Where loops fit better than their information says, the bound shrinks.
+constexpr double kVarianceHeadroom = 4.0;  // times the variance of the loops kept still passes
+constexpr double kFitQuantile =
+    0.9;  // of the kept loops' chi2, compared with that of the chi-square distribution
+constexpr double kBoundRelease = 30.0;   // times the fitted bound, when it is widened once
+constexpr double kSmallestBound = 1e-6;  // share of the given bound; less is rounding
 
 template <class P>
 std::size_t num_rejected(const Solution<P>& s) {
@@ -126,7 +130,7 @@ class Search {
   // From the loops that confirm one another: least squares over the largest clusters, then all loops that
   // this explains. It never meets most false loops, which is also what keeps the matrix sparse.
   [[nodiscard]] Solution<P> from(const LoopClusters& clusters) const {
-    const double rival = kRival * static_cast<double>(largest_of(clusters));
+    const double rival = kRivalShare * static_cast<double>(largest_of(clusters));
     std::vector<double> weights(graph_.edges.size(), 1.0);
     for (std::size_t e = 0; e < weights.size(); ++e) {
       const std::size_t cluster = clusters.of_edge[e];
@@ -146,9 +150,10 @@ class Search {
       if (graph_.edges[e].kind == EdgeKind::loop && s.edge_weights[e] > 0.5) kept.push_back(costs[e]);
     }
     if (kept.empty()) return false;
-    const auto middle = kept.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(kept.size()));
+    const auto middle =
+        kept.begin() + static_cast<std::ptrdiff_t>(kFitQuantile * static_cast<double>(kept.size()));
     std::nth_element(kept.begin(), middle, kept.end());
-    const double share = kHeadroom * *middle / chi2_quantile(kShare, P::kDof);
+    const double share = kVarianceHeadroom * *middle / chi2_quantile(kFitQuantile, P::kDof);
     bound_ *= std::clamp(share, kSmallestBound, 1.0);
     return share < 1.0;
   }
@@ -161,7 +166,7 @@ class Search {
     if (!s.ok()) return s;
     if (!fit_bound(s)) return settle(graduate(settle(std::move(s), false), kFirstMu), false);
     s = settle(std::move(s), false);
-    bound_ = std::min(given, kReach * bound_);
+    bound_ = std::min(given, kBoundRelease * bound_);
     s = settle(std::move(s), false);
     bound_ = given;
     if (s.ok()) fit_bound(s);
@@ -182,7 +187,7 @@ class Search {
       largest_rejected = std::max(largest_rejected, rejected[c]);
       largest_kept = std::max(largest_kept, clusters.sizes[c] - rejected[c]);
     }
-    return static_cast<double>(largest_rejected) < kRival * static_cast<double>(largest_kept);
+    return static_cast<double>(largest_rejected) < kRivalShare * static_cast<double>(largest_kept);
   }
 
   // Loops that hold only together are lost together: where a stretch has bent, each of them alone seems
@@ -239,7 +244,7 @@ class Search {
     for (std::size_t e = 0; e < costs.size(); ++e) {
       if (graph_.edges[e].kind == EdgeKind::loop)
         ++num_loops;
-      else if (costs[e] > kBent * bound_)
+      else if (costs[e] > kBentBounds * bound_)
         return false;
     }
     return (10 * num_rejected(s) <= num_loops || rejects_only_small(s, clusters)) &&
@@ -251,7 +256,7 @@ class Search {
   // Settings of a solve that starts from poses already found.
   [[nodiscard]] OptimizerConfig warm() const {
     OptimizerConfig config = config_.optimizer;
-    config.initialization = "none";
+    config.initialization = SolveStart::given;
     return config;
   }
 
@@ -277,7 +282,7 @@ class Search {
           s.edge_weights[e] < 0.5)
         rest.push_back(e);
     }
-    const auto near = [](std::size_t a, std::size_t b) { return (a < b ? b - a : a - b) <= kNear; };
+    const auto near = [](std::size_t a, std::size_t b) { return (a < b ? b - a : a - b) <= kGroupReach; };
     const auto together = [&](std::size_t e, std::size_t f) {
       const auto& a = graph_.edges[e];
       const auto& b = graph_.edges[f];
@@ -294,7 +299,7 @@ class Search {
         group.insert(group.end(), joins, rest.end());
         rest.erase(joins, rest.end());
       }
-      if (group.size() >= kGroup) groups.push_back(std::move(group));
+      if (group.size() >= kSmallestGroup) groups.push_back(std::move(group));
     }
     std::ranges::stable_sort(groups, std::ranges::greater(), &std::vector<std::size_t>::size);
     groups.resize(std::min(groups.size(), kMaxGroups));
@@ -375,7 +380,7 @@ template <class P>
 Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config) {
   Search<P> search(graph, config);
   OptimizerConfig none = config.optimizer;
-  none.initialization = "none";
+  none.initialization = SolveStart::given;
   none.max_iterations = 0;
   const Solution<P> given = optimize(graph, none);
   if (!given.ok()) return given;

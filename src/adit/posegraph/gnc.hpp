@@ -10,7 +10,7 @@ namespace adit {
 
 struct GncConfig {
   double inlier_probability =
-      0.999;             ///< A true loop's chi2 (unhalved) is below chi2inv(this, dof) that often.
+      0.999;             ///< Share of true loops whose chi2 (unhalved) is below chi2inv(this, dof).
   double mu_step = 1.4;  ///< Factor on the control parameter from one outer iteration to the next.
   int max_outer_iterations = 100;
   bool plain =
@@ -30,7 +30,7 @@ inline Fields fields_of(GncConfig& c) {
 }
 
 /// Pose-graph optimization that finds the false loops itself: graduated non-convexity with truncated least
-/// squares. Odometry edges are known inliers and keep weight 1; every loop ends with weight 1, or 0 when
+/// squares. Odometry edges are known inliers and keep weight 1; every loop ends with weight 1, or 0 if
 /// rejected. The bound is on unhalved chi2 (c^2 = chi2inv(p, dof): 22.46 at 6 dof, 16.27 at 3), which is
 /// GTSAM's on halved errors. Each outer iteration starts from the poses of the one before.
 ///
@@ -41,11 +41,12 @@ inline Fields fields_of(GncConfig& c) {
 /// loops make. Unless it ends clearly well (odometry unbent; few loops rejected, or only small clusters;
 /// nothing come loose), graduated searches from the graph's own poses and from the least-squares solution
 /// with all loops follow, and the lowest truncated cost, the sum over odometry of chi2 plus the sum over
-/// loops of min(chi2, c^2), wins. With `plain` nothing of this paragraph is done but graduated
-/// searches from the graph's own poses and from least squares with all loops, and a last solve with the loops
-/// below the bound; the lower truncated cost wins. Source: Yang,
-/// Antonante, Tzoumas, Carlone, "Graduated Non-Convexity for Robust Spatial Perception" (RA-L 2020),
-/// Proposition 4 (weights), Remark 5 (mu).
+/// loops of min(chi2, c^2), wins.
+///
+/// `plain` skips the paragraph above: graduated searches from the graph's own poses and from least squares
+/// with all loops, each with a last solve over the loops below the bound; the lower truncated cost wins.
+/// Source: Yang, Antonante, Tzoumas, Carlone, "Graduated Non-Convexity for Robust Spatial Perception" (RA-L
+/// 2020), Proposition 4 (weights), Remark 5 (mu).
 template <class P>
 [[nodiscard]] Solution<P> optimize_gnc(const BasicPoseGraph<P>& graph, const GncConfig& config = {});
 

@@ -98,7 +98,7 @@ class Minimizer {
         weights_(weights),
         structure_(structure),
         cholesky_(symbolic, P::kDof),
-        lambda_(config.method == "gn" ? 0.0 : config.initial_damping) {}
+        lambda_(config.method == SolveMethod::gauss_newton ? 0.0 : config.initial_damping) {}
 
   void run(Solution<P>& solution) {
     while (solution.status == SolveStatus::max_iterations && solution.iterations < config_.max_iterations) {
@@ -125,9 +125,9 @@ class Minimizer {
     std::vector<P> poses = stepped(s.poses, structure_, *step);
     const double cost = total_cost(graph_, poses, weights_);
     const double decrease = s.cost_final - cost;
-    // Near the minimum rounding decides the sign of the last decrease, so the model's word ends the search as
-    // well.
-    if (std::isfinite(cost) && (decrease > 0.0 || config_.method == "gn")) {
+    // Near the minimum rounding decides the sign of the last decrease, so the model's prediction ends the
+    // search, too.
+    if (std::isfinite(cost) && (decrease > 0.0 || config_.method == SolveMethod::gauss_newton)) {
       s.poses = std::move(poses);
       s.cost_final = cost;
       current_ = false;
@@ -191,7 +191,7 @@ class Minimizer {
   }
 
   void worsen(Solution<P>& s) {
-    if (config_.method == "gn") {
+    if (config_.method == SolveMethod::gauss_newton) {
       s.status = SolveStatus::non_finite;
       s.reason = "a Gauss-Newton step made the cost not finite; method lm damps such steps";
       return;
@@ -223,19 +223,33 @@ template <class P>
 void choose_start(const BasicPoseGraph<P>& graph, const OptimizerConfig& config,
                   const std::vector<double>& weights, const GraphStructure& structure,
                   const std::shared_ptr<const BlockSymbolic>& symbolic, Solution<P>& solution) {
-  if (config.initialization == "none") return;
+  if (config.initialization == SolveStart::given) return;
   Result<std::vector<P>> chordal = chordal_poses(graph, weights, structure, symbolic);
   if (!chordal) {
     solution.notes.push_back("no chordal initialization: " + chordal.error().message);
     return;
   }
   const double cost = total_cost(graph, *chordal, weights);
-  if (config.initialization == "auto" && !(cost < solution.cost_final)) return;
+  if (config.initialization == SolveStart::better && !(cost < solution.cost_final)) return;
   solution.poses = std::move(*chordal);
   solution.cost_final = cost;
 }
 
 }  // namespace
+
+std::string_view to_string(SolveMethod method) { return method == SolveMethod::gauss_newton ? "gn" : "lm"; }
+
+std::string_view to_string(SolveStart start) {
+  switch (start) {
+    case SolveStart::better:
+      return "auto";
+    case SolveStart::given:
+      return "none";
+    case SolveStart::chordal:
+      return "chordal";
+  }
+  return "unknown";
+}
 
 std::string_view to_string(SolveStatus status) {
   switch (status) {
@@ -255,7 +269,7 @@ std::string_view to_string(SolveStatus status) {
 
 template <class P>
 std::vector<double> edge_costs(const BasicPoseGraph<P>& graph, const std::vector<P>& poses) {
-  ADIT_CHECK(poses.size() == graph.nodes.size(), "one pose a node");
+  ADIT_CHECK(poses.size() == graph.nodes.size(), "one pose per node");
   std::vector<double> costs(graph.edges.size());
   parallel_for_each(
       costs.size(), [&](std::size_t e) { costs[e] = edge_cost<P>(graph.edges[e], poses); }, kGrain);
@@ -280,7 +294,7 @@ Solution<P> optimize(const BasicPoseGraph<P>& graph, const OptimizerConfig& conf
                      const std::vector<double>& edge_weights) {
   graph.check();
   ADIT_CHECK(edge_weights.empty() || edge_weights.size() == graph.edges.size(),
-             "one weight an edge, or none");
+             "one weight per edge, or none");
   Solution<P> solution;
   solution.poses = poses_of(graph);
   solution.edge_weights = edge_weights.empty() ? std::vector<double>(graph.edges.size(), 1.0) : edge_weights;

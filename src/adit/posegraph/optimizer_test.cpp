@@ -65,7 +65,7 @@ void expect_same_minimum_as_dense() {
   for (const std::size_t n : {2U, 3U, 12U, 25U}) {
     const auto made = test::make_graph<P>(rng, n, n, 0.02);
     const std::vector<P> dense = dense_gauss_newton(made.graph);
-    for (const char* method : {"lm", "gn"}) {
+    for (const SolveMethod method : kSolveMethods) {
       OptimizerConfig config;
       config.method = method;
       config.relative_tolerance = 1e-14;
