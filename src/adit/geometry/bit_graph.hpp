@@ -10,7 +10,7 @@
 
 namespace adit {
 
-/// Sets of small numbers as bits, 64 a word.
+/// Sets of small numbers as bits, 64 per word.
 namespace bits {
 
 using Word = std::uint64_t;

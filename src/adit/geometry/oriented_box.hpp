@@ -22,8 +22,8 @@ struct OrientedBox {
 /// the covariance of the **vertices of the convex hull**, so that the box depends on the shape of the cloud
 /// and not on how densely each wall was sampled; the extents are the ranges of the points along them.
 /// `points` in the frame "world", in any order and number, duplicates allowed; points that are not finite are
-/// left out. Planar and collinear clouds give boxes with one or two extents of (nearly) zero. Equal input
-/// gives equal bytes. Errors: no finite point at all. Source: the paper, section 2.3; Zhou, Park, Koltun,
+/// ignored. Planar and collinear clouds give boxes with one or two extents of (nearly) zero. Equal input
+/// gives equal bytes. Error: no point is finite. Source: the paper, section 2.3; Zhou, Park, Koltun,
 /// "Open3D", 2018.
 [[nodiscard]] Result<OrientedBox> oriented_box(std::span<const Eigen::Vector3f> points);
 

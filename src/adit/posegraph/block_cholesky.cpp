@@ -74,18 +74,25 @@ class Front {
   void add_square(const Supernode& child) const {
     Index bj = 0;
     for (; bj < child.below.size() && child.in_parent[bj] < node_.width; ++bj)
-      add_columns(child, bj, factor_ + child.in_parent[bj] * d_ * rows_, rows_);
+      add_columns(child, bj, {factor_ + child.in_parent[bj] * d_ * rows_, rows_, 0});
   }
   void add_rest(const Supernode& child) const {
     for (Index bj = child.below.size(); bj-- > 0 && child.in_parent[bj] >= node_.width;)
-      add_columns(child, bj, update_ + (child.in_parent[bj] - node_.width) * d_ * below_ - columns_, below_);
+      add_columns(child, bj,
+                  {update_ + (child.in_parent[bj] - node_.width) * d_ * below_, below_, node_.width});
   }
-  void add_columns(const Supernode& child, Index bj, double* to, Index to_stride) const {
+  // A block column of the front: `column` holds its rows from block `first_row` on.
+  struct Target {
+    double* column;
+    Index stride;
+    Index first_row;
+  };
+  void add_columns(const Supernode& child, Index bj, Target to) const {
     const Index height = child.below.size();
     const double* from = updates_ + child.update_offset * d_ * d_ + bj * d_ * height * d_;
-    for (Index j = 0; j < d_; ++j, to += to_stride, from += height * d_) {
+    for (Index j = 0; j < d_; ++j, to.column += to.stride, from += height * d_) {
       for (Index bi = bj; bi < height; ++bi) {
-        double* t = to + child.in_parent[bi] * d_;
+        double* t = to.column + (child.in_parent[bi] - to.first_row) * d_;
         const double* x = from + bi * d_;
         for (Index i = 0; i < d_; ++i) t[i] += x[i];
       }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// What a factorization knows before it sees a number: order of elimination, tree of supernodes, and where
-/// each block of the matrix goes. Private to this folder.
+/// The symbolic phase of a factorization: order of elimination, tree of supernodes, and where each block of
+/// the matrix goes. Private to this folder.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,8 @@
 
 namespace adit {
 
-/// Consecutive columns of the factor with (nearly) the same rows, held as one dense front. All in blocks.
+/// Consecutive columns of the factor with (nearly) the same rows, stored as one dense front. All sizes and
+/// indices count blocks.
 struct Supernode {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   /// Where a block of the matrix goes in the front.
@@ -29,9 +30,9 @@ struct Supernode {
   std::size_t parent = kNone;
   std::vector<std::size_t> children;  ///< Ascending.
   std::vector<Scatter> scatter;
-  std::size_t factor_offset = 0;  ///< Of its columns in the factor, for block size 1.
-  std::size_t update_offset = 0;  ///< Of what it hands to its parent in the room for updates, the same.
-  std::size_t below_offset = 0;   ///< Of its rows below in a vector of all supernodes' rows below.
+  std::size_t factor_offset = 0;  ///< Where its columns start in the factor, for block size 1.
+  std::size_t update_offset = 0;  ///< Where its update for the parent starts in the workspace, likewise.
+  std::size_t below_offset = 0;   ///< Where its rows below start among those of all supernodes.
 
   [[nodiscard]] std::size_t height() const { return width + below.size(); }
   [[nodiscard]] double work() const {
@@ -41,14 +42,14 @@ struct Supernode {
   }
 };
 
-/// How the order of elimination is found. Minimum degree is quick and fills little, but takes a chain from
-/// its ends: a tree as deep as the chain is long. Nested dissection makes shallow trees.
+/// How the order of elimination is chosen. Minimum degree is fast and causes little fill, but eliminates a
+/// chain from its ends: a tree as deep as the chain is long. Nested dissection makes shallow trees.
 enum class Ordering { minimum_degree, nested_dissection };
 
 class BlockSymbolic {
  public:
-  /// The last `num_last` variables of the pattern are eliminated last, so that what comes to them later finds
-  /// them near the root.
+  /// The last `num_last` variables of the pattern are eliminated last, so that later changes to them stay
+  /// near the root.
   explicit BlockSymbolic(const BlockPattern& pattern, Ordering ordering = Ordering::minimum_degree,
                          std::size_t num_last = 0);
 
@@ -61,7 +62,7 @@ class BlockSymbolic {
   std::vector<std::size_t> top;                    ///< The supernodes above all subtrees, in order.
   std::size_t factor_size = 0;
   std::size_t below_size = 0;
-  std::size_t update_room = 0;  ///< All updates that live at one time find room in this, for block size 1.
+  std::size_t update_room = 0;  ///< Size of the workspace for all updates alive at one time, block size 1.
   double work = 0.0;
 
  private:

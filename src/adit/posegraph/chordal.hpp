@@ -11,15 +11,16 @@
 
 namespace adit {
 
-/// A start that needs no guess: rotations by linear least squares over all matrices, each then brought to the
-/// nearest rotation; translations by linear least squares given these. Anchors keep their poses; the other
-/// nodes' poses are not looked at. Source: Carlone, Tron, Daniilidis, Dellaert, "Initialization techniques
-/// for 3D SLAM" (ICRA 2015), section III.B (chordal relaxation). Fails when the edges leave a node free.
+/// Poses to start from that need no initial guess: rotations by linear least squares over unconstrained
+/// matrices, each then projected to the nearest rotation; translations by linear least squares given these.
+/// Anchors keep their poses; the poses of other nodes are ignored. Source: Carlone, Tron, Daniilidis,
+/// Dellaert, "Initialization techniques for 3D SLAM" (ICRA 2015), section III.B (chordal relaxation). Error:
+/// the edges do not constrain some node.
 template <class P>
 [[nodiscard]] Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph,
                                                    const std::vector<double>& edge_weights = {});
 
-/// The same for a graph whose structure (with these weights) is known already.
+/// The same where the structure of the graph with these weights is known already.
 template <class P>
 [[nodiscard]] Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph,
                                                    const std::vector<double>& edge_weights,

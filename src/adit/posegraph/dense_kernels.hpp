@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// The dense operations of a multifrontal Cholesky factorization and of solving with it. Matrices are
+/// Dense kernels of the multifrontal Cholesky factorization and of solving with it. Matrices are
 /// column-major: element (i, j) of A is a[i + j * stride].
 ///
-/// Each output element is one sum taken in a fixed order with separate multiplication and addition, whatever
-/// the vector width, so that machines with and without AVX give the same bytes.
+/// Each output element is one sum in a fixed order, with separate multiplications and additions, whatever the
+/// vector width: machines with and without AVX give the same bytes.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@
 
 namespace adit::dense {
 
-/// Rows are packed in strips of this many, as the update kernel reads them.
+/// Rows per packed strip, as the update kernel reads them.
 constexpr std::size_t kStrip = 8;
-/// Columns that one thread takes at a time: a multiple of kStrip.
+/// Columns per parallel task: a multiple of kStrip.
 constexpr std::size_t kStripe = 96;
 
 /// A panel of rows x depth, cut into strips of kStrip rows that each lie in memory depth by depth, padded

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 /// The one residual of a pose graph and its exact derivatives.
 ///
-/// E = Z^-1 T_i^-1 T_j and r = (translation of E, Log of the rotation of E), in space and in the plane. Nodes
-/// are perturbed on the right, translation and rotation apart: R <- R Exp(phi), t <- t + R rho; to first
-/// order that is T <- T Exp([rho; phi]). The Jacobians hold at any residual: nothing of second order is
-/// dropped (Forster et al., "On-Manifold Preintegration", eq. (26) and (30)-(35) for the calculus).
+/// E = Z^-1 T_i^-1 T_j and r = (translation of E, Log of the rotation of E), in space and in the plane;
+/// metres and radians. Nodes are perturbed on the right, translation and rotation separately: R <- R
+/// Exp(phi), t <- t + R rho; to first order that is T <- T Exp([rho; phi]). The Jacobians are exact at any
+/// residual (Forster et al., "On-Manifold Preintegration", eq. (26) and (30)-(35) for the calculus).
 #pragma once
 
 #include "adit/core/pose.hpp"

@@ -89,10 +89,24 @@ std::optional<Index> IncrementalCholesky::refresh() {
   num_renewed_ = 0;
   if (touched_.empty()) return std::nullopt;
   const Removed removed = remove_touched();
-  const std::vector<Index>& variables = removed.variables;
+  for (Index l = 0; l < removed.variables.size(); ++l) row_of_[removed.variables[l]] = l;
+  const BlockSymbolic symbolic = analyze(removed);
+  const std::vector<Index> renewed = make_cliques(symbolic, removed.variables);
+  adopt(removed.orphans, symbolic);
+  for (const Index v : removed.variables) row_of_[v] = kNone;
 
-  // The part to renew as a matrix of its own: its terms, and a full block for what each orphan hands up.
-  for (Index l = 0; l < variables.size(); ++l) row_of_[variables[l]] = l;
+  sort_cliques();
+  for (const Index c : renewed) {
+    if (const auto free = eliminate(cliques_[c])) return free;
+  }
+  num_renewed_ = renewed.size();
+  return std::nullopt;
+}
+
+// The part to renew as a matrix of its own, row_of_ being the place of a variable in it: its terms, and a
+// full block for what each orphan hands up.
+BlockSymbolic IncrementalCholesky::analyze(const Removed& removed) const {
+  const std::vector<Index>& variables = removed.variables;
   std::vector<std::pair<Index, Index>> pairs;
   for (Index l = 0; l < variables.size(); ++l) {
     for (const Neighbour& n : neighbours_[variables[l]]) {
@@ -108,46 +122,44 @@ std::optional<Index> IncrementalCholesky::refresh() {
   // Where nearly all is new, no variable deserves the last place.
   const bool few = 4 * removed.num_touched < variables.size();
   const auto ordering = variables.size() > kLarge ? Ordering::nested_dissection : Ordering::minimum_degree;
-  const BlockSymbolic symbolic(BlockPattern::of_pairs(variables.size(), std::move(pairs)), ordering,
-                               few ? removed.num_touched : 0);
-  const auto variable_at = [&](Index position) { return variables[symbolic.old_of_new[position]]; };
+  return BlockSymbolic(BlockPattern::of_pairs(variables.size(), std::move(pairs)), ordering,
+                       few ? removed.num_touched : 0);
+}
 
-  std::vector<Index> place;  // of each supernode in cliques_
-  std::vector<Index> node_of(variables.size());
-  for (Index s = 0; s < symbolic.nodes.size(); ++s) {
-    const Supernode& node = symbolic.nodes[s];
+// A clique for each supernode, in their order; returns where they are in cliques_.
+std::vector<Index> IncrementalCholesky::make_cliques(const BlockSymbolic& symbolic,
+                                                     const std::vector<Index>& variables) {
+  const auto variable_at = [&](Index position) { return variables[symbolic.old_of_new[position]]; };
+  std::vector<Index> place;
+  for (const Supernode& node : symbolic.nodes) {
     if (free_cliques_.empty()) {
       free_cliques_.push_back(cliques_.size());
       cliques_.emplace_back();
     }
     place.push_back(free_cliques_.back());
     free_cliques_.pop_back();
-    Clique& clique = cliques_[place[s]];
+    Clique& clique = cliques_[place.back()];
     for (Index k = 0; k < node.width; ++k) {
       clique.own.push_back(variable_at(node.first + k));
-      clique_of_[clique.own.back()] = place[s];
-      node_of[node.first + k] = s;
+      clique_of_[clique.own.back()] = place.back();
     }
     for (const Index position : node.below) clique.below.push_back(variable_at(position));
     for (const Index child : node.children) {
       clique.children.push_back(place[child]);
-      cliques_[place[child]].parent = place[s];
+      cliques_[place[child]].parent = place.back();
     }
   }
-  for (const Index orphan : removed.orphans) {
-    Index first = kNone;
-    for (const Index v : cliques_[orphan].below) first = std::min(first, symbolic.new_of_old[row_of_[v]]);
-    cliques_[orphan].parent = place[node_of[first]];
-    cliques_[place[node_of[first]]].children.push_back(orphan);
-  }
-  for (const Index v : variables) row_of_[v] = kNone;
+  return place;
+}
 
-  sort_cliques();
-  for (const Index c : place) {
-    if (const auto free = eliminate(cliques_[c])) return free;
+// The new parent of an orphan owns the variable below it that is eliminated first.
+void IncrementalCholesky::adopt(const std::vector<Index>& orphans, const BlockSymbolic& symbolic) {
+  const auto position = [&](Index variable) { return symbolic.new_of_old[row_of_[variable]]; };
+  for (const Index orphan : orphans) {
+    const Index parent = clique_of_[*std::ranges::min_element(cliques_[orphan].below, {}, position)];
+    cliques_[orphan].parent = parent;
+    cliques_[parent].children.push_back(orphan);
   }
-  num_renewed_ = place.size();
-  return std::nullopt;
 }
 
 std::optional<Index> IncrementalCholesky::eliminate(Clique& clique) {
@@ -175,25 +187,26 @@ std::optional<Index> IncrementalCholesky::eliminate(Clique& clique) {
       if (row != kNone && row > k) place(row, block(n.block), n.transposed);
     }
   }
-  for (const Index child : clique.children) add_update(cliques_[child], clique, clique.panel, true);
+  for (const Index child : clique.children) add_update(cliques_[child], clique, Part::columns);
   const Index done = dense::factorize_panel(clique.panel.data(), rows, rows, columns, min_pivot.data());
   if (done == columns) {
     clique.update.assign(below * below, 0.0);
     dense::PackedPanel packed;
     packed.pack(clique.panel.data() + columns, rows, below, columns);
     dense::subtract_outer_product(clique.update.data(), below, packed, 0, below, dense::Into::replace);
-    for (const Index child : clique.children) add_update(cliques_[child], clique, clique.update, false);
+    for (const Index child : clique.children) add_update(cliques_[child], clique, Part::update);
   }
   for (const Index v : clique.own) row_of_[v] = kNone;
   for (const Index v : clique.below) row_of_[v] = kNone;
   return done == columns ? std::nullopt : std::optional(clique.own[done / d_]);
 }
 
-// Adds the part of the child's update that belongs to the parent's columns (`square`), or the part that it
-// hands on. The child may list its rows in another order than the parent.
-void IncrementalCholesky::add_update(const Clique& child, const Clique& parent, std::vector<double>& to,
-                                     bool square) const {
+// Adds what of the child's update belongs to this part of the parent. The child may list its rows in another
+// order than the parent.
+void IncrementalCholesky::add_update(const Clique& child, Clique& parent, Part part) const {
   const Index width = parent.own.size();
+  const bool square = part == Part::columns;
+  std::vector<double>& to = square ? parent.panel : parent.update;
   const Index skipped = square ? 0 : width;
   const Index to_rows = (width + parent.below.size() - skipped) * d_;
   const Index from_rows = child.below.size() * d_;

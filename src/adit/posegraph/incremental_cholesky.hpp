@@ -9,12 +9,14 @@
 
 namespace adit {
 
-/// Cholesky factorization of a symmetric positive definite block matrix that grows: variables and terms are
-/// added, and only the supernodes on the way from the variables they touch to the root are eliminated anew;
-/// all other subtrees keep their columns and what they hand to their parents. Order within the part that is
-/// renewed: approximate minimum degree, or nested dissection where it is large; touched variables last.
-/// Source: Kaess, Johannsson, Roberts, Ila, Leonard, Dellaert, "iSAM2" (IJRR 2012), section 3 (the Bayes tree
-/// is this tree), with dense fronts as in block_cholesky.hpp.
+class BlockSymbolic;
+
+/// Cholesky factorization of a symmetric positive definite block matrix that grows by variables and terms. A
+/// refresh eliminates only the supernodes on the paths from the changed variables to the root; all other
+/// subtrees keep their columns and what they pass to their parents. Order within the renewed part:
+/// approximate minimum degree, or nested dissection where it is large; changed variables last. Serves
+/// `IncrementalOptimizer`. Source: Kaess, Johannsson, Roberts, Ila, Leonard, Dellaert, "iSAM2" (IJRR 2012),
+/// section 3 (the Bayes tree is this tree), with dense fronts as in block_cholesky.hpp.
 class IncrementalCholesky {
  public:
   explicit IncrementalCholesky(std::size_t block_size) : d_(block_size) {}
@@ -60,8 +62,13 @@ class IncrementalCholesky {
     std::vector<std::size_t> orphans;  ///< Cliques that have lost their parent.
   };
   Removed remove_touched();
+  [[nodiscard]] BlockSymbolic analyze(const Removed& removed) const;
+  std::vector<std::size_t> make_cliques(const BlockSymbolic& symbolic,
+                                        const std::vector<std::size_t>& variables);
+  void adopt(const std::vector<std::size_t>& orphans, const BlockSymbolic& symbolic);
   [[nodiscard]] std::optional<std::size_t> eliminate(Clique& clique);
-  void add_update(const Clique& child, const Clique& parent, std::vector<double>& to, bool square) const;
+  enum class Part { columns, update };  ///< Of a clique: its own columns, or what it hands on.
+  void add_update(const Clique& child, Clique& parent, Part part) const;
   void sort_cliques();
   [[nodiscard]] double* block(std::size_t i) { return blocks_.data() + i * d_ * d_; }
   [[nodiscard]] const double* block(std::size_t i) const { return blocks_.data() + i * d_ * d_; }

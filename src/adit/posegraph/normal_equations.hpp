@@ -11,8 +11,8 @@
 
 namespace adit {
 
-/// Which nodes of a graph are unknowns, which edges take part, and where each edge's terms go in the normal
-/// equations. Edges of weight 0 and edges between two anchors are left out.
+/// Which nodes of a graph are unknowns, which edges contribute, and where the terms of each edge go in the
+/// normal equations. Edges of weight 0 and edges between two anchors are left out.
 struct GraphStructure {
   static constexpr std::size_t kFixed = static_cast<std::size_t>(-1);
   /// One term of one block of the normal matrix.
@@ -24,7 +24,7 @@ struct GraphStructure {
   std::vector<std::size_t> node_of_variable;
   std::vector<std::size_t> active_edges;  ///< Indices of edges, ascending.
   BlockPattern pattern;
-  std::vector<std::size_t> term_start;  ///< One more than the blocks of the pattern.
+  std::vector<std::size_t> term_start;  ///< First term of each block, then the number of terms.
   std::vector<Term> terms;              ///< By block, in the order of the edges.
 };
 template <class P>
@@ -44,8 +44,8 @@ template <class P>
 [[nodiscard]] NormalEquations linearize(const BasicPoseGraph<P>& graph, const GraphStructure& structure,
                                         const std::vector<P>& poses, const std::vector<double>& edge_weights);
 
-/// What the sums over edges need of one edge, for blocks of size D: the caller fills it in, `sum_terms` adds
-/// it up.
+/// The contribution of one edge to the normal matrix, in blocks of size D. The caller fills it in,
+/// `sum_terms` adds it up.
 template <int D>
 struct EdgeTerms {
   Eigen::Matrix<double, D, D> from_from, to_to, from_to;
