@@ -3,13 +3,12 @@
 // `adit loop-study` on small graphs: what it counts, what it writes and what it refuses.
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <regex>
 
 #include "adit/core/ids.hpp"
 #include "adit/io/g2o.hpp"
 #include "support/files.hpp"
-#include "support/graphs.hpp"
+#include "support/laps.hpp"
 #include "support/program.hpp"
 
 namespace adit {
@@ -20,30 +19,6 @@ using test::expect_refused;
 using test::get_file;
 using test::put_file;
 
-constexpr double kSigma = 0.02;
-constexpr std::size_t kLap = 40;
-
-/// Two laps of one circle on a floor, keys from `first_key` on, with a loop from each keyframe of the second
-/// lap to the first.
-PoseGraph two_laps(std::uint64_t first_key) {
-  Rng rng(first_key + 1);
-  PoseGraph graph;
-  for (std::size_t i = 0; i < 2 * kLap; ++i) {
-    const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / kLap;
-    graph.nodes.push_back(
-        {first_key + i, Pose::planar(10.0 * std::cos(angle), 10.0 * std::sin(angle), angle)});
-  }
-  const auto link = [&](std::size_t from, std::size_t to, EdgeKind kind) {
-    graph.edges.push_back({from, to,
-                           graph.nodes[from].pose.inverse() * graph.nodes[to].pose *
-                               Pose::exp(test::random_tangent<Pose>(rng, kSigma)),
-                           Matrix6::Identity() / (kSigma * kSigma), kind});
-  };
-  for (std::size_t i = 0; i + 1 < 2 * kLap; ++i) link(i, i + 1, EdgeKind::odometry);
-  for (std::size_t i = 0; i < kLap; ++i) link(i, i + kLap, EdgeKind::loop);
-  return graph;
-}
-
 void put_graph(const std::filesystem::path& path, const PoseGraph& graph) {
   std::filesystem::create_directories(path.parent_path());
   std::ofstream file(path);
@@ -53,7 +28,7 @@ void put_graph(const std::filesystem::path& path, const PoseGraph& graph) {
 /// One edge of a loop between two robots, in a file of its own as each robot writes it.
 PoseGraph loop_between(std::uint64_t from_key, std::uint64_t to_key, const Pose& T_from_to) {
   return {{{from_key, Pose()}, {to_key, T_from_to}},
-          {{0, 1, T_from_to, Matrix6::Identity() / (kSigma * kSigma), EdgeKind::loop}}};
+          {{0, 1, T_from_to, Matrix6::Identity() / (test::kLapSigma * test::kLapSigma), EdgeKind::loop}}};
 }
 
 std::string study(const test::TemporaryFolder& folder, const std::string& options = "") {
@@ -74,7 +49,7 @@ std::string timeless(const std::string& json) {
 
 TEST(LoopStudy, CountsWhatEachMethodKeepsAndLoses) {
   const test::TemporaryFolder folder;
-  put_graph(folder / "laps.g2o", two_laps(0));
+  put_graph(folder / "laps.g2o", test::two_laps(0));
   put_file(folder / "list.toml", entry("laps", "laps.g2o", "random") +
                                      entry("laps", "laps.g2o", "clustered") +
                                      entry("away", "nowhere.g2o", "random"));
@@ -101,7 +76,7 @@ TEST(LoopStudy, CountsWhatEachMethodKeepsAndLoses) {
 
 TEST(LoopStudy, SaysTheSameAgainAndAsJson) {
   const test::TemporaryFolder folder;
-  put_graph(folder / "data/laps.g2o", two_laps(0));
+  put_graph(folder / "data/laps.g2o", test::two_laps(0));
   put_file(folder / "list.toml", entry("laps", "laps.g2o", "clustered", "seed = 5\nkeep_every = 2"));
   const std::string data = " --data " + (folder / "data").string();
   const test::ProgramRun run = test::run_adit(study(folder, "--json --shares 30" + data));
@@ -116,8 +91,8 @@ TEST(LoopStudy, TellsFalseLoopsOfRobotsOnAFloorByTheirTilt) {
   const test::TemporaryFolder folder;
   const std::uint64_t a = graph_key({{0}, 0});
   const std::uint64_t b = graph_key({{1}, 0});
-  put_graph(folder / "fleet/0.g2o", two_laps(a));
-  put_graph(folder / "fleet/1.g2o", two_laps(b));
+  put_graph(folder / "fleet/0.g2o", test::two_laps(a));
+  put_graph(folder / "fleet/1.g2o", test::two_laps(b));
   for (std::uint64_t k = 0; k < 8; ++k) {
     const bool is_false = k == 5;
     const Pose error = is_false ? Pose::exp((Vector6() << 3.0, 0.0, 2.0, 1.0, 0.0, 0.0).finished()) : Pose();
@@ -147,7 +122,7 @@ TEST(LoopStudy, WhereAMethodHasNoAnswerThePageSaysWhy) {
 
 TEST(LoopStudy, WrongListsAreRefusedWithTheFileAndTheRemedy) {
   const test::TemporaryFolder folder;
-  put_graph(folder / "laps.g2o", two_laps(0));
+  put_graph(folder / "laps.g2o", test::two_laps(0));
   const auto expect_list_refused = [&](const std::string& list, const std::string& text) {
     put_file(folder / "list.toml", list);
     expect_refused(study(folder), 1, text);
