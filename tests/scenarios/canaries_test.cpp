@@ -90,8 +90,8 @@ std::vector<Vector3> ends_of(const std::filesystem::path& session) {
     const Result<Trajectory> poses = read_tum(session / robot / "trajectory.tum");
     EXPECT_TRUE(poses) << poses.error().message;
     if (!poses) return {};
-    ends.push_back(poses->front().pose.translation());
-    ends.push_back(poses->back().pose.translation());
+    ends.push_back(poses->front().T_world_body.translation());
+    ends.push_back(poses->back().T_world_body.translation());
   }
   return ends;
 }
