@@ -18,7 +18,7 @@
 namespace adit::bench {
 namespace {
 
-Work optimizing(const std::string& name, const std::string& initialization) {
+Work optimizing(const std::string& name, SolveStart initialization) {
   OptimizerConfig config;
   config.initialization = initialization;
   return std::visit(
@@ -43,7 +43,7 @@ const struct GraphCases {
     for (const BenchGraph& graph : kGraphs) {
       const std::string name = graph.name;
       const auto add = [&](const std::string& suffix, const std::string& work, const std::string& peer,
-                           double aim, const std::string& initialization, const std::string& start) {
+                           double aim, SolveStart initialization, const std::string& start) {
         const std::string case_name = "posegraph/" + name + suffix;
         Case({.name = case_name,
               .work = work,
@@ -54,13 +54,13 @@ const struct GraphCases {
         Side(
             case_name, "adit", [=] { return optimizing(name, initialization); }, timed_from(start));
       };
-      add("", "least squares, each side from its best start", graph.best_ceres, 2.0, "auto",
+      add("", "least squares, each side from its best start", graph.best_ceres, 2.0, SolveStart::better,
           "the better of the file's guess and the chordal relaxation");
-      add("_from_guess", "least squares, both from the guess in the file", "ceres", 0.0, "none",
+      add("_from_guess", "least squares, both from the guess in the file", "ceres", 0.0, SolveStart::given,
           "the guess in the file");
       if (name != "city10000")
-        add("_from_chordal", "least squares, both from the chordal relaxation", "ceres", 0.0, "chordal",
-            "the chordal relaxation");
+        add("_from_chordal", "least squares, both from the chordal relaxation", "ceres", 0.0,
+            SolveStart::chordal, "the chordal relaxation");
     }
   }
 } graph_cases;

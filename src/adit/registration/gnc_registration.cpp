@@ -121,7 +121,7 @@ double truncated_mean(std::span<const double> values, double bound) {
   return best + values.front();
 }
 
-std::optional<GlobalSolution> solve_robustly(std::span<const Eigen::Vector3f> points_a,
+std::optional<GlobalSolution> align_robustly(std::span<const Eigen::Vector3f> points_a,
                                              std::span<const Eigen::Vector3f> points_b, double bound,
                                              const RegistrationConfig& config) {
   ADIT_CHECK(points_a.size() == points_b.size(), "a correspondence has a point in either cloud");

@@ -43,7 +43,7 @@ struct GlobalSolution {
 /// (translation cancels), the translation axis by axis from the rotated points. `bound` is the noise of a
 /// point, metres; that of a difference is twice it. None with fewer than 3 correspondences, or where the
 /// rotation is open.
-[[nodiscard]] std::optional<GlobalSolution> solve_robustly(std::span<const Eigen::Vector3f> points_a,
+[[nodiscard]] std::optional<GlobalSolution> align_robustly(std::span<const Eigen::Vector3f> points_a,
                                                            std::span<const Eigen::Vector3f> points_b,
                                                            double bound, const RegistrationConfig& config);
 

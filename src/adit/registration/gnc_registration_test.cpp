@@ -84,7 +84,7 @@ TEST(SolveRobustly, FindsPoseAndInliers) {
       a.push_back((k % 3 == 0 ? random_vector(rng, 15.0) : Vector3(T_a_b * p_b + random_vector(rng, 0.03)))
                       .cast<float>());
     }
-    const auto found = solve_robustly(a, b, 0.2, {});
+    const auto found = align_robustly(a, b, 0.2, {});
     ASSERT_TRUE(found.has_value());
     const Pose error = T_a_b.inverse() * found->T_a_b;
     EXPECT_LT(error.translation().norm(), 0.1);
@@ -97,11 +97,11 @@ TEST(SolveRobustly, FindsPoseAndInliers) {
 
 TEST(SolveRobustly, HasNoAnswerForTooFewOrCollinearPoints) {
   const std::vector<Eigen::Vector3f> two = {{0, 0, 0}, {1, 0, 0}};
-  EXPECT_FALSE(solve_robustly(two, two, 0.2, {}).has_value());
+  EXPECT_FALSE(align_robustly(two, two, 0.2, {}).has_value());
   std::vector<Eigen::Vector3f> line;
   for (int k = 0; k < 30; ++k) line.emplace_back(static_cast<float>(k), 0.0F, 0.0F);
-  EXPECT_FALSE(solve_robustly(line, line, 0.2, {}).has_value());
-  EXPECT_THROW((void)solve_robustly(two, line, 0.2, {}), ContractViolation);
+  EXPECT_FALSE(align_robustly(line, line, 0.2, {}).has_value());
+  EXPECT_THROW((void)align_robustly(two, line, 0.2, {}), ContractViolation);
 }
 
 }  // namespace

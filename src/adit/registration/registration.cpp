@@ -85,7 +85,7 @@ Registration register_features(const Features& a, const Features& b, const Regis
   const MatchedPoints consistent = pruned(matched_points(a, b, matches), config);
   out.num_pruned = static_cast<int>(consistent.a.size());
   const double bound = std::min(config.solver_noise_voxels * config.voxel_size, config.max_noise_bound);
-  const auto solution = solve_robustly(consistent.a, consistent.b, bound, config);
+  const auto solution = align_robustly(consistent.a, consistent.b, bound, config);
   if (!solution) {
     return rejected(out, format("the {} consistent points agree on no rotation", consistent.a.size()));
   }
