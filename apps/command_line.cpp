@@ -3,6 +3,8 @@
 #include "command_line.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cstdio>
 #include <exception>
 
@@ -16,13 +18,21 @@ Program::Program() : cli_("Multi-robot LiDAR SLAM for tunnels, mines and caves",
   cli_.require_subcommand(1);
   cli_.failure_message([](const CLI::App*, const CLI::Error& error) {
     return std::string("adit: ") + error.what() +
-           " ('adit --help' and 'adit COMMAND --help' say what there is)\n";
+           " ('adit --help' lists the commands, 'adit COMMAND --help' its options)\n";
   });
   cli_.set_version_flag("--version", std::string(version()));
   cli_.add_flag("--json", common_.json, "Print the result as JSON on stdout, alone");
   cli_.add_option("--threads", common_.threads, "Threads to use (default: all cores)")
       ->check(CLI::PositiveNumber);
-  cli_.add_option("--config", common_.config_file, "TOML file with configuration fields")
+  std::vector<std::string> profiles;
+  for (const Profile profile : kProfiles) profiles.emplace_back(to_string(profile));
+  cli_.add_option("--profile", profile_,
+                  "Configuration to start from: default, paper (its pipeline and odometry), lidar-only "
+                  "(KISS-ICP, for robots without wheel odometry)")
+      ->check(CLI::IsMember(profiles))
+      ->capture_default_str();
+  cli_.add_option("--config", common_.config_file,
+                  "TOML file with configuration fields, as 'adit config' prints them")
       ->check(CLI::ExistingFile);
   cli_.add_option("--set", common_.sets, "Set one configuration field: key=value (repeatable)")
       ->allow_extra_args(false);
@@ -32,11 +42,60 @@ Program::Program() : cli_("Multi-robot LiDAR SLAM for tunnels, mines and caves",
 CLI::App* Program::add_command(const std::string& name, const std::string& description, Body body) {
   CLI::App* command = cli_.add_subcommand(name, description);
   command->fallthrough();
-  command->callback([this, name, body = std::move(body)] {
+  command->callback([this, name, command, body = std::move(body)] {
+    common_.command = command_of(*command);
+    common_.profile = *std::ranges::find(kProfiles, profile_, [](Profile p) { return to_string(p); });
     if (common_.threads > 0) set_num_threads(common_.threads);
-    exit_code_ = run_command(name, [&] { return body(common_); });
+    exit_code_ = run_command(name, [&]() -> Result<> {
+      // Also where the command itself needs no configuration: a wrong setting is never passed over.
+      if (const Result<RunConfig> config = configured(common_); !config)
+        return tl::unexpected(config.error());
+      return body(common_);
+    });
   });
   return command;
+}
+
+namespace {
+
+// What a session, a study or a page is written to, and how it is computed, changes no result.
+bool changes_results(const std::string& option) {
+  constexpr std::array kNeutral{"--out", "--page", "--threads", "--json", "--help", "--rerun"};
+  return std::ranges::find(kNeutral, option) == kNeutral.end();
+}
+
+std::string shell_quoted(const std::string& text) {
+  const bool is_plain = !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_-./=:@%+,").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (is_plain) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+/// The option as it was given, with a blank in front; "" where it was not.
+std::string text_of(const CLI::Option& option) {
+  if (option.count() == 0 || !changes_results(option.get_name())) return "";
+  const std::string name = option.get_positional() ? "" : " " + option.get_name();
+  if (option.get_expected_max() == 0) return name;  // a flag
+  const char delimiter = option.get_delimiter();
+  std::string text;
+  for (const std::string& value : option.results()) {
+    const bool joins = delimiter != '\0' && !text.empty();
+    text += joins ? delimiter + value : name + " " + shell_quoted(value);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string Program::command_of(const CLI::App& command) const {
+  std::string text = "adit " + command.get_name();
+  for (const CLI::Option* option : command.get_options()) text += text_of(*option);
+  for (const CLI::Option* option : cli_.get_options()) text += text_of(*option);
+  return text;
 }
 
 // CLI11 would only say that a command is missing.

@@ -8,17 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "adit/core/config.hpp"
 #include "adit/core/result.hpp"
+#include "adit/slam/run_config.hpp"
 
 namespace adit::app {
 
 /// Options that every command takes.
 struct Common {
-  bool json = false;              ///< Print the result as JSON on stdout, alone.
-  int threads = 0;                ///< 0: all cores.
+  bool json = false;  ///< Print the result as JSON on stdout, alone.
+  int threads = 0;    ///< 0: all cores.
+  Profile profile = Profile::standard;
+  std::string config_file;        ///< TOML, applied after the profile.
   std::vector<std::string> sets;  ///< "key=value", applied after the file.
-  std::string config_file;        ///< TOML.
+  std::string command;            ///< The command line, without options that do not change the result.
 };
 
 /// The body of a command: returns 0, or an error that main prints in one line (exit code 1).
@@ -34,19 +36,26 @@ class Program {
 
  private:
   void check_command(const std::string& name) const;
+  [[nodiscard]] std::string command_of(const CLI::App& command) const;
 
   CLI::App cli_;
   Common common_;
+  std::string profile_ = "default";
   int exit_code_ = 0;
 };
 
 /// For mistakes that only show after parsing: ends the command with exit code 2.
 [[noreturn]] void usage_error(const std::string& message);
 
-/// Sets `fields` from --config and then --set; an unknown key is an error that names the nearest one.
-Result<> configure(const Fields& fields, const Common& common);
+/// The configuration of a command, the one tree of keys that `adit config` prints: the profile, then
+/// --config, then the LiDAR of that name (`--lidar`; "": as it is), then --set. A file with an unknown key or
+/// a bad value is an error; a wrong --set, profile or LiDAR is wrong usage.
+Result<RunConfig> configured(const Common& common, const std::string& lidar = "");
 
-// One function a command, each in its own file of this folder.
+/// Prints the lines on stderr, where they do not mix with results.
+void print_notes(const std::string& command, const std::vector<std::string>& notes);
+
+// One function per command, each in its own file of this folder.
 void add_world(Program& program);
 void add_simulate(Program& program);
 void add_odometry(Program& program);

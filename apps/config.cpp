@@ -4,26 +4,28 @@
 #include <memory>
 
 #include "adit/io/config_toml.hpp"
-#include "adit/simulation/world.hpp"
-#include "run_config.hpp"
+#include "command_line.hpp"
 
 namespace adit::app {
 
 void add_config(Program& program) {
-  const auto markdown = std::make_shared<bool>(false);
-  CLI::App* command =
-      program.add_command("config", "Every configuration field with its value, as a TOML file to start from",
-                          [markdown](const Common& common) -> Result<> {
-                            RunConfig config;
-                            WorldConfig world;
-                            Fields fields = fields_of(config);
-                            append(fields, "world", fields_of(world));
-                            if (const Result<> configured = configure(fields, common); !configured)
-                              return configured;
-                            std::printf("%s", (*markdown ? to_markdown(fields) : to_toml(fields)).c_str());
-                            return {};
-                          });
-  command->add_flag("--markdown", *markdown, "As the tables of docs/configuration.md");
+  struct Options {
+    bool markdown = false;
+    std::string lidar;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_command(
+      "config", "Print every configuration field as TOML; every command takes it with --config",
+      [options](const Common& common) -> Result<> {
+        Result<RunConfig> config = configured(common, options->lidar);
+        if (!config) return tl::unexpected(config.error());
+        const Fields fields = fields_of(*config);
+        std::printf("%s", (options->markdown ? to_markdown(fields) : to_toml(fields)).c_str());
+        return {};
+      });
+  command->add_flag("--markdown", options->markdown, "As the tables of docs/configuration.md");
+  command->add_option("--lidar", options->lidar,
+                      "With the fields of this simulated LiDAR (default: os2-128)");
 }
 
 }  // namespace adit::app

@@ -110,9 +110,9 @@ struct Options {
 const std::map<std::string, CloudFormat> kCloudFormats = {
     {"pcd", CloudFormat::pcd}, {"ply", CloudFormat::ply}, {"bin", CloudFormat::kitti}};
 
-Result<> convert_recording(const Options& options) {
+Result<> convert_recording(const Options& options, const RecordingConfig& config) {
   const fs::path out = options.out;
-  return open_input(options.in, options.recording).and_then([&](const Recording& recording) -> Result<> {
+  return open_input(options.in, config).and_then([&](const Recording& recording) -> Result<> {
     if (kind_of(options.out) == Kind::trajectory) return convert_poses(recording, options.in, out);
     Progress progress("scans", recording.num_scans());
     return write_recording_to(out, recording, progress, kCloudFormats.at(options.clouds));
@@ -126,10 +126,9 @@ Result<> convert(const Options& options, const Common& common) {
   const Kind to = kind_of(out);
   catch_interrupts();
   if (from == Kind::recording && (to == Kind::recording || to == Kind::trajectory)) {
-    Options configured = options;
-    Fields fields;
-    append(fields, "recording", fields_of(configured.recording));
-    return configure(fields, common).and_then([&] { return convert_recording(configured); });
+    const Result<RunConfig> config = configured(common);
+    if (!config) return tl::unexpected(config.error());
+    return convert_recording(options, recording_config(config->recording, options.recording));
   }
   if (from == Kind::mesh && extension_of(out) == ".ply") return convert_mesh(in, out);
   if (from == Kind::cloud && to == Kind::cloud) return convert_cloud(in, out);

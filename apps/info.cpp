@@ -159,7 +159,7 @@ Result<Json> session_info(const fs::path& path) {
       if (!session.optimized[i].empty()) robot.update(trajectory_json(session.optimized[i]));
       robots.push_back(robot);
     }
-    return Json{{"kind", "session"}, {"version", session.version},       {"seed", session.seed},
+    return Json{{"kind", "session"}, {"version", session.version},       {"seed", session.provenance.seed},
                 {"robots", robots},  {"components", session.components}, {"loops", session.loops.size()}};
   });
 }
@@ -214,13 +214,14 @@ void add_info(Program& program) {
   CLI::App* command = program.add_command(
       "info", "What a recording, cloud, mesh, trajectory, graph, routes file or session holds",
       [options](const Common& common) {
-        return info_of(options->input, options->recording).map([&](const Json& info) {
-          if (common.json) {
-            std::printf("%s\n", info.dump(2).c_str());
-          } else {
-            print_text(info);
-          }
-        });
+        return info_of(options->input, recording_config(configured(common)->recording, options->recording))
+            .map([&](const Json& info) {
+              if (common.json) {
+                std::printf("%s\n", info.dump(2).c_str());
+              } else {
+                print_text(info);
+              }
+            });
       });
   command->add_option("FILE", options->input, "File or folder")->required();
   add_recording_options(*command, options->recording);

@@ -2,14 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "inputs.hpp"
 
-#include <algorithm>
 #include <cstdio>
-#include <set>
+#include <utility>
 
-#include "adit/core/format.hpp"
-#include "adit/io/mesh_files.hpp"
 #include "adit/io/recording_files.hpp"
 #include "adit/io/routes_yaml.hpp"
+#include "adit/io/world_files.hpp"
 
 namespace adit::app {
 namespace {
@@ -19,24 +17,17 @@ bool is_routes_file(const std::string& input) {
   return extension == ".yaml" || extension == ".yml";
 }
 
-}  // namespace
-
-Result<World> load_world(const std::filesystem::path& world_file, const std::filesystem::path& routes_file) {
-  Result<RoutesFile> routes = read_routes(routes_file);
+Result<Inputs> simulated(const std::string& routes_file, const ScenarioConfig& simulation) {
+  const Result<RoutesFile> routes = read_routes(routes_file);
   if (!routes) return tl::unexpected(routes.error());
-  const std::filesystem::path mesh_file = world_file.empty() ? routes->world : world_file;
-  if (mesh_file.empty()) {
-    return fail(routes_file.string() + ": names no world; add 'world: FILE' to it or give --world FILE");
-  }
-  Result<TriangleMesh> mesh = read_mesh(mesh_file);
-  if (!mesh) return tl::unexpected(mesh.error());
-  World world;
-  const std::filesystem::path folder = std::filesystem::absolute(mesh_file).parent_path();
-  world.name = mesh_file.stem() == "world" ? folder.filename().string() : mesh_file.stem().string();
-  world.mesh = std::move(*mesh);
-  world.routes = std::move(routes->routes);
-  return world;
+  return load_world({}, routes_file)
+      .and_then([&](const World& world) { return simulate(world, simulation); })
+      .map([&](std::vector<Recording> recordings) {
+        return Inputs{std::move(recordings), routes->world.string()};
+      });
 }
+
+}  // namespace
 
 void add_recording_options(CLI::App& command, RecordingConfig& config) {
   command
@@ -59,26 +50,31 @@ Result<Recording> open_input(const std::string& input, const RecordingConfig& co
   });
 }
 
-Result<std::vector<Recording>> open_inputs(const std::vector<std::string>& inputs,
-                                           const ScenarioConfig& simulation, const RecordingConfig& config) {
-  if (inputs.size() == 1 && is_routes_file(inputs.front())) {
-    return load_world({}, inputs.front()).and_then([&](const World& world) {
-      return simulate(world, simulation);
-    });
-  }
-  std::vector<Recording> recordings;
-  std::set<std::string> names;
+RecordingConfig recording_config(RecordingConfig config, const RecordingConfig& options) {
+  if (!options.mount.empty()) config.mount = options.mount;
+  if (!options.points.empty()) config.points = options.points;
+  return config;
+}
+
+Result<Inputs> open_inputs(const std::vector<std::string>& inputs, const RunConfig& config) {
+  if (inputs.size() == 1 && is_routes_file(inputs.front()))
+    return simulated(inputs.front(), config.simulation);
+  Inputs opened;
   for (const std::string& input : inputs) {
     if (is_routes_file(input)) return fail(input + ": a routes file stands for all robots; give it alone");
-    Result<Recording> recording = open_input(input, config);
+    const auto [name, path] = name_and_path(input);
+    Result<Recording> recording = open_input(path, config.recording);
     if (!recording) return tl::unexpected(recording.error());
-    if (!names.insert(recording->name).second) {
-      return fail(format("{}: a robot named '{}' was given before; rename the file or folder", input,
-                         recording->name));
-    }
-    recordings.push_back(std::move(*recording));
+    if (!name.empty()) recording->name = name;
+    opened.recordings.push_back(std::move(*recording));
   }
-  return recordings;
+  return opened;
+}
+
+std::pair<std::string, std::string> name_and_path(const std::string& input) {
+  const std::size_t equals = input.find('=');
+  if (equals == std::string::npos || equals == 0 || std::filesystem::exists(input)) return {"", input};
+  return {input.substr(0, equals), input.substr(equals + 1)};
 }
 
 Result<> choose_lidar(const std::string& name, ScenarioConfig& config) {

@@ -1,18 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-#include <algorithm>
+#include "adit/study/merge_study.hpp"
+
 #include <cstdio>
 #include <memory>
 
-#include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
+#include "adit/io/folders.hpp"
 #include "adit/report/text_tables.hpp"
-#include "distinctive_places.hpp"
-#include "inputs.hpp"
-#include "merge_run.hpp"
-#include "merge_worlds.hpp"
-#include "page_tables.hpp"
-#include "progress.hpp"
+#include "adit/study/page_tables.hpp"
+#include "command_line.hpp"
+#include "policies.hpp"
 
 namespace adit::app {
 namespace {
@@ -25,130 +23,51 @@ struct Options {
   std::string page;
   std::string lidar = "os2-32";
   std::vector<std::string> keyframes = {"all", "tunnel_filter", "adaptive"};
-  std::vector<std::string> groups = {"tuning", "check"};
-  std::vector<std::string> only;
+  WorldChoice choice{{"tuning", "check"}, {}};
   std::string variant;
-  bool json = false;
 };
 
-/// Those named, or else those of the groups; without the ones whose files are absent.
-Result<std::vector<ListedWorld>> chosen_worlds(const Options& options) {
-  Result<std::vector<ListedWorld>> all = read_world_list(options.worlds);
-  if (!all) return all;
-  for (const std::string& name : options.only)
-    if (std::ranges::find(*all, name, &ListedWorld::name) == all->end())
-      return fail(format("{}: there is no world '{}'", options.worlds, name));
-  std::erase_if(*all, [&](const ListedWorld& world) {
-    return options.only.empty() ? std::ranges::count(options.groups, world.group) == 0
-                                : std::ranges::count(options.only, world.name) == 0;
-  });
-  std::erase_if(*all, [](const ListedWorld& world) {
-    if (is_available(world)) return false;
-    std::fprintf(stderr, "%s is left out: %s is absent\n", world.name.c_str(), world.routes_file.c_str());
-    return true;
-  });
-  return all;
-}
-
-/// Goes where it does not mix with JSON.
-void print_line(const MergeRun& run, std::FILE* to) {
-  MergeCounts counts;
-  counts.add(run);
-  std::fprintf(
-      to,
-      "%-28s %-18s %d mergeable: %d well, %d bent, %d refused; %d of %d others kept apart; %d WRONG, %d "
-      "wrong "
-      "loops; joint %d wrong loops, %s; %d registrations, %.1f s\n",
-      run.world.c_str(), run.keyframes.c_str(), counts.mergeable, counts.success, counts.bent, counts.refused,
-      counts.kept_apart, counts.others, counts.wrong, counts.wrong_loops, counts.joint_wrong_loops,
-      counts.joint_wrong > 0   ? "WRONG"
-      : counts.joint_whole > 0 ? "whole"
-                               : "parts",
-      run.registrations, run.time_s);
-  std::fflush(to);
-}
-
-/// As an earlier run measured them, or else measured now: that takes longer than a policy.
-Result<DistinctivePlaces> places_of(const ListedWorld& world, const std::vector<RobotRun>& robots,
-                                    const RunConfig& config, const std::vector<MergeRun>& runs) {
-  const auto earlier = std::ranges::find(runs, world.name, &MergeRun::world);
-  if (earlier == runs.end())
-    return distinctive_places(robots, studied_under(KeyframeSelection::adaptive, config));
-  DistinctivePlaces places(robots.size(), std::vector<int>(robots.size(), 0));
-  auto pair = earlier->pairs.begin();
-  for (std::size_t a = 0; a < robots.size(); ++a)
-    for (std::size_t b = a + 1; b < robots.size() && pair != earlier->pairs.end(); ++b, ++pair)
-      places[a][b] = places[b][a] = pair->distinctive_places;
-  return places;
-}
-
-/// Runs every policy on one world; results reach the disk world by world, so that a stop loses one at most.
-Result<> run_world(const ListedWorld& world, const std::vector<KeyframeSelection>& selections,
-                   const RunConfig& config, const Options& options, std::vector<MergeRun>& runs) {
-  const Result<std::vector<RobotRun>> robots =
-      driven_robots(world, config, selections, std::filesystem::path(options.out) / "maps");
-  if (!robots) return tl::unexpected(robots.error());
-  const Result<DistinctivePlaces> places = places_of(world, *robots, config, runs);
-  if (!places) return fail(world.name, places.error());
-  for (const KeyframeSelection selection : selections) {
-    if (interrupted()) return fail("interrupted");
-    const Result<MergeTruth> truth = merge_truth(*robots, selection, *places);
-    if (!truth) return fail(world.name, truth.error());
-    Result<MergeRun> run = run_merges(*robots, *truth, selection, studied_under(selection, config));
-    if (!run) return fail(world.name, run.error());
-    run->world = world.name;
-    run->group = world.group;
-    if (!options.variant.empty()) run->keyframes += " " + options.variant;
-    print_line(*run, options.json ? stderr : stdout);
-    put_run(runs, std::move(*run));
-  }
-  return write_merge_runs(std::filesystem::path(options.out) / "results.json", runs);
-}
-
-/// In the order of the list, policies as they were given when the world was first run; worlds that the list
-/// no longer names are dropped.
-void sort_by_list(std::vector<MergeRun>& runs, const std::vector<ListedWorld>& list) {
-  const auto place = [&](const MergeRun& run) {
-    return std::ranges::find(list, run.world, &ListedWorld::name) - list.begin();
-  };
-  std::erase_if(runs,
-                [&](const MergeRun& run) { return place(run) == static_cast<std::ptrdiff_t>(list.size()); });
-  std::ranges::stable_sort(runs, {}, place);
-}
-
-Result<> merge_study(Options options, const Common& common) {
-  options.json = common.json;
-  RunConfig config = study_config();
-  if (const Result<> known = choose_lidar(options.lidar, config.simulation); !known)
-    usage_error(known.error().message);
-  const Result<std::vector<KeyframeSelection>> selections = selections_of(options.keyframes);
-  if (!selections) usage_error(selections.error().message);
-  if (const Result<> configured = configure(fields_of(config), common); !configured) return configured;
-  const Result<std::vector<ListedWorld>> list = read_world_list(options.worlds);
-  if (!list) return tl::unexpected(list.error());
-  const Result<std::vector<ListedWorld>> worlds = chosen_worlds(options);
-  if (!worlds) return tl::unexpected(worlds.error());
-  const std::filesystem::path out = options.out;
-  std::filesystem::create_directories(out / "maps");
-  Result<std::vector<MergeRun>> runs = read_merge_runs(out / "results.json");
-  if (!runs) return tl::unexpected(runs.error());
-
-  catch_interrupts();
-  for (const ListedWorld& world : *worlds)
-    if (const Result<> done = run_world(world, *selections, config, options, *runs); !done) return done;
-  sort_by_list(*runs, *list);
-  const std::vector<Table> tables = merge_tables(*runs);
-  Result<> done = write_merge_runs(out / "results.json", *runs);
-  if (done) done = write_merge_csv(out / "results.csv", *runs);
-  if (done && !options.page.empty()) done = write_tables(options.page, kSection, tables);
-  if (done && common.json) {
-    const Result<std::string> json = read_bytes(out / "results.json");
-    if (!json) return tl::unexpected(json.error());
-    std::printf("%s", json->c_str());
-  } else if (done) {
+Result<> print(const std::filesystem::path& results, const std::vector<Table>& tables, bool json) {
+  if (!json) {
     std::printf("\n");
     for (const Table& table : tables) std::printf("%s\n", text_of(table).c_str());
+    return {};
   }
+  return read_bytes(results).map([](const std::string& text) { std::printf("%s", text.c_str()); });
+}
+
+/// What is run under the options, with a line of text per run; that goes where it does not mix with JSON.
+Result<MergeStudy> study_of(const Options& options, const Common& common) {
+  const Result<RunConfig> config = configured(common, options.lidar);
+  if (!config) return tl::unexpected(config.error());
+  std::FILE* lines = common.json ? stderr : stdout;
+  const auto print_line = [lines](const MergeRun& run) {
+    std::fprintf(lines, "%s\n", summary_line(run).c_str());
+    std::fflush(lines);
+  };
+  return MergeStudy{*config, policies_of(options.keyframes), options.variant, options.out, print_line};
+}
+
+Result<> merge_study(const Options& options, const Common& common) {
+  const Result<MergeStudy> study = study_of(options, common);
+  if (!study) return tl::unexpected(study.error());
+  const Result<std::vector<ListedWorld>> list = read_world_list(options.worlds);
+  if (!list) return tl::unexpected(list.error());
+  const Result<ChosenWorlds> chosen = chosen_worlds(options.worlds, *list, options.choice);
+  if (!chosen) return tl::unexpected(chosen.error());
+  print_notes("merge-study", chosen->notes);
+  if (const Result<> made = make_folder(study->folder / "maps"); !made) return made;
+  const std::filesystem::path results = study->folder / "results.json";
+  Result<std::vector<MergeRun>> runs = read_merge_runs(results);
+  if (!runs) return tl::unexpected(runs.error());
+  for (const ListedWorld& world : chosen->worlds)
+    if (const Result<> done = run_world(*study, world, *runs); !done) return done;
+  sort_by_list(*runs, *list);
+  const std::vector<Table> tables = merge_tables(*runs);
+  Result<> done = write_merge_runs(results, *runs);
+  if (done) done = write_merge_csv(study->folder / "results.csv", *runs);
+  if (done && !options.page.empty()) done = write_tables(options.page, kSection, tables);
+  if (done) done = print(results, tables, common.json);
   return done;
 }
 
@@ -162,14 +81,16 @@ void add_merge_study(Program& program) {
   command->add_option("--worlds", options->worlds, "The list (TOML, as bench/merge/worlds.toml)")->required();
   command->add_option("--out", options->out, "Folder that keeps the robots' maps and the results of all runs")
       ->required();
-  command->add_option("--keyframes", options->keyframes, "Keyframe policies, separated by commas")
+  command
+      ->add_option("--keyframes", options->keyframes,
+                   "Keyframe policies, separated by commas; all but adaptive run on `paper_odometry`")
       ->delimiter(',')
       ->capture_default_str();
-  command->add_option("--groups", options->groups, "Worlds of these groups: tuning, check, limit")
+  command->add_option("--groups", options->choice.groups, "Worlds of these groups: tuning, check, limit")
       ->delimiter(',')
       ->check(CLI::IsMember({"tuning", "check", "limit"}))
       ->capture_default_str();
-  command->add_option("--only", options->only, "Only the worlds of these names, whatever their group")
+  command->add_option("--only", options->choice.only, "Only the worlds of these names, whatever their group")
       ->delimiter(',');
   command->add_option("--variant", options->variant,
                       "Added to the policies' names, so that a run with other settings (--set) stands beside "

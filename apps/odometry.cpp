@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adit/core/format.hpp"
+#include "adit/core/progress.hpp"
 #include "adit/evaluation/ate.hpp"
 #include "adit/evaluation/statistics.hpp"
 #include "adit/io/tum.hpp"
@@ -13,7 +14,6 @@
 #include "adit/robot/robot_slam.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
-#include "progress.hpp"
 
 namespace adit::app {
 namespace {
@@ -21,7 +21,7 @@ namespace {
 struct Options {
   RecordingConfig recording;
   std::string input;
-  std::string method = "plane-icp";
+  std::string method;
   std::string out;
   std::string truth;
 };
@@ -36,22 +36,19 @@ Result<Run> run(const Recording& recording, const OdometryConfig& config) {
   const Result<> wheels = check_wheels(recording, config, "--method kiss-icp");
   if (!wheels) return tl::unexpected(wheels.error());
   Odometry odometry(config, recording.T_base_lidar);
-  Progress progress("scans", recording.num_scans());
+  const Phase phase("odometry", recording.num_scans());
   Run out;
-  for (std::size_t i = 0; i < recording.num_scans(); ++i) {
-    if (interrupted()) return fail("interrupted");
-    const Result<Scan> scan = recording.read_scan(i);
-    if (!scan) return tl::unexpected(scan.error());
-    const Result<std::optional<WheelDelta>> wheel = wheel_before(recording, i);
-    if (!wheel) return tl::unexpected(wheel.error());
+  const auto take = [&](const Scan& scan, const std::optional<WheelDelta>& wheel) {
     const auto start = std::chrono::steady_clock::now();
-    const OdometryStep step = odometry.register_scan(*scan, *wheel);
+    const OdometryStep step = odometry.register_scan(scan, wheel);
     out.scan_ms.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     out.trajectory.push_back({step.stamp, step.T_odom_base});
     ++out.statuses[step.status];
-    progress.advance();
-  }
+    phase.advance();
+    return true;
+  };
+  if (const Result<> done = for_each_scan(recording, take); !done) return tl::unexpected(done.error());
   return out;
 }
 
@@ -63,24 +60,26 @@ std::string status_line(const std::map<StepStatus, int>& statuses) {
 }
 
 Result<> odometry(const Options& options, const Common& common) {
-  OdometryConfig config;
-  Fields fields;
-  append(fields, "odometry", fields_of(config));
-  if (const Result<> configured = configure(fields, common); !configured) return configured;
-  if (const Result<> known = set_field(fields_of(config), "method", options.method); !known) return known;
-  const Result<Recording> recording = open_input(options.input, options.recording);
+  Result<RunConfig> config = configured(common);
+  if (!config) return tl::unexpected(config.error());
+  OdometryConfig& method = config->slam.robot.odometry;
+  if (!options.method.empty()) {
+    if (const Result<> set = set_field(fields_of(method), "method", options.method); !set)
+      usage_error(set.error().message);
+  }
+  const Result<Recording> recording =
+      open_input(options.input, recording_config(config->recording, options.recording));
   if (!recording) return tl::unexpected(recording.error());
   Result<Trajectory> truth = recording->truth;
   if (!options.truth.empty()) truth = read_tum(options.truth);
   if (!truth) return tl::unexpected(truth.error());
-  catch_interrupts();
-  const Result<Run> done = run(*recording, config);
+  const Result<Run> done = run(*recording, method);
   if (!done) return tl::unexpected(done.error());
   if (const Result<> written = write_tum(options.out, done->trajectory); !written) return written;
 
   nlohmann::ordered_json report = {{"scans", done->trajectory.size()},
                                    {"ms_per_scan_median", median(done->scan_ms)}};
-  std::string line = format("{}: {} scans ({}), {:.1f} m, {:.1f} ms a scan (median)", recording->name,
+  std::string line = format("{}: {} scans ({}), {:.1f} m, {:.1f} ms per scan (median)", recording->name,
                             done->trajectory.size(), status_line(done->statuses),
                             path_length(done->trajectory), median(done->scan_ms));
   if (!truth->empty()) {
@@ -104,9 +103,8 @@ void add_odometry(Program& program) {
   command->add_option("input", options->input, "Recording (.mcap) or folder of scans")->required();
   command
       ->add_option("--method", options->method,
-                   "plane-icp, kinematic-icp: with wheels; kiss-icp: LiDAR alone")
-      ->check(CLI::IsMember({"plane-icp", "kinematic-icp", "kiss-icp"}))
-      ->capture_default_str();
+                   "plane-icp (default) or kinematic-icp: with wheels; kiss-icp: LiDAR alone")
+      ->check(CLI::IsMember({"plane-icp", "kinematic-icp", "kiss-icp"}));
   command->add_option("--out", options->out, "Trajectory to write (TUM)")->required();
   command->add_option("--truth", options->truth,
                       "True trajectory (TUM), for the error; default: the recording's own");

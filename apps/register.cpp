@@ -45,7 +45,7 @@ nlohmann::ordered_json json_of(const Registration& r, double time_s) {
           {"weak_direction", rows_of(r.weak_direction)}};
 }
 
-/// One standard deviation along each tangent axis of b; an axis that nothing holds has none.
+/// One standard deviation along each tangent axis of b; an axis that nothing constrains has none.
 std::string deviations(const Matrix6& information) {
   const Eigen::LDLT<Matrix6> ldlt(information);
   if (ldlt.info() != Eigen::Success || !(ldlt.rcond() > 1e-12)) return "unbounded along the weak axis";
@@ -80,16 +80,14 @@ void print_text(const Registration& r, double time_s) {
 }
 
 Result<> register_files(const Options& options, const Common& common) {
-  RegistrationConfig config;
-  Fields fields;
-  append(fields, "registration", fields_of(config));
-  if (const Result<> configured = configure(fields, common); !configured) return configured;
+  const Result<RunConfig> config = configured(common);
+  if (!config) return tl::unexpected(config.error());
   const Result<PointCloud> a = read_cloud(options.cloud_a);
   if (!a) return tl::unexpected(a.error());
   const Result<PointCloud> b = read_cloud(options.cloud_b);
   if (!b) return tl::unexpected(b.error());
   const auto start = std::chrono::steady_clock::now();
-  const Registration registration = register_clouds(*a, *b, config);
+  const Registration registration = register_clouds(*a, *b, config->slam.agent().registration_in_use());
   const double time_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (common.json) {
     std::printf("%s\n", json_of(registration, time_s).dump().c_str());
@@ -103,9 +101,9 @@ Result<> register_files(const Options& options, const Common& common) {
 
 void add_register(Program& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
-      program.add_command("register", "Relative pose of two clouds, without a first guess",
-                          [options](const Common& common) { return register_files(*options, common); });
+  CLI::App* command = program.add_command(
+      "register", "Relative pose of two clouds, without a first guess (fields loops.adaptive.registration.*)",
+      [options](const Common& common) { return register_files(*options, common); });
   command->add_option("A", options->cloud_a, "Cloud that the answer refers to (.pcd, .ply, .bin)")
       ->required();
   command->add_option("B", options->cloud_b, "Cloud to be placed: p_a = T_a_b * p_b")->required();

@@ -9,10 +9,12 @@
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/io/tum.hpp"
+#include "adit/io/world_files.hpp"
+#include "adit/slam/naming.hpp"
+#include "command_line.hpp"
 #include "inputs.hpp"
 #include "progress.hpp"
 #include "recording_output.hpp"
-#include "run_config.hpp"
 
 namespace adit::app {
 namespace {
@@ -21,7 +23,7 @@ struct Options {
   std::string world;
   std::string routes;
   std::string out;
-  std::string lidar = "os2-128";
+  std::string lidar;
   std::string robot;
   std::optional<std::uint64_t> seed;
 };
@@ -87,17 +89,15 @@ void print(const Options& options, const std::vector<Recording>& recordings, con
 }
 
 Result<> simulate_command(const Options& options, const Common& common) {
-  RunConfig config;
-  if (const Result<> known = choose_lidar(options.lidar, config.simulation); !known) {
-    usage_error(known.error().message);
-  }
-  if (Result<> configured = configure(fields_of(config), common); !configured) return configured;
-  if (options.seed) config.simulation.seed = *options.seed;
-  const auto recordings =
+  Result<RunConfig> config = configured(common, options.lidar);
+  if (!config) return tl::unexpected(config.error());
+  if (options.seed) config->simulation.seed = *options.seed;
+  auto recordings =
       load_world(options.world, options.routes)
-          .and_then([&](const World& world) { return simulate(world, config.simulation); })
+          .and_then([&](const World& world) { return simulate(world, config->simulation); })
           .and_then([&](const std::vector<Recording>& all) { return chosen(all, options.robot); });
   if (!recordings) return tl::unexpected(recordings.error());
+  print_notes("simulate", name_robots(*recordings));
   catch_interrupts();
   if (Result<> written = write_all(options, *recordings); !written) return written;
   print(options, *recordings, common);
@@ -108,16 +108,16 @@ Result<> simulate_command(const Options& options, const Common& common) {
 
 void add_simulate(Program& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
-      program.add_command("simulate", "Drive robots through a mesh: one recording a robot, with ground truth",
-                          [options](const Common& common) { return simulate_command(*options, common); });
+  CLI::App* command = program.add_command(
+      "simulate", "Drive robots through a mesh: one recording per robot, with ground truth",
+      [options](const Common& common) { return simulate_command(*options, common); });
   command->add_option("--world", options->world,
                       "Mesh: PLY, OBJ, STL, DAE, GLB (default: the one the routes name)");
   command->add_option("--routes", options->routes, "routes.yaml")->required();
   command->add_option("--out", options->out, "Folder for ROBOT.mcap and ROBOT_truth.tum")->required();
-  command->add_option("--lidar", options->lidar, "Simulated LiDAR")->capture_default_str();
+  command->add_option("--lidar", options->lidar, "Simulated LiDAR (default: os2-128)");
   command->add_option("--robot", options->robot, "Only the robot of this name");
-  command->add_option("--seed", options->seed, "Of all noise; wins over the configuration");
+  command->add_option("--seed", options->seed, "Noise seed; overrides --set and --config");
 }
 
 }  // namespace adit::app

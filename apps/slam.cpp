@@ -1,21 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
+#include "adit/slam/slam.hpp"
+
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "adit/core/format.hpp"
-#include "adit/core/parallel.hpp"
 #include "adit/core/version.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/config_toml.hpp"
-#include "adit/io/session_dir.hpp"
-#include "adit/report/html_report.hpp"
+#include "adit/io/session_toml.hpp"
+#include "adit/slam/session_pages.hpp"
+#include "command_line.hpp"
 #include "inputs.hpp"
-#include "joint_pictures.hpp"
-#include "progress.hpp"
-#include "study_run.hpp"
 
 namespace adit::app {
 namespace {
@@ -24,34 +22,57 @@ struct Options {
   RecordingConfig recording;
   std::vector<std::string> inputs;
   std::string out;
-  std::string lidar = "os2-128";
-  std::string keyframes = "adaptive";
+  std::string lidar;
+  std::string keyframes;
+  std::string rerun;
 };
 
-Result<std::vector<std::shared_ptr<const RobotMap>>> map_robots(const std::vector<Recording>& recordings,
-                                                                const RobotSlamConfig& config,
-                                                                KeyframeSelection selection) {
-  std::size_t num_scans = 0;
-  for (const Recording& recording : recordings) num_scans += recording.num_scans();
-  Progress progress("scans", num_scans);
-  std::vector<Result<RobotMap>> maps(recordings.size(), fail("not run"));
-  parallel_for_each(recordings.size(), [&](std::size_t i) {
-    RobotSlamConfig own = config;
-    if (recordings[i].wheel.empty()) own.odometry.method = OdometryMethod::kiss_icp;  // nothing else to go by
-    maps[i] = map_recording(recordings[i], {static_cast<std::uint8_t>(i)}, own, [&](std::size_t) {
-      progress.advance();
-      return !interrupted();
-    });
-  });
-  std::vector<std::shared_ptr<const RobotMap>> selected;
-  for (Result<RobotMap>& map : maps) {
-    if (!map) return tl::unexpected(map.error());
-    selected.push_back(std::make_shared<const RobotMap>(select_keyframes(*map, selection)));
+/// What is to run, and how the session will say so.
+struct Job {
+  RunConfig config;
+  Provenance provenance;
+};
+
+Result<Job> job_of(const Options& options, const Common& common) {
+  if (options.inputs.empty()) usage_error("give recordings, folders of scans, one routes.yaml, or --rerun");
+  Result<RunConfig> config = configured(common, options.lidar);
+  if (!config) return tl::unexpected(config.error());
+  if (!options.keyframes.empty()) {
+    const Result<KeyframeSelection> keyframes = keyframe_selection(options.keyframes);
+    if (!keyframes) usage_error(keyframes.error().message);
+    config->slam.keyframes = *keyframes;
   }
-  return selected;
+  config->recording = recording_config(config->recording, options.recording);
+  Provenance provenance;
+  provenance.command = common.command;
+  provenance.inputs = options.inputs;
+  provenance.profile = to_string(common.profile);
+  provenance.settings = common.sets;
+  return Job{*config, provenance};
 }
 
-void print_summary(const Session& session, const std::vector<std::uint64_t>& bytes_sent) {
+/// What a session says of itself is enough to make it again.
+Result<Job> job_again(const Options& options, const Common& common) {
+  if (!options.inputs.empty() || !options.lidar.empty() || !options.keyframes.empty() ||
+      !options.recording.mount.empty() || !options.recording.points.empty() || !common.sets.empty() ||
+      !common.config_file.empty() || common.profile != Profile::standard)
+    usage_error("--rerun repeats a session as it was: no inputs and no configuration beside it");
+  const Result<std::string> text = read_bytes(options.rerun);
+  if (!text) return tl::unexpected(text.error());
+  Result<SessionHeader> header = parse_session_toml(*text);
+  if (!header) return fail(options.rerun, header.error());
+  Job job{{}, std::move(header->provenance)};
+  if (job.provenance.inputs.empty()) return fail(options.rerun + ": names no inputs; is it a session.toml?");
+  const Result<> set = parse_config(fields_of(job.config), job.provenance.configuration);
+  if (!set) return fail(options.rerun + ": configuration", set.error());
+  if (header->version != version())
+    print_notes("slam", {format("{} was made by adit {}, and this is {}: results may differ", options.rerun,
+                                header->version, version())});
+  return job;
+}
+
+void print_robots(const SlamRun& run) {
+  const Session& session = run.session;
   for (std::size_t i = 0; i < session.maps.size(); ++i) {
     const RobotMap& map = *session.maps[i];
     const auto own_loops = std::ranges::count_if(session.solution.loops, [&](const LoopOutcome& loop) {
@@ -61,108 +82,78 @@ void print_summary(const Session& session, const std::vector<std::uint64_t>& byt
         "%s: %zu scans, %zu keyframes, %td loops of its own, %d degenerate and %d refused steps, %.2f MB "
         "sent\n",
         map.name.c_str(), map.odometry.size(), map.keyframes.size(), own_loops, map.num_degenerate,
-        map.num_refused, static_cast<double>(bytes_sent[i]) * 1e-6);
+        map.num_refused, static_cast<double>(run.bytes_sent[i]) * 1e-6);
   }
+}
+
+void print_pairs(const Session& session) {
   const auto name = [&](RobotId id) { return session.fleet.robots.at(id).name; };
   for (const PairOutcome& pair : session.solution.pairs) {
     int in_use = 0;
-    for (const LoopOutcome& loop : session.solution.loops) {
+    for (const LoopOutcome& loop : session.solution.loops)
       in_use += loop.in_use() && loop.loop.from.robot == pair.a && loop.loop.to.robot == pair.b ? 1 : 0;
-    }
     std::printf("%s and %s: %s\n", name(pair.a).c_str(), name(pair.b).c_str(),
                 pair.merged ? format("merged by {} of {} loops", in_use, pair.num_loops).c_str()
                             : ("not merged: " + pair.refused_reason).c_str());
   }
 }
 
-nlohmann::ordered_json summary_json(const Session& session, const std::vector<std::uint64_t>& bytes_sent) {
-  nlohmann::ordered_json json;
-  const auto name = [&](RobotId id) { return session.fleet.robots.at(id).name; };
-  for (std::size_t i = 0; i < session.maps.size(); ++i) {
-    json["robots"].push_back({{"name", session.maps[i]->name},
-                              {"scans", session.maps[i]->odometry.size()},
-                              {"keyframes", session.maps[i]->keyframes.size()},
-                              {"bytes_sent", bytes_sent[i]}});
-  }
-  for (const PairOutcome& pair : session.solution.pairs) {
-    json["pairs"].push_back({{"robots", {name(pair.a), name(pair.b)}},
-                             {"loops", pair.num_loops},
-                             {"clique", pair.clique},
-                             {"second_clique", pair.second_clique},
-                             {"merged", pair.merged},
-                             {"refused_reason", pair.refused_reason}});
-  }
-  return json;
+/// The session is there all the same, so that this is the last word and not the only one.
+Result<> without_failures(const SlamRun& run, const std::string& out) {
+  if (run.failed.empty()) return {};
+  std::string reasons;
+  for (const FailedRobot& robot : run.failed) reasons += "; " + robot.reason;
+  return fail(format("{} of {} recordings could not be mapped and are missing in {}{}", run.failed.size(),
+                     run.failed.size() + run.session.maps.size(), out, reasons));
 }
 
-/// A page without ground truth: what was merged, by which loops, and why or why not.
-Result<> write_report(const std::filesystem::path& dir, const Session& session) {
-  StudyResult page;
-  page.version = version();
-  page.seed = session.provenance.seed;
-  page.configuration = session.provenance.configuration;
-  page.command = session.provenance.command + format(" {}", fmt::join(session.provenance.inputs, " "));
-  for (const auto& map : session.maps) page.robots.push_back(robot_facts(*map, {}));
-  JointResult& joint = page.joint.emplace();
-  const auto name = [&](RobotId id) { return session.fleet.robots.at(id).name; };
-  for (const PairOutcome& pair : session.solution.pairs) {
-    if (!pair.merged)
-      joint.refusals.push_back(format("{} and {}: {}", name(pair.a), name(pair.b), pair.refused_reason));
-  }
-  joint.loop_map = loop_map(session.fleet, session.solution);
-  joint.merges = merge_pictures(session.fleet, session.solution);
-  return write_bytes(dir / "report.html", html_report(page, {}, study_figures(page)));
-}
-
-Result<> slam(const Options& options, const Common& common) {
-  RunConfig config;
-  if (const Result<> chosen = choose_lidar(options.lidar, config.simulation); !chosen)
-    usage_error(chosen.error().message);
-  const Result<KeyframeSelection> selection = keyframe_selection(options.keyframes);
-  if (!selection) usage_error(selection.error().message);
-  if (const Result<> configured = configure(fields_of(config), common); !configured) return configured;
-  config = under(*selection, config);
-  const Result<std::vector<Recording>> recordings =
-      open_inputs(options.inputs, config.simulation, options.recording);
-  if (!recordings) return tl::unexpected(recordings.error());
+Result<> slam_command(const Options& options, const Common& common) {
+  Result<Job> job = options.rerun.empty() ? job_of(options, common) : job_again(options, common);
+  if (!job) return tl::unexpected(job.error());
+  Result<Inputs> inputs = open_inputs(job->provenance.inputs, job->config);
+  if (!inputs) return tl::unexpected(inputs.error());
   Result<OutputDir> out = OutputDir::create(options.out, "session");
   if (!out) return tl::unexpected(out.error());
-  catch_interrupts();
-  const auto maps = map_robots(*recordings, config.robot, *selection);
-  if (!maps) return tl::unexpected(maps.error());
-  const Result<Meeting> meeting = hold_meeting(*maps, config);
-  if (!meeting) return tl::unexpected(meeting.error());
-
-  Session session;
-  session.provenance = {"adit slam", options.inputs, config.simulation.seed, to_toml(fields_of(config))};
-  session.maps = *maps;
-  session.fleet = meeting->agents.front().known();
-  session.solution = meeting->agents.front().solve(config.back_end);
-  if (const Result<> written = write_session(out->path(), session, MapFiles::write); !written) return written;
-  if (const Result<> written = write_report(out->path(), session); !written) return written;
-  if (interrupted()) return fail("interrupted");
-  if (const Result<> done = out->commit(); !done) return done;
+  Result<SlamRun> run = slam(std::move(inputs->recordings), job->config.slam);
+  if (!run) return tl::unexpected(run.error());
+  print_notes("slam", run->notes);
+  job->provenance.world = inputs->world;
+  job->provenance.seed = job->config.simulation.seed;
+  job->provenance.configuration = to_toml(fields_of(job->config));
+  job->provenance.robots = run->session.provenance.robots;
+  run->session.provenance = job->provenance;
+  Result<> done = write_slam(out->path(), *run);
+  if (done) done = out->commit();
+  if (!done) return done;
   if (common.json) {
-    std::printf("%s\n", summary_json(session, meeting->bytes_sent).dump().c_str());
+    std::printf("%s", session_metrics(*run).c_str());
   } else {
-    print_summary(session, meeting->bytes_sent);
+    print_robots(*run);
+    print_pairs(run->session);
   }
-  return {};
+  return without_failures(*run, options.out);
 }
 
 }  // namespace
 
 void add_slam(Program& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_command("slam", "All robots given, merged decentrally, into one session",
-                                          [options](const Common& common) { return slam(*options, common); });
-  command->add_option("inputs", options->inputs, "Recordings, folders of scans, or one routes.yaml")
-      ->required();
+  CLI::App* command =
+      program.add_command("slam", "Map each robot, merge the maps decentrally, write one session",
+                          [options](const Common& common) { return slam_command(*options, common); });
+  command->add_option("inputs", options->inputs,
+                      "Recordings or folders of scans, NAME=FILE to name the robot; or one routes.yaml, "
+                      "simulated on the fly");
   command->add_option("--out", options->out, "Session directory to write")->required();
-  command->add_option("--lidar", options->lidar, "Simulated LiDAR (routes.yaml only)")->capture_default_str();
-  command->add_option("--keyframes", options->keyframes, "adaptive, all, tunnel_filter or tunnel_filter_keep")
-      ->capture_default_str();
+  command->add_option("--lidar", options->lidar, "Simulated LiDAR, for routes.yaml (default: os2-128)");
+  command->add_option("--keyframes", options->keyframes,
+                      "Keyframe policy: adaptive (default), all, tunnel_filter or tunnel_filter_keep");
+  command->add_option("--rerun", options->rerun,
+                      "session.toml of a session to make again, byte for byte, from the same inputs");
   add_recording_options(*command, options->recording);
+  command->footer(
+      "A recording that cannot be mapped is named with its reason; the others go on, and the exit code is "
+      "1.");
 }
 
 }  // namespace adit::app

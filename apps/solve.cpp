@@ -99,10 +99,9 @@ void print_line(const nlohmann::json& r, bool gnc) {
 Result<> run(const SolveOptions& options, const Common& common) {
   if (!options.out.empty() && options.graphs.size() != 1)
     usage_error("--out takes the result of one graph only");
-  GncConfig config;
-  Fields fields;
-  append(fields, "gnc", fields_of(config));
-  if (const Result<> configured = configure(fields, common); !configured) return configured;
+  const Result<RunConfig> run_config = configured(common);
+  if (!run_config) return tl::unexpected(run_config.error());
+  GncConfig config = run_config->slam.back_end.gnc;
   if (options.chordal) config.optimizer.initialization = SolveStart::chordal;
   nlohmann::json all = nlohmann::json::array();
   for (const std::string& name : options.graphs) {
@@ -125,8 +124,9 @@ Result<> run(const SolveOptions& options, const Common& common) {
 
 void add_solve(Program& program) {
   auto options = std::make_shared<SolveOptions>();
-  CLI::App* command = program.add_command("solve", "Optimize 2-D or 3-D pose graphs in g2o files",
-                                          [options](const Common& common) { return run(*options, common); });
+  CLI::App* command =
+      program.add_command("solve", "Optimize 2-D or 3-D pose graphs in g2o files (fields back_end.gnc.*)",
+                          [options](const Common& common) { return run(*options, common); });
   command->add_option("GRAPH", options->graphs, "g2o files")->required();
   command->add_flag("--gnc", options->gnc, "Find and reject false loops (graduated non-convexity)");
   command->add_flag("--chordal", options->chordal, "Start from chordal relaxation whatever the file's poses");

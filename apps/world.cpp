@@ -26,19 +26,17 @@ struct Options {
 
 /// The configuration from --config and --set (keys `world.*`), then the command's own options.
 Result<WorldConfig> config_of(const Options& options, const Common& common) {
-  WorldConfig config;
-  Fields fields;
-  append(fields, "world", fields_of(config));
-  if (const Result<> configured = configure(fields, common); !configured)
-    return tl::unexpected(configured.error());
+  Result<RunConfig> run_config = configured(common);
+  if (!run_config) return tl::unexpected(run_config.error());
+  WorldConfig& config = run_config->world;
   if (!options.preset.empty()) config.preset = options.preset;
   if (!std::ranges::count(world_presets(), config.preset))
     usage_error(format("--preset {}: the presets are {}", config.preset, fmt::join(world_presets(), ", ")));
   for (const auto& [key, value] :
-       {std::pair("world.seed", options.seed), std::pair("world.arrangement", options.arrangement),
-        std::pair("world.routes", options.routes)}) {
+       {std::pair("seed", options.seed), std::pair("arrangement", options.arrangement),
+        std::pair("routes", options.routes)}) {
     if (value.empty()) continue;
-    if (const Result<> set = set_field(fields, key, value); !set) usage_error(set.error().message);
+    if (const Result<> set = set_field(fields_of(config), key, value); !set) usage_error(set.error().message);
   }
   return config;
 }

@@ -6,7 +6,7 @@
 #include "adit/evaluation/ate.hpp"
 #include "adit/io/recording_files.hpp"
 #include "adit/odometry/odometry.hpp"
-#include "adit/robot/robot_slam.hpp"
+#include "adit/robot/scan_loop.hpp"
 #include "simulated.hpp"
 
 namespace {
@@ -22,14 +22,12 @@ adit::Result<adit::Trajectory> run_odometry(const adit::Recording& recording) {
   if (recording.wheel.empty()) config.method = adit::OdometryMethod::kiss_icp;
   adit::Odometry odometry(config, recording.T_base_lidar);
   adit::Trajectory trajectory;
-  for (std::size_t i = 0; i < recording.num_scans(); ++i) {
-    const auto scan = recording.read_scan(i);
-    if (!scan) return tl::unexpected(scan.error());
-    const auto wheel = adit::wheel_before(recording, i);
-    if (!wheel) return tl::unexpected(wheel.error());
-    const adit::OdometryStep step = odometry.register_scan(*scan, *wheel);
+  const auto done = adit::for_each_scan(recording, [&](const adit::Scan& scan, const auto& wheel) {
+    const adit::OdometryStep step = odometry.register_scan(scan, wheel);
     trajectory.push_back({step.stamp, step.T_odom_base});
-  }
+    return true;
+  });
+  if (!done) return tl::unexpected(done.error());
   return trajectory;
 }
 

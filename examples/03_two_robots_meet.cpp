@@ -3,17 +3,12 @@
 /// Two robots map on their own, meet, find out where they have both been, and share one map.
 /// Usage: 03_two_robots_meet [RECORDING RECORDING]
 #include <cstdio>
-#include <memory>
 
-#include "adit/fleet/agent.hpp"
 #include "adit/io/recording_files.hpp"
-#include "adit/robot/robot_slam.hpp"
-#include "adit/transport/loopback_bus.hpp"
+#include "adit/slam/slam.hpp"
 #include "simulated.hpp"
 
 namespace {
-
-using Maps = std::vector<std::shared_ptr<const adit::RobotMap>>;
 
 adit::Result<std::vector<adit::Recording>> input(int argc, char** argv) {
   if (argc < 3) return example::two_robots_of_zab();
@@ -26,24 +21,6 @@ adit::Result<std::vector<adit::Recording>> input(int argc, char** argv) {
   return recordings;
 }
 
-adit::Result<Maps> map_each(const std::vector<adit::Recording>& recordings) {
-  Maps maps;
-  for (const adit::Recording& recording : recordings) {
-    adit::RobotSlamConfig config;
-    if (recording.wheel.empty()) config.odometry.method = adit::OdometryMethod::kiss_icp;
-    const adit::RobotId id{static_cast<std::uint8_t>(maps.size())};
-    auto map = adit::map_recording(recording, id, config);
-    if (!map) return tl::unexpected(map.error());
-    maps.push_back(std::make_shared<const adit::RobotMap>(std::move(*map)));
-  }
-  return maps;
-}
-
-adit::Agent agent_of(const std::shared_ptr<const adit::RobotMap>& map) {
-  const adit::AgentConfig config;
-  return {map, config};
-}
-
 int failed(const adit::Error& error) {
   std::fprintf(stderr, "error: %s\n", error.message.c_str());
   return 1;
@@ -54,25 +31,23 @@ int failed(const adit::Error& error) {
 int main(int argc, char** argv) {
   const auto recordings = input(argc, argv);
   if (!recordings) return failed(recordings.error());
-  const auto maps = map_each(*recordings);
-  if (!maps) return failed(maps.error());
-  adit::Agent first = agent_of((*maps)[0]);
-  adit::Agent second = agent_of((*maps)[1]);
+  // The default configuration merges only what tested evidence supports; adit::SlamConfig has every field.
+  const auto run = adit::slam(*recordings);
+  if (!run) return failed(run.error());
+  for (const std::string& note : run->notes) std::printf("note: %s\n", note.c_str());
+  const adit::Session& session = run->session;
+  if (session.maps.size() < 2) return failed({run->failed.front().reason});
 
-  adit::LoopbackBus bus;  // carries bytes between agents of one process; other transports do the same
-  bus.join(first);
-  bus.join(second);
-  if (const auto met = bus.meet(first.id(), second.id()); !met) return failed(met.error());
-
-  const adit::FleetSolution solution = first.solve({});
-  const adit::PairOutcome& pair = solution.pairs.front();
+  const adit::PairOutcome& pair = session.solution.pairs.front();
+  const std::string& first = session.maps[0]->name;
+  const std::string& second = session.maps[1]->name;
   if (!pair.merged) {
     std::printf("two maps, because %s\n", pair.refused_reason.c_str());
     return 0;
   }
-  const adit::Vector3 start = solution.T_world_keyframe.at(second.id()).front().translation();
-  std::printf("%s and %s share one map, because %zu of %zu loops agree with each other\n",
-              (*maps)[0]->name.c_str(), (*maps)[1]->name.c_str(), pair.clique, pair.num_loops);
-  std::printf("%s started at (%.1f, %.1f, %.1f) as %s sees it\n", (*maps)[1]->name.c_str(), start.x(),
-              start.y(), start.z(), (*maps)[0]->name.c_str());
+  const adit::Vector3 start = session.solution.T_world_keyframe.at(pair.b).front().translation();
+  std::printf("%s and %s share one map, by %zu loops whose claims were tested\n", first.c_str(),
+              second.c_str(), pair.clique);
+  std::printf("%s started at (%.1f, %.1f, %.1f) as %s sees it\n", second.c_str(), start.x(), start.y(),
+              start.z(), first.c_str());
 }

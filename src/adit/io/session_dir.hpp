@@ -18,12 +18,25 @@
 
 namespace adit {
 
-/// Where a session came from.
+/// How one robot of a session was mapped: what really ran, after any fallback.
+struct RobotProvenance {
+  std::string name;
+  std::string odometry;  ///< The method; "" of a robot that could not be mapped.
+  std::string lidar;     ///< As the recording names it; "" when unknown.
+  std::size_t scans = 0;
+  std::string failure;  ///< One line that names the robot; "" when it was mapped.
+};
+
+/// Where a session came from: enough to make it again.
 struct Provenance {
-  std::string command;
-  std::vector<std::string> inputs;
-  std::uint64_t seed = 0;
-  std::string configuration;  ///< TOML of every field.
+  std::string command;                ///< The command line, without where the session was written to.
+  std::vector<std::string> inputs;    ///< As given.
+  std::string world;                  ///< The mesh that robots were simulated in; "" for recordings.
+  std::string profile = "default";    ///< What the configuration started from.
+  std::vector<std::string> settings;  ///< Every --set, as given.
+  std::uint64_t seed = 0;             ///< Of the simulation.
+  std::string configuration;          ///< TOML of every field, as used.
+  std::vector<RobotProvenance> robots;
 };
 
 /// What is to be written. Maps and solution are of the same robots.
@@ -32,7 +45,7 @@ struct Session {
   std::vector<std::shared_ptr<const RobotMap>> maps;
   FleetGraph fleet;  ///< With every registered candidate, accepted or not.
   FleetSolution solution;
-  std::vector<LoopClass> loop_classes;  ///< One an entry of solution.loops, or empty without ground truth.
+  std::vector<LoopClass> loop_classes;  ///< One per entry of solution.loops, or empty without ground truth.
 };
 
 enum class MapFiles { write, leave_out };
@@ -56,7 +69,7 @@ struct SavedLoop {
 /// What `adit evaluate` and `adit info` read back.
 struct SavedSession {
   std::string version;
-  std::uint64_t seed = 0;
+  Provenance provenance;
   std::vector<std::string> robots;                   ///< In id order.
   std::vector<std::vector<std::string>> components;  ///< Names that share one frame.
   std::vector<Trajectory> optimized;                 ///< One a robot.

@@ -37,7 +37,7 @@ Figure routes_figure(const StudyResult& study) {
   for (const RobotResult& robot : study.robots) routes.push_back({robot.name, routes.size(), robot.route});
   return {"routes", "", "Routes of the robots over the map",
           "True trajectories over the walls of the world, seen from above; dots mark where the robots start.",
-          plot_routes(study.world_plan, routes)};
+          plot_routes(study.floor_plan, routes)};
 }
 
 Figure odometry_figure(const StudyResult& study) {
@@ -105,7 +105,7 @@ Figure errors_figure(const StudyResult& study, const std::string& name, const st
     if (robot.ate) paths.push_back({robot.name, robot.ate->positions, robot.ate->errors_m});
   }
   return {file_safe(name), "", title, "Estimated trajectories after alignment, coloured by their error.",
-          plot_error_paths(study.world_plan, paths)};
+          plot_error_paths(study.floor_plan, paths)};
 }
 
 bool has_ate(std::span<const MergedRobot> robots) {

@@ -10,7 +10,7 @@
 
 #include "adit/core/check.hpp"
 #include "adit/report/loop_plots.hpp"
-#include "adit/report/made_up_study.hpp"
+#include "support/made_up_study.hpp"
 #include "adit/report/palette.hpp"
 #include "adit/report/plots.hpp"
 #include "adit/report/png.hpp"

@@ -176,6 +176,11 @@ std::string navigation(const std::vector<std::string>& sections, bool has_tables
 std::string configuration(const StudyResult& study) {
   std::string html = "<h2 id=\"configuration\">Configuration</h2>\n";
   if (!study.command.empty()) html += format("<p>Made by:</p>\n<pre>{}</pre>\n", escaped(study.command));
+  if (!study.what_ran.empty()) {
+    html += "<p>What ran:</p>\n<ul>\n";
+    for (const std::string& line : study.what_ran) html += "<li>" + escaped(line) + "</li>\n";
+    html += "</ul>\n";
+  }
   if (!study.configuration.empty()) {
     html += "<details><summary>All settings</summary>\n<pre>" + escaped(study.configuration) +
             "</pre>\n</details>\n";

@@ -15,9 +15,9 @@ constexpr double kMargin = 16.0;
 constexpr double kLargestHeight = 640.0;
 
 /// Cells joined in squares of `factor`, each as dark as its darkest member: thin walls must not fade.
-Plan coarsened(const Plan& plan, int factor) {
+FloorPlan coarsened(const FloorPlan& plan, int factor) {
   if (factor <= 1) return plan;
-  Plan coarse;
+  FloorPlan coarse;
   coarse.origin = plan.origin;
   coarse.cell_m = plan.cell_m * factor;
   coarse.width = (plan.width + factor - 1) / factor;
@@ -35,7 +35,7 @@ Plan coarsened(const Plan& plan, int factor) {
   return coarse;
 }
 
-std::string png_of(const Plan& plan, Rgba color) {
+std::string png_of(const FloorPlan& plan, Rgba color) {
   std::vector<Rgba> pixels;
   pixels.reserve(plan.density.size());
   for (int row = plan.height - 1; row >= 0; --row) {  // a picture starts at its top, in the north
@@ -62,7 +62,7 @@ void MapExtent::extend(std::span<const Eigen::Vector3f> points) {
   }
 }
 
-void MapExtent::extend(const Plan& plan) {
+void MapExtent::extend(const FloorPlan& plan) {
   if (plan.empty()) return;
   box_.extend(plan.origin);
   box_.extend(Point2(plan.origin + plan.cell_m * Point2(plan.width, plan.height)));
@@ -122,10 +122,10 @@ void draw_scale_bar(SvgCanvas& canvas, const MapView& view) {
   canvas.text(right + Point2(9.0, 5.0), tick_text(metres) + " m", {.color = kMutedInk});
 }
 
-void draw_plan(SvgCanvas& canvas, const MapView& view, const Plan& plan, Rgba color) {
+void draw_floor_plan(SvgCanvas& canvas, const MapView& view, const FloorPlan& plan, Rgba color) {
   if (plan.empty()) return;
   const double cells_per_pixel = 1.0 / (plan.cell_m * view.pixels_per_metre());
-  Plan drawn = coarsened(plan, static_cast<int>(cells_per_pixel / 2.0) + 1);
+  FloorPlan drawn = coarsened(plan, static_cast<int>(cells_per_pixel / 2.0) + 1);
   const Point2 south_west = view.at(drawn.origin);
   const Point2 size = drawn.cell_m * view.pixels_per_metre() * Point2(drawn.width, drawn.height);
   canvas.image({south_west.x(), south_west.y() - size.y()}, size, png_of(drawn, color));

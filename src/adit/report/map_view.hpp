@@ -8,7 +8,7 @@
 #include <span>
 
 #include "adit/core/pose.hpp"
-#include "adit/evaluation/plan.hpp"
+#include "adit/evaluation/floor_plan.hpp"
 #include "adit/report/svg.hpp"
 
 namespace adit {
@@ -21,7 +21,7 @@ class MapExtent {
  public:
   void extend(std::span<const Vector3> path);
   void extend(std::span<const Eigen::Vector3f> points);
-  void extend(const Plan& plan);
+  void extend(const FloorPlan& plan);
   /// With a margin of 3 %, and at least 2 m on a side; around the origin when nothing was shown.
   [[nodiscard]] Eigen::AlignedBox2d box() const;
 
@@ -62,6 +62,6 @@ void draw_start(SvgCanvas& canvas, const Point2& at, Rgba color);
 void draw_scale_bar(SvgCanvas& canvas, const MapView& view);
 
 /// The plan as a raster of one colour, its density the opacity; at most two raster cells a pixel.
-void draw_plan(SvgCanvas& canvas, const MapView& view, const Plan& plan, Rgba color);
+void draw_floor_plan(SvgCanvas& canvas, const MapView& view, const FloorPlan& plan, Rgba color);
 
 }  // namespace adit

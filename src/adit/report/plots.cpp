@@ -184,13 +184,13 @@ void draw_box(SvgCanvas& canvas, const ValueAxis& axis, double x, std::span<cons
 
 }  // namespace
 
-std::string plot_routes(const Plan& plan, std::span<const RobotPath> routes) {
+std::string plot_routes(const FloorPlan& plan, std::span<const RobotPath> routes) {
   MapExtent extent;
   extent.extend(plan);
   for (const RobotPath& route : routes) extent.extend(route.path);
   SvgCanvas canvas(kFigureWidth);
   const MapView view = begin_map(canvas, extent.box(), legend_of(routes));
-  draw_plan(canvas, view, plan, kWall);
+  draw_floor_plan(canvas, view, plan, kWall);
   for (std::size_t i = 0; i < routes.size(); ++i) {
     canvas.polyline(view.at(routes[i].path), {robot_color(routes[i].robot), path_width(i, routes.size())});
   }
@@ -251,7 +251,7 @@ std::string plot_graph(const GraphPicture& picture, std::span<const RobotPath> r
   return canvas.document();
 }
 
-std::string plot_error_paths(const Plan& plan, std::span<const ErrorPath> paths) {
+std::string plot_error_paths(const FloorPlan& plan, std::span<const ErrorPath> paths) {
   MapExtent extent;
   extent.extend(plan);
   double largest = 0.0;
@@ -270,7 +270,7 @@ std::string plot_error_paths(const Plan& plan, std::span<const ErrorPath> paths)
   const MapView view(extent.box(), 38.0);
   canvas.set_height(view.bottom() + kMapFooter);
   Rgba walls = kWall;
-  draw_plan(canvas, view, plan, walls);
+  draw_floor_plan(canvas, view, plan, walls);
   for (const ErrorPath& path : paths) {
     const std::vector<Point2> points = view.at(path.path);
     canvas.polyline(points, {kWhite, 7.0, 0.8});
@@ -295,7 +295,7 @@ std::string plot_merged_map(std::span<const RobotCloud> clouds) {
   SvgCanvas canvas(kFigureWidth);
   const MapView view = begin_map(canvas, extent.box(), legend);
   for (const RobotCloud& cloud : clouds) {
-    draw_plan(canvas, view, plan_of(cloud.points, 0.6 / view.pixels_per_metre()), robot_color(cloud.robot));
+    draw_floor_plan(canvas, view, floor_plan_of(cloud.points, 0.6 / view.pixels_per_metre()), robot_color(cloud.robot));
   }
   draw_scale_bar(canvas, view);
   return canvas.document();

@@ -19,7 +19,7 @@ struct RobotPath {
 };
 
 /// Robots' routes over the walls of the world (`plan` may be empty), a dot where each starts.
-[[nodiscard]] std::string plot_routes(const Plan& plan, std::span<const RobotPath> routes);
+[[nodiscard]] std::string plot_routes(const FloorPlan& plan, std::span<const RobotPath> routes);
 
 /// One group of boxes a robot, one box a method. The axis turns logarithmic when the boxes span more than a
 /// factor of 30.
@@ -41,7 +41,7 @@ struct ErrorPath {
   std::vector<Vector3> path;
   std::vector<double> errors_m;
 };
-[[nodiscard]] std::string plot_error_paths(const Plan& plan, std::span<const ErrorPath> paths);
+[[nodiscard]] std::string plot_error_paths(const FloorPlan& plan, std::span<const ErrorPath> paths);
 
 /// Maps of several robots from above, each in its colour, darker where more points lie.
 struct RobotCloud {

@@ -81,12 +81,6 @@ Result<> check_wheels(const Recording& recording, const OdometryConfig& config,
                      to_string(config.method), without_wheels));
 }
 
-Result<std::optional<WheelDelta>> wheel_before(const Recording& recording, std::size_t index) {
-  if (recording.wheel.empty() || index == 0) return std::optional<WheelDelta>{};
-  return wheel_delta(recording.wheel, recording.scan_stamps[index - 1], recording.scan_stamps[index])
-      .map([](const WheelDelta& delta) { return std::optional<WheelDelta>(delta); });
-}
-
 Result<RobotMap> map_recording(const Recording& recording, RobotId id, const RobotSlamConfig& config,
                                const ScanObserver& observer) {
   return map_recording(recording, id, std::vector{config}, observer).map([](std::vector<RobotMap>&& maps) {
@@ -103,14 +97,13 @@ Result<std::vector<RobotMap>> map_recording(const Recording& recording, RobotId 
     if (!wheels) return tl::unexpected(wheels.error());
     robots.emplace_back(id, recording.name, config, recording.T_base_lidar);
   }
-  for (std::size_t i = 0; i < recording.num_scans(); ++i) {
-    const Result<Scan> scan = recording.read_scan(i);
-    if (!scan) return fail(recording.name, scan.error());
-    const Result<std::optional<WheelDelta>> wheel = wheel_before(recording, i);
-    if (!wheel) return fail(recording.name, wheel.error());
-    for (RobotSlam& robot : robots) robot.process(*scan, *wheel);
-    if (observer && !observer(i + 1)) return fail(recording.name + ": interrupted");
-  }
+  std::size_t num_done = 0;
+  const Result<> done =
+      for_each_scan(recording, [&](const Scan& scan, const std::optional<WheelDelta>& wheel) {
+        for (RobotSlam& robot : robots) robot.process(scan, wheel);
+        return !observer || observer(++num_done);
+      });
+  if (!done) return tl::unexpected(done.error());
   std::vector<RobotMap> maps;
   for (const RobotSlam& robot : robots) {
     if (robot.map().keyframes.empty()) {

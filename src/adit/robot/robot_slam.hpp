@@ -9,6 +9,7 @@
 #include "adit/keyframes/keyframe_policy.hpp"
 #include "adit/odometry/odometry.hpp"
 #include "adit/robot/robot_map.hpp"
+#include "adit/robot/scan_loop.hpp"
 
 namespace adit {
 
@@ -48,10 +49,6 @@ class RobotSlam {
   bool is_guessed_ = false;  ///< A step since the last keyframe was.
   RobotMap map_;
 };
-
-/// The wheel motion from scan `index` - 1 to `index`; none for the first scan and for recordings without
-/// wheels.
-[[nodiscard]] Result<std::optional<WheelDelta>> wheel_before(const Recording& recording, std::size_t index);
 
 /// Fails where the odometry needs wheels and the recording has none; `without_wheels` is the option of the
 /// command that chooses one without.

@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/slam/mapping.hpp"
+
+#include <exception>
+
+#include "adit/core/format.hpp"
+#include "adit/core/parallel.hpp"
+#include "adit/core/progress.hpp"
+
+namespace adit {
+namespace {
+
+constexpr std::size_t kMaxRobots = 256;
+
+/// KISS-ICP where there are no wheels to go by.
+RobotSlamConfig config_for(const Recording& recording, RobotSlamConfig config,
+                           std::vector<std::string>& notes) {
+  if (!recording.wheel.empty() || !config.odometry.needs_wheels()) return config;
+  notes.push_back(format("{}: no wheel odometry in this recording, so kiss-icp (LiDAR alone) instead of {}",
+                         recording.name, to_string(config.odometry.method)));
+  config.odometry.method = OdometryMethod::kiss_icp;
+  return config;
+}
+
+/// Whatever goes wrong with one robot is that robot's error.
+Result<RobotMap> map_one(const Recording& recording, RobotId id, const RobotSlamConfig& config,
+                         const Phase& phase) {
+  try {
+    return map_recording(recording, id, config, [&](std::size_t) {
+      phase.advance();
+      return true;
+    });
+  } catch (const std::exception& error) {
+    return fail(recording.name + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+std::size_t num_scans(const std::vector<Recording>& recordings) {
+  std::size_t sum = 0;
+  for (const Recording& recording : recordings) sum += recording.num_scans();
+  return sum;
+}
+
+Result<Mapping> map_robots(const std::vector<Recording>& recordings, const SlamConfig& config) {
+  if (recordings.size() > kMaxRobots)
+    return fail(format("{} recordings, and one fleet has at most {} robots; give fewer at once",
+                       recordings.size(), kMaxRobots));
+  Mapping mapping;
+  std::vector<RobotSlamConfig> configs;
+  for (const Recording& recording : recordings)
+    configs.push_back(config_for(recording, config.robot, mapping.notes));
+  std::vector<Result<RobotMap>> maps(recordings.size(), fail("not run"));
+  {
+    const Phase phase("mapping", num_scans(recordings));
+    parallel_for_each(recordings.size(), [&](std::size_t i) {
+      maps[i] = map_one(recordings[i], {static_cast<std::uint8_t>(i)}, configs[i], phase);
+    });
+  }
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    if (!maps[i]) {
+      mapping.failed.push_back({recordings[i].name, maps[i].error().message});
+      continue;
+    }
+    mapping.robots.push_back({std::make_shared<const RobotMap>(select_keyframes(*maps[i], config.keyframes)),
+                              std::string(to_string(configs[i].odometry.method)), recordings[i].lidar});
+  }
+  if (!mapping.robots.empty()) return mapping;
+  if (mapping.failed.empty()) return fail("no recording was given");
+  return fail(mapping.failed.front().reason);
+}
+
+}  // namespace adit

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// From recordings to one map per robot.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adit/core/records.hpp"
+#include "adit/slam/slam_config.hpp"
+
+namespace adit {
+
+/// The map of one robot, reduced to the keyframes of the policy, and the odometry that made it.
+struct MappedRobot {
+  std::shared_ptr<const RobotMap> map;
+  std::string odometry;  ///< The method that ran.
+  std::string lidar;     ///< As the recording names it; "" when unknown.
+};
+
+/// A recording that could not be mapped.
+struct FailedRobot {
+  std::string name;
+  std::string reason;  ///< One line that names the robot.
+};
+
+struct Mapping {
+  std::vector<MappedRobot> robots;  ///< In the order of the recordings; ids count the recordings.
+  std::vector<FailedRobot> failed;
+  std::vector<std::string> notes;  ///< What the user should know although nothing failed, one line each.
+};
+
+/// Maps all robots, in parallel, as one phase of progress that counts scans; may throw `Cancelled`
+/// (core/progress.hpp). A recording without wheel odometry is mapped by kiss-icp, with a note. A robot whose
+/// recording cannot be mapped stops no other: it is reported in `failed`. Fails on more than 256 recordings
+/// (ids are one byte) and where no robot is left.
+[[nodiscard]] Result<Mapping> map_robots(const std::vector<Recording>& recordings, const SlamConfig& config);
+
+/// Of all recordings together.
+[[nodiscard]] std::size_t num_scans(const std::vector<Recording>& recordings);
+
+}  // namespace adit

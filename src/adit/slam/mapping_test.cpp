@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/slam/mapping.hpp"
+
+#include <gtest/gtest.h>
+
+#include "adit/slam/naming.hpp"
+#include "adit/slam/slam.hpp"
+#include "support/files.hpp"
+#include "support/synthetic_scan.hpp"
+
+namespace adit {
+namespace {
+
+constexpr std::size_t kNumScans = 6;
+
+/// What a LiDAR one metre above `x` on the floor sees of a hall with two pillars.
+Scan seen_from(double x, Stamp stamp) {
+  test::Scene hall;
+  hall.rooms = {{Vector3(-10, -5, 0), Vector3(30, 5, 5)}};
+  hall.boxes = {{Vector3(6, 2, 0), Vector3(7, 3, 5)}, {Vector3(12, -4, 0), Vector3(13, -2, 5)}};
+  return test::sweep(hall, test::Lidar{}, Pose::translation_of(0, 0, 1), stamp,
+                     [x](Duration) { return Pose::translation_of(x, 0, 0); });
+}
+
+/// A robot without wheels that drives along the hall in steps of half a metre.
+Recording drive(const std::string& name) {
+  Recording recording;
+  recording.name = name;
+  recording.T_base_lidar = Pose::translation_of(0, 0, 1);
+  for (std::size_t i = 0; i < kNumScans; ++i)
+    recording.scan_stamps.push_back(Stamp{static_cast<std::int64_t>(i + 1) * 100'000'000});
+  recording.read_scan = [stamps = recording.scan_stamps](std::size_t i) -> Result<Scan> {
+    return seen_from(0.5 * static_cast<double>(i), stamps.at(i));
+  };
+  return recording;
+}
+
+Recording broken(const std::string& name) {
+  Recording recording = drive(name);
+  recording.read_scan = [](std::size_t) -> Result<Scan> { return fail("scan 3 is damaged"); };
+  return recording;
+}
+
+TEST(Mapping, ARobotThatCannotBeMappedStopsNoOther) {
+  const Result<Mapping> mapping = map_robots({drive("ada"), broken("bo"), drive("cy")}, SlamConfig{});
+  ASSERT_TRUE(mapping.has_value()) << mapping.error().message;
+  ASSERT_EQ(mapping->robots.size(), 2U);
+  EXPECT_EQ(mapping->robots[0].map->name, "ada");
+  EXPECT_EQ(mapping->robots[1].map->name, "cy");
+  EXPECT_EQ(mapping->robots[1].map->id, (RobotId{2}));
+  ASSERT_EQ(mapping->failed.size(), 1U);
+  EXPECT_EQ(mapping->failed[0].name, "bo");
+  EXPECT_EQ(mapping->failed[0].reason, "bo: scan 3 is damaged");
+}
+
+TEST(Mapping, WhereNoRobotIsLeftThereIsNoMap) {
+  EXPECT_ERROR(map_robots({broken("bo")}, SlamConfig{}), "bo: scan 3 is damaged");
+  EXPECT_ERROR(map_robots({}, SlamConfig{}), "no recording");
+}
+
+TEST(Mapping, WithoutWheelsKissIcpRunsAndItIsSaid) {
+  const Result<Mapping> mapping = map_robots({drive("ada")}, SlamConfig{});
+  ASSERT_TRUE(mapping.has_value()) << mapping.error().message;
+  EXPECT_EQ(mapping->robots[0].odometry, "kiss-icp");
+  ASSERT_EQ(mapping->notes.size(), 1U);
+  EXPECT_NE(mapping->notes[0].find("ada: no wheel odometry"), std::string::npos) << mapping->notes[0];
+  EXPECT_NE(mapping->notes[0].find("plane-icp"), std::string::npos) << mapping->notes[0];
+
+  SlamConfig asked_for;
+  ASSERT_TRUE(set_field(fields_of(asked_for), "robot.odometry.method", "kiss-icp"));
+  EXPECT_TRUE(map_robots({drive("ada")}, asked_for)->notes.empty());
+}
+
+TEST(Mapping, MoreRobotsThanIdsAreRefused) {
+  const std::vector<Recording> many(257, drive("ada"));
+  EXPECT_ERROR(map_robots(many, SlamConfig{}), "at most 256 robots");
+}
+
+TEST(Naming, NamesBecomeFoldersOfTheirOwn) {
+  std::vector<Recording> recordings = {drive("ada"), drive("ada"), drive("../etc"), drive("bo")};
+  const std::vector<std::string> notes = name_robots(recordings);
+  EXPECT_EQ(recordings[0].name, "ada");
+  EXPECT_EQ(recordings[1].name, "ada_2");
+  EXPECT_EQ(recordings[2].name, "___etc");
+  EXPECT_EQ(recordings[3].name, "bo");
+  ASSERT_EQ(notes.size(), 2U);
+  EXPECT_NE(notes[0].find("'ada'; here it is ada_2"), std::string::npos) << notes[0];
+  EXPECT_NE(notes[0].find("NAME=FILE"), std::string::npos) << notes[0];
+}
+
+TEST(Slam, ASessionStaysInItsFolderWhateverRobotsAreCalled) {
+  const Result<SlamRun> run = slam({drive(".."), broken("a,\"b\"\n"), drive("..")});
+  ASSERT_TRUE(run.has_value()) << run.error().message;
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "out");
+  ASSERT_TRUE(write_slam(folder / "out", *run).has_value());
+  EXPECT_EQ(test::num_entries(folder.path()), 1U);
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/robot/trajectory.tum"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/robot_2/trajectory.tum"));
+
+  const Result<SavedSession> saved = read_session(folder / "out");
+  ASSERT_TRUE(saved.has_value()) << saved.error().message;
+  EXPECT_EQ(saved->robots, (std::vector<std::string>{"robot", "robot_2"}));
+  ASSERT_EQ(saved->provenance.robots.size(), 3U);
+  EXPECT_EQ(saved->provenance.robots[0].odometry, "kiss-icp");
+  EXPECT_EQ(saved->provenance.robots[0].scans, kNumScans);
+  EXPECT_EQ(saved->provenance.robots[2].name, "a__b__");
+  EXPECT_EQ(saved->provenance.robots[2].failure, "a__b__: scan 3 is damaged");
+  const std::string metrics = test::get_file(folder / "out/metrics.json");
+  EXPECT_NE(metrics.find("\"odometry\": \"kiss-icp\""), std::string::npos) << metrics;
+  EXPECT_NE(test::get_file(folder / "out/report.html").find("odometry kiss-icp"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace adit

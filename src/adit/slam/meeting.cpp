@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/slam/meeting.hpp"
+
+#include "adit/core/progress.hpp"
+
+namespace adit {
+namespace {
+
+/// In the first round every pair finds its loops; in the second the news of the first reaches everybody.
+constexpr std::size_t kRounds = 2;
+
+Result<> all_meet(const std::vector<Agent>& agents, LoopbackBus& bus, const Phase& phase) {
+  for (std::size_t a = 0; a < agents.size(); ++a) {
+    for (std::size_t b = a + 1; b < agents.size(); ++b) {
+      if (const Result<> met = bus.meet(agents[a].id(), agents[b].id()); !met) return met;
+      phase.advance();
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps, const SlamConfig& config) {
+  Meeting meeting;
+  meeting.maps = std::move(maps);
+  const std::size_t num_robots = meeting.maps.size();
+  const Phase phase("merging", num_robots + kRounds * num_robots * (num_robots - 1) / 2);
+  LoopbackBus bus(config.bus);
+  const AgentConfig agent_config = config.agent();
+  meeting.agents.reserve(num_robots);  // the bus keeps addresses
+  for (const auto& map : meeting.maps) {
+    meeting.agents.emplace_back(map, agent_config);
+    meeting.agents.back().find_revisits();
+    bus.join(meeting.agents.back());
+    phase.advance();
+  }
+  for (std::size_t round = 0; round < kRounds; ++round) {
+    if (const Result<> met = all_meet(meeting.agents, bus, phase); !met) return tl::unexpected(met.error());
+  }
+  for (const Agent& agent : meeting.agents) meeting.bytes_sent.push_back(bus.bytes_sent(agent.id()));
+  return meeting;
+}
+
+}  // namespace adit

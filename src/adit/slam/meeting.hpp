@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "adit/slam/slam_config.hpp"
+
+namespace adit {
+
+/// The agents of some robots after each has met every other over the loopback bus and has heard what the
+/// others' meetings brought. All of them know the same, so any of them can solve.
+struct Meeting {
+  std::vector<std::shared_ptr<const RobotMap>> maps;
+  std::vector<Agent> agents;              ///< One per map.
+  std::vector<std::uint64_t> bytes_sent;  ///< One per agent.
+};
+
+/// No maps, no agents: an empty meeting. One phase of progress; may throw `Cancelled` (core/progress.hpp).
+[[nodiscard]] Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps,
+                                           const SlamConfig& config);
+
+}  // namespace adit

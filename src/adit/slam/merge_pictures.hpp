@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What the report draws of a joint run, with or without ground truth.
+#pragma once
+
+#include <vector>
+
+#include "adit/evaluation/study_result.hpp"
+#include "adit/fleet/fleet_graph.hpp"
+
+namespace adit {
+
+LoopMap loop_map(const FleetGraph& fleet, const FleetSolution& solution);
+
+/// One picture per pair of robots whose merge was tested.
+std::vector<MergePicture> merge_pictures(const FleetGraph& fleet, const FleetSolution& solution);
+
+}  // namespace adit

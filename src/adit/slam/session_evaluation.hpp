@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// A session against ground truth that arrives after it: trajectory errors of each robot, classes of the
+/// loops.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adit/evaluation/ate.hpp"
+#include "adit/evaluation/rpe.hpp"
+#include "adit/evaluation/tables.hpp"
+#include "adit/io/session_dir.hpp"
+
+namespace adit {
+
+/// A true trajectory as it was given.
+struct GivenTruth {
+  std::string source;  ///< What errors call it: its file.
+  std::string robot;   ///< The robot that it was given for (NAME=FILE); "": its file name tells.
+  Trajectory trajectory;
+};
+
+/// The truth of each robot of the session, in the session's order, whatever the order given; none for robots
+/// without one. A file belongs to the robot that it is called after: robot_0.tum, robot_0_truth.tum,
+/// robot_0_gt.tum, or robot_0/truth.tum. Fails on a truth that names no robot of the session, on two for one
+/// robot, and on a truth that does not overlap its robot's drive in time: it cannot belong to it.
+[[nodiscard]] Result<std::vector<std::optional<Trajectory>>> match_truths(
+    const SavedSession& session, const std::vector<GivenTruth>& given);
+
+struct RobotErrors {
+  std::string name;
+  std::optional<AteResult> joint;  ///< After one alignment of all robots that share its map and have a truth.
+  std::optional<AteResult> odometry;  ///< Of the odometry alone, after its own alignment.
+  std::optional<RpeResult> relative;  ///< None where the path is shorter than a segment of 10 m.
+};
+
+struct SessionEvaluation {
+  std::vector<std::vector<std::string>> components;
+  std::vector<RobotErrors> robots;  ///< In the session's order; without errors where there is no truth.
+  LoopCounts registered;            ///< Loops that registration accepted,
+  LoopCounts consistent;            ///< of these those that PCM or the merge check kept,
+  LoopCounts in_use;                ///< and of these those with a final weight of at least 0.5.
+  int num_unjudged = 0;             ///< Registered loops with an end at which the truth says nothing.
+  std::vector<std::string>
+      loop_classes;  ///< Per row of loops.csv; "" where it is not registered or unjudged.
+};
+/// `truths` as `match_truths` returns them.
+[[nodiscard]] Result<SessionEvaluation> evaluate(const SavedSession& session,
+                                                 const std::vector<std::optional<Trajectory>>& truths);
+
+/// Two tables: trajectory errors, loops.
+[[nodiscard]] std::vector<Table> tables_of(const SessionEvaluation& evaluation);
+/// The same as JSON, with RPE.
+[[nodiscard]] std::string json_of(const SessionEvaluation& evaluation);
+
+/// Puts the classes into loops.csv of the session, and `evaluation` into its metrics.json.
+Result<> save_evaluation(const std::filesystem::path& session, const SessionEvaluation& evaluation);
+
+}  // namespace adit

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+// metrics.json of a session, and what an evaluation adds to it.
+#include <nlohmann/json.hpp>
+
+#include "adit/core/format.hpp"
+#include "adit/core/version.hpp"
+#include "adit/io/atomic_file.hpp"
+#include "adit/io/loops_csv.hpp"
+#include "adit/slam/session_evaluation.hpp"
+#include "adit/slam/session_pages.hpp"
+
+namespace adit {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string name_of(const Session& session, RobotId id) { return session.fleet.robots.at(id).name; }
+
+Json robots_json(const SlamRun& run) {
+  Json robots = Json::array();
+  for (std::size_t i = 0; i < run.session.maps.size(); ++i) {
+    const RobotMap& map = *run.session.maps[i];
+    robots.push_back({{"name", map.name},
+                      {"odometry", run.session.provenance.robots.at(i).odometry},
+                      {"scans", map.odometry.size()},
+                      {"keyframes", map.keyframes.size()},
+                      {"path_length_m", path_length(map.odometry)},
+                      {"bytes_sent", run.bytes_sent.at(i)}});
+  }
+  return robots;
+}
+
+Json pairs_json(const Session& session) {
+  Json pairs = Json::array();
+  for (const PairOutcome& pair : session.solution.pairs)
+    pairs.push_back({{"robots", {name_of(session, pair.a), name_of(session, pair.b)}},
+                     {"loops", pair.num_loops},
+                     {"clique", pair.clique},
+                     {"second_clique", pair.second_clique},
+                     {"merged", pair.merged},
+                     {"refused_reason", pair.refused_reason}});
+  return pairs;
+}
+
+Json components_json(const Session& session) {
+  Json components = Json::array();
+  for (const Component& component : session.solution.components) {
+    Json& names = components.emplace_back(Json::array());
+    for (const RobotId id : component.robots) names.push_back(name_of(session, id));
+  }
+  return components;
+}
+
+template <class Errors>
+Json number(const std::optional<Errors>& errors, double Errors::*field) {
+  return errors ? Json((*errors).*field) : Json(nullptr);
+}
+
+Json counts_json(const LoopCounts& counts) {
+  return {{"total", counts.total},
+          {"correct", counts.correct()},
+          {"wrong_place", counts.wrong_place},
+          {"wrong_registration", counts.wrong_registration}};
+}
+
+Json evaluation_json(const SessionEvaluation& evaluation) {
+  Json robots = Json::array();
+  for (const RobotErrors& robot : evaluation.robots)
+    robots.push_back({{"name", robot.name},
+                      {"ate_max_m", number(robot.joint, &AteResult::max_m)},
+                      {"ate_rmse_m", number(robot.joint, &AteResult::rmse_m)},
+                      {"ate_median_m", number(robot.joint, &AteResult::median_m)},
+                      {"odometry_ate_max_m", number(robot.odometry, &AteResult::max_m)},
+                      {"odometry_ate_rmse_m", number(robot.odometry, &AteResult::rmse_m)},
+                      {"rpe_segment_m", number(robot.relative, &RpeResult::segment_m)},
+                      {"rpe_translation_rmse_m", number(robot.relative, &RpeResult::translation_rmse_m)},
+                      {"rpe_translation_median_m", number(robot.relative, &RpeResult::translation_median_m)},
+                      {"rpe_rotation_rmse_rad", number(robot.relative, &RpeResult::rotation_rmse_rad)},
+                      {"rpe_rotation_median_rad", number(robot.relative, &RpeResult::rotation_median_rad)}});
+  return {{"components", evaluation.components},
+          {"robots", robots},
+          {"loops",
+           {{"registered", counts_json(evaluation.registered)},
+            {"after_pcm", counts_json(evaluation.consistent)},
+            {"in_use", counts_json(evaluation.in_use)},
+            {"unjudged", evaluation.num_unjudged}}}};
+}
+
+}  // namespace
+
+std::string session_metrics(const SlamRun& run) {
+  Json failed = Json::array();
+  for (const FailedRobot& robot : run.failed)
+    failed.push_back({{"name", robot.name}, {"reason", robot.reason}});
+  const Json metrics = {{"version", 1},
+                        {"adit_version", version()},
+                        {"robots", robots_json(run)},
+                        {"pairs", pairs_json(run.session)},
+                        {"components", components_json(run.session)},
+                        {"failed", failed}};
+  return metrics.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string json_of(const SessionEvaluation& evaluation) { return evaluation_json(evaluation).dump(); }
+
+Result<> save_evaluation(const std::filesystem::path& session, const SessionEvaluation& evaluation) {
+  const std::filesystem::path loops = session / "loops.csv";
+  const Result<std::string> old = read_bytes(loops);
+  if (!old) return tl::unexpected(old.error());
+  const Result<std::string> judged = with_classes(*old, evaluation.loop_classes);
+  if (!judged) return fail(loops.string(), judged.error());
+  if (const Result<> written = write_bytes(loops, *judged); !written) return written;
+
+  // Sessions of earlier versions have no metrics.json; what is there stays.
+  const std::filesystem::path file = session / "metrics.json";
+  const Result<std::string> text = read_bytes(file);
+  Json metrics = text ? Json::parse(*text, nullptr, false) : Json{{"version", 1}};
+  if (!metrics.is_object()) return fail(file.string() + ": not JSON; remove the file and evaluate again");
+  metrics["evaluation"] = evaluation_json(evaluation);
+  return write_bytes(file, metrics.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace adit

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What a session says about itself, for programs and for people.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "adit/slam/slam.hpp"
+
+namespace adit {
+
+/// metrics.json of a session: robots, pairs and maps. Of ground truth it knows nothing; `adit evaluate` adds
+/// `evaluation`.
+[[nodiscard]] std::string session_metrics(const SlamRun& run);
+
+/// report.html of a session: what was merged, by which loops, and why or why not.
+[[nodiscard]] std::string session_page(const Session& session);
+
+/// What ran, one line per fact: how each robot was mapped, under which keyframe policy, from what.
+[[nodiscard]] std::vector<std::string> what_ran(const Provenance& provenance);
+
+}  // namespace adit

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What the ground truth says about merged maps. It judges; nothing that decides sees it.
+#pragma once
+
+#include <vector>
+
+#include "adit/evaluation/study_result.hpp"
+#include "adit/slam/meeting.hpp"
+#include "adit/study/robot_run.hpp"
+
+namespace adit {
+
+/// A solution of a meeting and the class of each of its loops.
+struct JudgedSolution {
+  FleetSolution solution;
+  std::vector<LoopClass> loop_classes;  ///< One per entry of solution.loops.
+};
+/// `runs` are the robots of the meeting, in its order. Fails on a loop with a robot that is not among them,
+/// and where the truth does not cover a keyframe.
+[[nodiscard]] Result<JudgedSolution> judge(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
+                                           const FleetSolution& solution);
+
+/// Of a meeting of two robots.
+[[nodiscard]] PairResult pair_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
+                                     const JudgedSolution& judged);
+[[nodiscard]] JointResult joint_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
+                                       const JudgedSolution& judged);
+
+}  // namespace adit

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The list of pose graphs over which the rejection of false loops is measured.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "adit/core/result.hpp"
+#include "adit/io/g2o.hpp"
+
+namespace adit {
+
+/// One entry [[graph]] of the list.
+struct ListedGraph {
+  std::string name;
+  std::string path;  ///< A g2o file, or a folder of them, one a robot.
+  std::string injection =
+      "random";                  ///< "random", "clustered", or "as found": the file has its own false loops.
+  std::uint64_t seed = 1;        ///< Of the injection.
+  std::uint64_t keep_every = 1;  ///< Of n true loops one is kept.
+  double information_scale = 1.0;  ///< On all information matrices: below 1 where they overstate.
+  bool large = false;              ///< Plain GNC and PCM would take too long, and are left out.
+  double max_tilt_deg =
+      0.0;  ///< As found only: loops that tilt by more are false, as the robots drove on a floor.
+};
+
+/// In the order of the file; `path` is put behind `data`, or behind the list's own folder where `data` is
+/// empty. Fails, naming the file and the remedy, on an entry without name or path, on two of the same name
+/// and injection, and where `max_tilt_deg` is missing or out of place.
+Result<std::vector<ListedGraph>> read_graph_list(const std::filesystem::path& list,
+                                                 const std::filesystem::path& data);
+
+/// The graph with its information scaled, but not thinned; of a folder that of all its files merged. Fails on
+/// what `read_g2o` and `merge_g2o` refuse, on a folder without g2o files, and on indefinite information
+/// matrices.
+Result<G2oFile> read_listed(const ListedGraph& graph);
+
+}  // namespace adit

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Merging over a list of worlds: which pairs of robots are merged, refused or merged wrongly under each
+/// keyframe policy.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "adit/study/merge_run.hpp"
+#include "adit/study/merge_worlds.hpp"
+
+namespace adit {
+
+struct WorldChoice {
+  std::vector<std::string> groups;  ///< Worlds of these groups,
+  std::vector<std::string> only;    ///< or if not empty those of these names.
+};
+
+struct ChosenWorlds {
+  std::vector<ListedWorld> worlds;  ///< In the order of the list.
+  std::vector<std::string> notes;   ///< One line per world that is left out because its files are absent.
+};
+/// Fails on a name that the list does not have.
+[[nodiscard]] Result<ChosenWorlds> chosen_worlds(const std::filesystem::path& list,
+                                                 const std::vector<ListedWorld>& worlds,
+                                                 const WorldChoice& choice);
+
+struct MergeStudy {
+  RunConfig config;
+  std::vector<KeyframeSelection> policies;
+  std::string variant;  ///< Added to the policies' names, so that results stand beside the usual ones.
+  std::filesystem::path folder;                 ///< Keeps the robots' maps (maps/) and results.json.
+  std::function<void(const MergeRun&)> on_run;  ///< Called after each policy; may be empty.
+};
+
+/// Runs every policy on one world. Results take their place in `runs` and reach the disk at the end.
+Result<> run_world(const MergeStudy& study, const ListedWorld& world, std::vector<MergeRun>& runs);
+
+/// In the order of the list, policies as they were given when the world was first run; runs of worlds that
+/// the list no longer names are dropped.
+void sort_by_list(std::vector<MergeRun>& runs, const std::vector<ListedWorld>& list);
+
+/// One run in one line of text.
+[[nodiscard]] std::string summary_line(const MergeRun& run);
+
+}  // namespace adit

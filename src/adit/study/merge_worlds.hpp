@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The list of worlds over which merging is measured, and what the robots made of each: their maps are
+/// recorded once and kept, since driving and odometry cost far more than all that follows.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "adit/slam/run_config.hpp"
+#include "adit/study/robot_run.hpp"
+
+namespace adit {
+
+/// One entry [[world]] of the list: a preset of the generator, or routes through a mesh on disk.
+struct ListedWorld {
+  std::string name;
+  std::string group = "tuning";
+  std::uint64_t noise_seed = 1;
+  std::string routes_file;  ///< Relative to the list; "": the world is generated from `generated`.
+  WorldConfig generated;
+};
+
+/// In the order of the file, paths made relative to the working directory. Fails on an entry without a name
+/// and on two of one name.
+Result<std::vector<ListedWorld>> read_world_list(const std::filesystem::path& list);
+
+/// Whether the files that the world needs are there; generated ones need none.
+[[nodiscard]] bool is_available(const ListedWorld& world);
+
+/// The robots' maps, by the odometries that those policies are studied under, and ground truth; from `cache`
+/// where that world was driven before with the same configuration of simulation and robots; else simulated
+/// and put there. What is used is always what the cache holds. The code itself is not part of the key: after
+/// a change of simulation, odometry, keyframes or descriptors the cache has to go.
+Result<std::vector<RobotRun>> driven_robots(const ListedWorld& world, RunConfig config,
+                                            const std::vector<KeyframeSelection>& selections,
+                                            const std::filesystem::path& cache);
+
+}  // namespace adit

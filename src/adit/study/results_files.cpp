@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+// The results of studies on disk.
+#include <nlohmann/json.hpp>
+
+#include "adit/core/format.hpp"
+#include "adit/io/atomic_file.hpp"
+#include "adit/io/csv.hpp"
+#include "adit/study/loop_study.hpp"
+#include "adit/study/merge_run.hpp"
+
+namespace adit {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const MergePair& pair) {
+  return {{"robots", pair.robots},
+          {"shared_m", pair.shared_m},
+          {"distinctive_places", pair.distinctive_places},
+          {"outcome", to_string(pair.outcome)},
+          {"refused_reason", pair.refused_reason},
+          {"registrations", pair.registrations},
+          {"loops_in_use", pair.loops_in_use},
+          {"wrong_loops_in_use", pair.wrong_loops_in_use},
+          {"ate_max_m", pair.ate_max_m},
+          {"ate_max_over_path_pct", pair.ate_max_over_path_pct}};
+}
+
+Json json_of(const MergeJoint& joint) {
+  return {{"maps", joint.maps},           {"possible_maps", joint.possible_maps},
+          {"wrong", joint.wrong},         {"wrong_loops_in_use", joint.wrong_loops_in_use},
+          {"ate_max_m", joint.ate_max_m}, {"ate_max_over_path_pct", joint.ate_max_over_path_pct}};
+}
+
+Json json_of(const MergeRun& run) {
+  Json pairs = Json::array();
+  for (const MergePair& pair : run.pairs) pairs.push_back(json_of(pair));
+  return {{"world", run.world},         {"group", run.group},
+          {"keyframes", run.keyframes}, {"registrations", run.registrations},
+          {"time_s", run.time_s},       {"pairs", pairs},
+          {"joint", json_of(run.joint)}};
+}
+
+Json json_of(const std::optional<LoopDecision>& decision, const std::string& reason) {
+  if (!decision) return {{"reason", reason}};
+  return {{"true_kept", decision->score.true_kept},
+          {"true_lost", decision->score.true_lost},
+          {"false_kept", decision->score.false_kept},
+          {"false_rejected", decision->score.false_rejected},
+          {"parts", decision->parts},
+          {"possible_parts", decision->possible_parts},
+          {"off_m", decision->off_m},
+          {"time_s", decision->time_s},
+          {"optimal", decision->is_optimal}};
+}
+
+Json json_of(const FalseLoopRun& run) {
+  Json json = {{"graph", run.graph},     {"injection", run.injection}, {"share_pct", run.share_pct},
+               {"nodes", run.num_nodes}, {"true_loops", run.num_true}, {"false_loops", run.num_false}};
+  for (std::size_t m = 0; m < kLoopMethods.size(); ++m)
+    json[std::string(to_string(kLoopMethods[m]))] = json_of(run.decisions[m], run.reasons[m]);
+  return json;
+}
+
+template <class T>
+void get(const Json& json, const char* key, T& value) {
+  value = json.at(key).get<T>();
+}
+
+MergePair pair_of(const Json& json) {
+  MergePair pair;
+  get(json, "robots", pair.robots);
+  get(json, "shared_m", pair.shared_m);
+  get(json, "distinctive_places", pair.distinctive_places);
+  pair.outcome = merge_outcome(json.at("outcome").get<std::string>());
+  get(json, "refused_reason", pair.refused_reason);
+  get(json, "registrations", pair.registrations);
+  get(json, "loops_in_use", pair.loops_in_use);
+  get(json, "wrong_loops_in_use", pair.wrong_loops_in_use);
+  get(json, "ate_max_m", pair.ate_max_m);
+  get(json, "ate_max_over_path_pct", pair.ate_max_over_path_pct);
+  return pair;
+}
+
+MergeJoint joint_of(const Json& json) {
+  MergeJoint joint;
+  get(json, "maps", joint.maps);
+  get(json, "possible_maps", joint.possible_maps);
+  get(json, "wrong", joint.wrong);
+  get(json, "wrong_loops_in_use", joint.wrong_loops_in_use);
+  get(json, "ate_max_m", joint.ate_max_m);
+  get(json, "ate_max_over_path_pct", joint.ate_max_over_path_pct);
+  return joint;
+}
+
+MergeRun run_of(const Json& json) {
+  MergeRun run;
+  get(json, "world", run.world);
+  get(json, "group", run.group);
+  get(json, "keyframes", run.keyframes);
+  get(json, "registrations", run.registrations);
+  get(json, "time_s", run.time_s);
+  for (const Json& pair : json.at("pairs")) run.pairs.push_back(pair_of(pair));
+  run.joint = joint_of(json.at("joint"));
+  return run;
+}
+
+}  // namespace
+
+Result<std::vector<MergeRun>> read_merge_runs(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return std::vector<MergeRun>{};
+  const Result<std::string> bytes = read_bytes(file);
+  if (!bytes) return tl::unexpected(bytes.error());
+  try {
+    std::vector<MergeRun> runs;
+    const Json file_content = Json::parse(*bytes);
+    for (const Json& run : file_content.at("runs")) runs.push_back(run_of(run));
+    return runs;
+  } catch (const std::exception&) {
+    return fail(file.string() + ": these are no results of this version; remove the file");
+  }
+}
+
+Result<> write_merge_runs(const std::filesystem::path& file, const std::vector<MergeRun>& runs) {
+  Json all = Json::array();
+  for (const MergeRun& run : runs) all.push_back(json_of(run));
+  return write_bytes(file, Json{{"version", 2}, {"runs", all}}.dump(1) + "\n");
+}
+
+Result<> write_merge_csv(const std::filesystem::path& file, const std::vector<MergeRun>& runs) {
+  std::string text =
+      csv_row({"world", "group", "keyframes", "robot_a", "robot_b", "shared_m", "distinctive_places",
+               "outcome", "registrations", "loops_in_use", "wrong_loops_in_use", "ate_max_a_m", "ate_max_b_m",
+               "ate_max_a_pct", "ate_max_b_pct", "refused_reason"});
+  const auto number = [](auto value) { return format("{}", value); };
+  const auto thousandths = [](double value) { return format("{:.3f}", value); };
+  for (const MergeRun& run : runs)
+    for (const MergePair& pair : run.pairs)
+      text +=
+          csv_row({run.world, run.group, run.keyframes, pair.robots[0], pair.robots[1],
+                   format("{:.1f}", pair.shared_m), number(pair.distinctive_places),
+                   std::string(to_string(pair.outcome)), number(pair.registrations),
+                   number(pair.loops_in_use), number(pair.wrong_loops_in_use), thousandths(pair.ate_max_m[0]),
+                   thousandths(pair.ate_max_m[1]), thousandths(pair.ate_max_over_path_pct[0]),
+                   thousandths(pair.ate_max_over_path_pct[1]), pair.refused_reason});
+  return write_bytes(file, text);
+}
+
+std::string json_of(const std::vector<FalseLoopRun>& runs) {
+  Json all = Json::array();
+  for (const FalseLoopRun& run : runs) all.push_back(json_of(run));
+  return Json{{"version", 1}, {"runs", all}}.dump(1) + "\n";
+}
+
+}  // namespace adit
