@@ -145,7 +145,7 @@ TEST_F(BadInput, ConfigurationAndUsage) {
   put_file(path("run.toml"), "[simulation]\nsede = 3\n");
   expect_refused("simulate --routes " + routes + " --out " + out() + " --config " + path("run.toml"), 1,
                  "did you mean 'simulation.seed'?");
-  expect_refused("simulate --routes " + routes + " --out " + out() + " --set simulation.sede=3", 1,
+  expect_refused("simulate --routes " + routes + " --out " + out() + " --set simulation.sede=3", 2,
                  "did you mean 'simulation.seed'?");
   expect_refused("simulate --routes " + routes + " --out " + out() + " --set simulation.seed", 2,
                  "key=value");
