@@ -69,7 +69,7 @@ std::string hall_recording(const test::TemporaryFolder& folder) {
 TEST(Convert, ARecordingComesBackFromAFolderByteForByte) {
   const test::TemporaryFolder folder;
   const std::string recording = hall_recording(folder);
-  for (const std::string format : {"pcd", "ply"}) {
+  for (const std::string format : {"pcd", "ply", "bin"}) {
     const std::string scans = (folder / format).string();
     expect_done("convert " + recording + " " + scans + " --clouds " + format);
     expect_done("convert " + scans + " " + scans + ".mcap");

@@ -76,26 +76,26 @@ bool are_centred(const std::vector<CloudFile>& samples) {
       samples, [](const CloudFile& sample) { return distance_of_mean(sample.cloud) < kCentred; });
 }
 
-FolderMount assumed(const std::string& why) {
+FolderMount assumed(const std::string& why, const std::string& remedy) {
   return {
       {},
       {},
       "assumed: the origin of the clouds",
-      format(
-          "{}{}; their origin is taken for it. If it stood elsewhere, ranges are wrong and true merges may "
-          "be refused, as the space that a scan saw to be free is judged from the wrong place: {}, or write "
-          "'mount' into recording.toml",
-          kMountAssumption, why, kMountRemedy)};
+      format("{}{}; their origin is taken for it. If it stood elsewhere, ranges are wrong and true merges "
+             "may be refused, as the space that a scan saw to be free is judged from the wrong place: {}",
+             kMountAssumption, why, remedy)};
 }
 
 FolderMount found_or_assumed(const std::vector<CloudFile>& samples) {
   if (are_centred(samples))
-    return assumed("each cloud was shifted to its own mean, so the LiDAR's place differs from scan to scan");
+    return assumed("each cloud was shifted to its own mean, so the LiDAR's place differs from scan to scan",
+                   "use the clouds as the LiDAR measured them");
   std::vector<PointCloud> clouds;
   for (const CloudFile& sample : samples) clouds.push_back(sample.cloud);
   const std::optional<SensorOrigin> origin = find_sensor_origin(clouds);
   if (origin) return found(*origin);
-  return assumed("nothing says where the LiDAR stood in the clouds, and they do not show it");
+  return assumed("nothing says where the LiDAR stood in the clouds, and they do not show it",
+                 format("{}, or write 'mount' into recording.toml", kMountRemedy));
 }
 
 }  // namespace

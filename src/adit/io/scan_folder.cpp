@@ -206,6 +206,9 @@ Result<PointCloud> read_points(const fs::path& path) {
   Result<CloudFile> file = read_cloud_file(path);
   if (!file) return tl::unexpected(file.error());
   PointCloud cloud = std::move(file->cloud);
+  // A column of zeros is what KITTI's format makes of clouds without intensities.
+  if (std::ranges::all_of(cloud.intensities, [](float intensity) { return intensity == 0.0F; }))
+    cloud.intensities.clear();
   std::error_code ignored;
   const fs::path offsets = offsets_beside(path);
   if (cloud.has_times() || !fs::exists(offsets, ignored)) return cloud;
