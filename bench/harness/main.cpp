@@ -88,16 +88,18 @@ void plot(const Files& files, const fs::path& folder) {
     write(folder / figure_name(growth), plot_growth(growth));
 }
 
+void list_cases() {
+  for (const auto& [key, prepare] : registry().sides) {
+    if (key.second == "adit") std::cout << key.first << "\n";
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   CLI::App app("Times adit beside its peers: each side in its own process, in turns, on the same input.");
   app.require_subcommand(1);
-  app.add_subcommand("list", "name the cases that adit does")->callback([] {
-    for (const auto& [key, prepare] : registry().sides) {
-      if (key.second == "adit") std::cout << key.first << "\n";
-    }
-  });
+  app.add_subcommand("list", "name the cases that adit does")->callback(list_cases);
 
   std::string name;
   std::string side;

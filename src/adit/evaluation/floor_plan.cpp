@@ -71,7 +71,8 @@ float crowded(std::vector<float> counts) {
 FloorPlan floor_plan_of(const TriangleMesh& mesh, double cell_m) {
   const Eigen::AlignedBox3f box = bounding_box(mesh);
   if (box.isEmpty()) return {};
-  FloorPlan plan = empty_plan({box.min().head<2>().cast<double>(), box.max().head<2>().cast<double>()}, cell_m);
+  FloorPlan plan =
+      empty_plan({box.min().head<2>().cast<double>(), box.max().head<2>().cast<double>()}, cell_m);
   for (const Eigen::Vector3i& corners : mesh.triangles) {
     Triangle t;
     for (int i = 0; i < 3; ++i) {

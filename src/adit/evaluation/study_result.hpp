@@ -12,8 +12,8 @@
 
 #include "adit/core/point_cloud.hpp"
 #include "adit/evaluation/ate.hpp"
-#include "adit/evaluation/loop_stats.hpp"
 #include "adit/evaluation/floor_plan.hpp"
+#include "adit/evaluation/loop_stats.hpp"
 
 namespace adit {
 
@@ -156,9 +156,9 @@ struct StudyResult {
   std::vector<RobotResult> robots;
   std::vector<PairResult> pairs;
   std::optional<JointResult> joint;
-  FloorPlan floor_plan;       ///< The world's walls from above; may be empty.
-  std::string configuration;  ///< TOML, as it was used.
-  std::string command;        ///< The command line that makes this study again; may be empty.
+  FloorPlan floor_plan;               ///< The world's walls from above; may be empty.
+  std::string configuration;          ///< TOML, as it was used.
+  std::string command;                ///< The command line that makes this study again; may be empty.
   std::vector<std::string> what_ran;  ///< One line per fact: odometry of each robot, policies, inputs.
 };
 

@@ -10,10 +10,10 @@ namespace adit {
 Result<CloudFile> read_kitti(std::string_view bytes) {
   constexpr std::size_t kRow = 16;
   if (bytes.size() % kRow != 0) {
-    return fail(
-        format("{} bytes are not a whole number of points (x y z intensity, 16 bytes each); the last whole one "
-               "ends at byte {}: the file is truncated or not a KITTI file",
-               bytes.size(), bytes.size() / kRow * kRow));
+    return fail(format(
+        "{} bytes are not a whole number of points (x y z intensity, 16 bytes each); the last whole one "
+        "ends at byte {}: the file is truncated or not a KITTI file",
+        bytes.size(), bytes.size() / kRow * kRow));
   }
   PackedCloud packed;
   packed.bytes = bytes;

@@ -22,8 +22,8 @@ enum class ScalarType { int8, uint8, int16, uint16, int32, uint32, int64, uint64
 
 /// The number at `bytes`, which must hold size_of(type) bytes.
 [[nodiscard]] double load_scalar(ScalarType type, const char* bytes, std::endian order);
-/// Appends the number that `word` spells as little-endian bytes of that type; false when it is not a number or out of
-/// range.
+/// Appends the number that `word` spells as little-endian bytes of that type; false when it is not a number
+/// or out of range.
 bool append_scalar(std::string& bytes, ScalarType type, std::string_view word);
 /// Appends the bytes of a number, least significant first.
 template <class T>

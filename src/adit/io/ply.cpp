@@ -96,8 +96,7 @@ Result<> set_entry(PlyHeader& header, const Words& words) {
 
 Result<PlyHeader> read_header(LineReader& lines) {
   PlyHeader header;
-  if (!lines.next() || lines.line() != "ply")
-    return fail("the first line is not 'ply': not a PLY file");
+  if (!lines.next() || lines.line() != "ply") return fail("the first line is not 'ply': not a PLY file");
   bool has_end = false;
   while (!has_end && lines.next()) {
     const Words words = split_words(lines.line());

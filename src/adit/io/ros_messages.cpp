@@ -73,8 +73,8 @@ Result<Pose> read_pose(CdrReader& reader) {
   for (double& value : q.coeffs()) value = reader.number<double>();  // stored as x y z w, in the file too
   if (!reader.ok()) return fail(format("byte {}: the message ends inside a pose", reader.offset()));
   if (!t.allFinite() || !(std::abs(q.norm() - 1.0) < 0.01)) {
-    return fail(
-        format("byte {}: the position is not finite or the quaternion does not have length 1", reader.offset()));
+    return fail(format("byte {}: the position is not finite or the quaternion does not have length 1",
+                       reader.offset()));
   }
   if (std::abs(q.norm() - 1.0) > 1e-12) q.normalize();
   return Pose(q, t);

@@ -64,8 +64,7 @@ Result<std::string> read_name(const YAML::Node& robot) {
   const std::string& text = name.Scalar();
   // Names become folders of a session.
   const bool is_plain = text != "." && text != ".." && text.find_first_of("/\\ \t\n") == std::string::npos;
-  if (!is_plain)
-    return fail_at(name, format("'{}' cannot name a file; leave out blanks and slashes", text));
+  if (!is_plain) return fail_at(name, format("'{}' cannot name a file; leave out blanks and slashes", text));
   return text;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// TUM trajectories: one line per pose, `stamp_s x y z qx qy qz qw`, metres. Stamps are kept to the nanosecond:
-/// they are integers in memory and decimal text in the file, never a double.
+/// TUM trajectories: one line per pose, `stamp_s x y z qx qy qz qw`, metres. Stamps are kept to the
+/// nanosecond: they are integers in memory and decimal text in the file, never a double.
 #pragma once
 
 #include <filesystem>

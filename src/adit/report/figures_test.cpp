@@ -10,10 +10,10 @@
 
 #include "adit/core/check.hpp"
 #include "adit/report/loop_plots.hpp"
-#include "support/made_up_study.hpp"
 #include "adit/report/palette.hpp"
 #include "adit/report/plots.hpp"
 #include "adit/report/png.hpp"
+#include "support/made_up_study.hpp"
 
 namespace adit {
 namespace {

@@ -295,7 +295,8 @@ std::string plot_merged_map(std::span<const RobotCloud> clouds) {
   SvgCanvas canvas(kFigureWidth);
   const MapView view = begin_map(canvas, extent.box(), legend);
   for (const RobotCloud& cloud : clouds) {
-    draw_floor_plan(canvas, view, floor_plan_of(cloud.points, 0.6 / view.pixels_per_metre()), robot_color(cloud.robot));
+    draw_floor_plan(canvas, view, floor_plan_of(cloud.points, 0.6 / view.pixels_per_metre()),
+                    robot_color(cloud.robot));
   }
   draw_scale_bar(canvas, view);
   return canvas.document();

@@ -8,10 +8,10 @@
 
 #include "adit/core/check.hpp"
 #include "adit/report/html_report.hpp"
-#include "support/made_up_study.hpp"
 #include "adit/report/markup.hpp"
 #include "adit/report/metrics_json.hpp"
 #include "adit/report/text_tables.hpp"
+#include "support/made_up_study.hpp"
 
 namespace adit {
 namespace {

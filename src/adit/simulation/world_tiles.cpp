@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 /// A grid of tunnels made of one tile, as circuits for competitions are: wall, cabinet and junction look the
-/// same everywhere. Only the directions in which junctions open and the number of tiles between them distinguish places,
-/// and no two blocks of a row or of a column have the same number of tiles.
+/// same everywhere. Only the directions in which junctions open and the number of tiles between them
+/// distinguish places, and no two blocks of a row or of a column have the same number of tiles.
 #include <algorithm>
 #include <array>
 #include <cmath>
