@@ -67,12 +67,12 @@ function(adit_test_program NAME)
   gtest_discover_tests(${NAME} TEST_PREFIX ${ARG_PREFIX} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60 ${properties})
 endfunction()
 
-# adit_module(NAME [NO_ERRNO_OR_TRAPS] DEPENDS modules... PRIVATE third parties...): one folder, one library
-# `adit::NAME`; files that end in _test.cpp go into the program `adit_NAME_test`.
+# adit_module(NAME [NO_ERRNO_OR_TRAPS] DEPENDS modules... PRIVATE third parties...): one folder with its rooms
+# (subfolders), one library `adit::NAME`; files that end in _test.cpp go into the program `adit_NAME_test`.
 function(adit_module NAME)
   cmake_parse_arguments(ARG "NO_ERRNO_OR_TRAPS" "" "DEPENDS;PUBLIC;PRIVATE;TEST_LIBRARIES" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
-  file(GLOB tests CONFIGURE_DEPENDS *_test.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp)
+  file(GLOB_RECURSE tests CONFIGURE_DEPENDS *_test.cpp)
   if(tests)
     list(REMOVE_ITEM sources ${tests})
   endif()

@@ -7,11 +7,11 @@
 #include <optional>
 #include <set>
 
-#include "adit/fleet/fleet_graph.hpp"
-#include "adit/fleet/keyframe_store.hpp"
-#include "adit/fleet/lanes.hpp"
-#include "adit/fleet/merge_check.hpp"
-#include "adit/fleet/protocol.hpp"
+#include "adit/fleet/joint/fleet_graph.hpp"
+#include "adit/fleet/merge/keyframe_store.hpp"
+#include "adit/fleet/merge/merge_check.hpp"
+#include "adit/fleet/search/lanes.hpp"
+#include "adit/fleet/sync/protocol.hpp"
 #include "adit/place/place_index.hpp"
 #include "adit/registration/registration.hpp"
 #include "adit/robot/robot_map.hpp"

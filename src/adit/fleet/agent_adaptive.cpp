@@ -11,8 +11,8 @@
 
 #include "adit/core/parallel.hpp"
 #include "adit/fleet/agent.hpp"
-#include "adit/fleet/revisits.hpp"
-#include "adit/fleet/segments.hpp"
+#include "adit/fleet/search/revisits.hpp"
+#include "adit/fleet/search/segments.hpp"
 
 namespace adit {
 

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "adit/core/format.hpp"
-#include "adit/fleet/loop_account.hpp"
+#include "adit/fleet/joint/loop_account.hpp"
 #include "adit/io/csv.hpp"
 #include "adit/io/tum.hpp"
 

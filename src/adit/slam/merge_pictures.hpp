@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adit/evaluation/study_result.hpp"
-#include "adit/fleet/fleet_graph.hpp"
+#include "adit/fleet/joint/fleet_graph.hpp"
 
 namespace adit {
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "adit/core/parallel.hpp"
-#include "adit/fleet/discernment.hpp"
-#include "adit/fleet/fleet_graph.hpp"
+#include "adit/fleet/joint/fleet_graph.hpp"
+#include "adit/fleet/merge/discernment.hpp"
 #include "adit/registration/registration.hpp"
 
 namespace adit {

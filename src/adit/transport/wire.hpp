@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "adit/core/result.hpp"
-#include "adit/fleet/protocol.hpp"
+#include "adit/fleet/sync/protocol.hpp"
 
 namespace adit {
 

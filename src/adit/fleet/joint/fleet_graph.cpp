@@ -1,0 +1,334 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/joint/fleet_graph.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <numbers>
+
+#include "adit/core/format.hpp"
+#include "adit/fleet/joint/condensed_graph.hpp"
+#include "adit/fleet/joint/loop_selection.hpp"
+
+namespace adit {
+
+Pose mean_frame(const FleetGraph& fleet, const std::vector<const LoopClosure*>& loops) {
+  Matrix3 sum = Matrix3::Zero();
+  Vector3 seen_in_a = Vector3::Zero();
+  Vector3 seen_in_b = Vector3::Zero();
+  for (const LoopClosure* loop : loops) {
+    const Pose& T_oa_from = fleet.robots.at(loop->from.robot).nodes.at(loop->from.index).T_odom_base;
+    const Pose& T_ob_to = fleet.robots.at(loop->to.robot).nodes.at(loop->to.index).T_odom_base;
+    const Pose T_oa_to = T_oa_from * loop->T_from_to;
+    sum += (T_oa_to * T_ob_to.inverse()).rotation_matrix();
+    seen_in_a += T_oa_to.translation();
+    seen_in_b += T_ob_to.translation();
+  }
+  const Eigen::JacobiSVD<Matrix3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Matrix3 flip = Matrix3::Identity();
+  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+  const Matrix3 R = svd.matrixU() * flip * svd.matrixV().transpose();
+  return {R, (seen_in_a - R * seen_in_b) / static_cast<double>(loops.size())};
+}
+
+namespace {
+
+using RobotPair = std::pair<RobotId, RobotId>;
+using Frames = std::map<RobotId, Pose>;  // T_anchor_odom of each robot
+
+std::map<RobotPair, std::vector<const LoopClosure*>> loops_by_pair(
+    const std::vector<const LoopOutcome*>& outcomes) {
+  std::map<RobotPair, std::vector<const LoopClosure*>> by_pair;
+  for (const LoopOutcome* outcome : outcomes) {
+    by_pair[{outcome->loop.from.robot, outcome->loop.to.robot}].push_back(&outcome->loop);
+  }
+  return by_pair;
+}
+
+/// Puts every robot into the frame of the smallest id that its loops lead to, pairs with most loops first.
+Frames common_frames(const FleetGraph& fleet, const std::vector<const LoopOutcome*>& outcomes) {
+  const auto by_pair = loops_by_pair(outcomes);
+  Frames frames;
+  for (const auto& [root, graph] : fleet.robots) {
+    if (frames.contains(root)) continue;
+    frames[root] = Pose();
+    while (true) {
+      const std::vector<const LoopClosure*>* widest = nullptr;
+      RobotPair bridge;
+      for (const auto& [pair, loops] : by_pair) {
+        if (frames.contains(pair.first) == frames.contains(pair.second)) continue;
+        if (widest != nullptr && loops.size() <= widest->size()) continue;
+        widest = &loops;
+        bridge = pair;
+      }
+      if (widest == nullptr) break;
+      const Pose T_a_b = mean_frame(fleet, *widest);
+      if (frames.contains(bridge.first)) {
+        frames[bridge.second] = frames[bridge.first] * T_a_b;
+      } else {
+        frames[bridge.first] = frames[bridge.second] * T_a_b.inverse();
+      }
+    }
+  }
+  return frames;
+}
+
+PoseGraph build_graph(const FleetGraph& fleet, const std::vector<const LoopOutcome*>& outcomes,
+                      const BackEndConfig& config) {
+  const Frames frames = common_frames(fleet, outcomes);
+  PoseGraph graph;
+  std::map<RobotId, std::size_t> offset;
+  for (const auto& [robot, own] : fleet.robots) {
+    offset[robot] = graph.nodes.size();
+    for (std::uint32_t k = 0; k < own.nodes.size(); ++k) {
+      graph.nodes.push_back({graph_key({robot, k}), frames.at(robot) * own.nodes[k].T_odom_base});
+      if (k == 0) continue;
+      const std::size_t node = graph.nodes.size() - 1;
+      graph.edges.push_back({node - 1, node,
+                             own.nodes[k - 1].T_odom_base.inverse() * own.nodes[k].T_odom_base,
+                             own.nodes[k].step_covariance.inverse(), EdgeKind::odometry});
+    }
+  }
+  for (const LoopOutcome* outcome : outcomes) {
+    const LoopClosure& loop = outcome->loop;
+    graph.edges.push_back({offset.at(loop.from.robot) + loop.from.index,
+                           offset.at(loop.to.robot) + loop.to.index, loop.T_from_to, loop_information(config),
+                           EdgeKind::loop});
+  }
+  return graph;
+}
+
+/// Robots that loops in use link, each group in ascending order, groups by their smallest id.
+std::vector<std::vector<RobotId>> linked_robots(const FleetGraph& fleet,
+                                                const std::vector<LoopOutcome>& loops) {
+  std::map<RobotId, RobotId> root;
+  for (const auto& [robot, graph] : fleet.robots) root[robot] = robot;
+  const auto find = [&](RobotId robot) {
+    while (root[robot] != robot) robot = root[robot];
+    return robot;
+  };
+  for (const LoopOutcome& outcome : loops) {
+    if (!outcome.in_use()) continue;
+    const RobotId a = find(outcome.loop.from.robot);
+    const RobotId b = find(outcome.loop.to.robot);
+    root[std::max(a, b)] = std::min(a, b);
+  }
+  std::map<RobotId, std::vector<RobotId>> groups;
+  for (const auto& [robot, graph] : fleet.robots) groups[find(robot)].push_back(robot);
+  std::vector<std::vector<RobotId>> out;
+  for (auto& [anchor, group] : groups) out.push_back(std::move(group));
+  return out;
+}
+
+/// The part of the fleet that these robots are.
+FleetGraph part_of(const FleetGraph& fleet, const std::vector<RobotId>& robots) {
+  FleetGraph part;
+  for (const RobotId robot : robots) part.robots[robot] = fleet.robots.at(robot);
+  return part;
+}
+
+/// What was tried between two robots, registered or not.
+struct Tried {
+  std::size_t num = 0;
+  std::map<std::string, int> reasons;
+};
+
+std::map<RobotPair, Tried> tried_by_pair(const FleetGraph& fleet) {
+  std::map<RobotPair, Tried> by_pair;
+  for (const auto& [ends, loop] : fleet.loops) {
+    Tried& tried = by_pair[{ends.first.robot, ends.second.robot}];
+    ++tried.num;
+    ++tried.reasons[loop.reason];
+  }
+  return by_pair;
+}
+
+std::string refusal(const FleetGraph& fleet, const BackEndConfig& config, const PairOutcome& pair,
+                    const Tried& tried, std::size_t num_used) {
+  for (const RobotId robot : {pair.a, pair.b}) {
+    if (fleet.robots.at(robot).nodes.empty()) {
+      return format("the keyframe policy left no keyframe of {}; keep more of them, or drive on",
+                    fleet.robots.at(robot).name);
+    }
+  }
+  if (tried.num == 0) {
+    return format("no keyframe of {} resembled one of {}; drive on until both have passed the same place",
+                  fleet.robots.at(pair.a).name, fleet.robots.at(pair.b).name);
+  }
+  if (pair.num_loops == 0) {
+    const auto most =
+        std::ranges::max_element(tried.reasons, {}, &decltype(tried.reasons)::value_type::second);
+    return format(
+        "none of {} candidates could be registered (mostly: {}); drive on until both have passed the same "
+        "place, nearer to one another",
+        tried.num, most->first);
+  }
+  const auto check = fleet.checks.find({pair.a, pair.b});
+  if (check != fleet.checks.end() && !check->second.accepted) return check->second.reason;
+  if (check == fleet.checks.end() && fleet.policy == MergePolicy::adaptive)
+    return format("{} loops, but scans along them were never compared; the robots have to meet again",
+                  pair.num_loops);
+  return format(
+      "only {} of {} loops agree with the odometries of both robots, {} needed; drive a longer stretch that "
+      "both know",
+      num_used, pair.num_loops, config.min_loops);
+}
+
+void decide_merges(const FleetGraph& fleet, const BackEndConfig& config, const LoopsOfPairs& of_pairs,
+                   FleetSolution& solution) {
+  std::map<RobotPair, Tried> tried = tried_by_pair(fleet);
+  for (PairOutcome& pair : solution.pairs) {
+    const std::vector<std::size_t>& of_pair = of_pairs.at({pair.a, pair.b});
+    const auto num_used = static_cast<std::size_t>(
+        std::ranges::count_if(of_pair, [&](std::size_t l) { return solution.loops[l].in_use(); }));
+    pair.merged = num_used >= static_cast<std::size_t>(config.min_loops);
+    if (pair.merged) continue;
+    pair.joined_reason.clear();
+    if (pair.refused_reason.empty())
+      pair.refused_reason = refusal(fleet, config, pair, tried[{pair.a, pair.b}], num_used);
+    // Too few loops are no bridge: they must not join the maps through the back door either.
+    for (const std::size_t l : of_pair) solution.loops[l].weight = 0.0;
+  }
+}
+
+/// Poses of one group of robots that share a frame, with the loops between them that are in use.
+void solve_group(const FleetGraph& fleet, const std::vector<RobotId>& robots, const BackEndConfig& config,
+                 FleetSolution& solution) {
+  std::vector<LoopOutcome*> loops;
+  for (LoopOutcome& outcome : solution.loops) {
+    if (outcome.in_clique && std::ranges::find(robots, outcome.loop.from.robot) != robots.end() &&
+        std::ranges::find(robots, outcome.loop.to.robot) != robots.end()) {
+      loops.push_back(&outcome);
+    }
+  }
+  const PoseGraph graph = build_graph(part_of(fleet, robots),
+                                      std::vector<const LoopOutcome*>(loops.begin(), loops.end()), config);
+  const Solution<Pose> solved =
+      config.gnc_on ? solve_robustly(graph, config.gnc) : optimize(graph, config.gnc.optimizer);
+  const std::size_t first_loop = graph.edges.size() - loops.size();
+  for (std::size_t l = 0; l < loops.size(); ++l) {
+    loops[l]->weight = solved.ok() ? solved.edge_weights[first_loop + l] : 0.0;
+  }
+  std::size_t node = 0;
+  for (const RobotId robot : robots) {
+    std::vector<Pose>& poses = solution.T_world_keyframe[robot];
+    poses.clear();
+    for (std::size_t k = 0; k < fleet.robots.at(robot).nodes.size(); ++k)
+      poses.push_back(solved.poses[node++]);
+  }
+  solution.components.push_back({robots.front(), robots, solved.status, solved.ok() ? "" : solved.reason,
+                                 solved.iterations, solved.cost_final});
+}
+
+/// Brings the robots of a component into the frame of its anchor's odometry.
+void anchor_component(const FleetGraph& fleet, const Component& component, FleetSolution& solution) {
+  const auto& nodes = fleet.robots.at(component.anchor).nodes;
+  const std::vector<Pose>& anchor_poses = solution.T_world_keyframe.at(component.anchor);
+  if (nodes.empty()) return;
+  const Pose T_new_old = nodes.front().T_odom_base * anchor_poses.front().inverse();
+  for (const RobotId robot : component.robots) {
+    for (Pose& pose : solution.T_world_keyframe.at(robot)) pose = T_new_old * pose;
+  }
+}
+
+PoseGraph optimized_graph(const FleetGraph& fleet, const FleetSolution& solution,
+                          const BackEndConfig& config) {
+  std::vector<const LoopOutcome*> used;
+  for (const LoopOutcome& outcome : solution.loops) {
+    if (outcome.in_use()) used.push_back(&outcome);
+  }
+  PoseGraph graph = build_graph(fleet, used, config);
+  std::size_t node = 0;
+  for (const auto& [robot, poses] : solution.T_world_keyframe) {
+    for (const Pose& pose : poses) graph.nodes[node++].pose = pose;
+  }
+  return graph;
+}
+
+}  // namespace
+
+Matrix6 loop_information(const BackEndConfig& config) {
+  const double rotation = config.loop_rotation_deg * std::numbers::pi / 180.0;
+  Vector6 information;
+  information << Vector3::Constant(1.0 / (config.loop_translation * config.loop_translation)),
+      Vector3::Constant(1.0 / (rotation * rotation));
+  return information.asDiagonal();
+}
+
+PcmLoop pcm_loop_of(const LoopClosure& loop, const BackEndConfig& config) {
+  return {loop.from.index, loop.to.index, loop.T_from_to, loop_information(config)};
+}
+
+RobotGraph graph_of(const RobotMap& map) {
+  RobotGraph graph{map.name, {}};
+  graph.nodes.reserve(map.keyframes.size());
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+    graph.nodes.push_back({map.keyframes[k].stamp, map.keyframes[k].T_odom_base, map.step_covariances[k]});
+  }
+  return graph;
+}
+
+OdometryChain chain_of(const RobotGraph& graph, double slack) {
+  std::vector<Pose> poses;
+  std::vector<Matrix6> steps;
+  for (std::size_t k = 0; k < graph.nodes.size(); ++k) {
+    poses.push_back(graph.nodes[k].T_odom_base);
+    if (k > 0) steps.push_back(slack * slack * graph.nodes[k].step_covariance);
+  }
+  return {std::move(poses), steps};
+}
+
+Fields fields_of(BackEndConfig& c) {
+  Fields fields = {
+      {"pcm_on", &c.pcm_on, "", 0, 0, "drop loops that disagree pairwise before the graph is solved"},
+      {"gnc_on", &c.gnc_on, "", 0, 0, "let graduated non-convexity reject loops while the graph is solved"},
+      {"cycles_needed", &c.cycles_needed, "", 0, 0,
+       "take back merges that passed it and that merges with third robots contradict"},
+      {"joint_evidence", &c.joint_evidence, "", 0, 0,
+       "join maps, too, for which several pairs of robots have enough evidence only together"},
+      {"min_loops", &c.min_loops, "", 1, 10000, "loops in use that two robots need to share a map"},
+      {"loop_translation", &c.loop_translation, "m", 1e-4, 10.0, "sigma of a loop's translation"},
+      {"loop_rotation_deg", &c.loop_rotation_deg, "deg", 1e-3, 90.0, "sigma of a loop's rotation"}};
+  append(fields, "pcm", fields_of(c.pcm));
+  append(fields, "gnc", fields_of(c.gnc));
+  return fields;
+}
+
+FleetSolution solve(const FleetGraph& fleet, const BackEndConfig& config) {
+  LoopSelection selection = select_loops(fleet, config);
+  FleetSolution solution;
+  solution.loops = std::move(selection.loops);
+  solution.pairs = std::move(selection.pairs);
+
+  std::vector<const LoopOutcome*> accepted;
+  std::vector<const LoopOutcome*> consistent;
+  for (const LoopOutcome& outcome : solution.loops) {
+    accepted.push_back(&outcome);
+    if (outcome.in_clique) consistent.push_back(&outcome);
+  }
+  solution.initial = build_graph(fleet, accepted, config);
+  solution.after_pcm = build_graph(fleet, consistent, config);
+
+  // First all robots that consistent loops link, solved together; what remains in use then says who shares a
+  // map.
+  for (LoopOutcome& outcome : solution.loops) outcome.weight = outcome.in_clique ? 1.0 : 0.0;
+  for (const std::vector<RobotId>& group : linked_robots(fleet, solution.loops)) {
+    solve_group(fleet, group, config, solution);
+  }
+  decide_merges(fleet, config, selection.of_pairs, solution);
+  const std::vector<Component> solved_together = std::exchange(solution.components, {});
+  for (const std::vector<RobotId>& group : linked_robots(fleet, solution.loops)) {
+    const auto together = std::ranges::find_if(solved_together, [&](const Component& component) {
+      return std::ranges::find(component.robots, group.front()) != component.robots.end();
+    });
+    solution.components.push_back(*together);
+    solution.components.back().anchor = group.front();
+    solution.components.back().robots = group;
+    anchor_component(fleet, solution.components.back(), solution);
+  }
+  solution.optimized = optimized_graph(fleet, solution, config);
+  return solution;
+}
+
+}  // namespace adit

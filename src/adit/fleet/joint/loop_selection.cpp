@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/joint/loop_selection.hpp"
+
+#include <iterator>
+#include <set>
+
+#include "adit/core/format.hpp"
+#include "adit/fleet/joint/joint_evidence.hpp"
+#include "adit/fleet/joint/merge_cycles.hpp"
+
+namespace adit {
+namespace {
+
+/// The chains of those robots that have loops, each made once.
+class Chains {
+ public:
+  explicit Chains(const FleetGraph& fleet) : fleet_(fleet) {}
+  const OdometryChain& of(RobotId robot) {
+    const auto known = chains_.find(robot);
+    return known != chains_.end() ? known->second
+                                  : chains_.emplace(robot, chain_of(fleet_.robots.at(robot))).first->second;
+  }
+
+ private:
+  const FleetGraph& fleet_;
+  std::map<RobotId, OdometryChain> chains_;
+};
+
+bool knows(const FleetGraph& fleet, KeyframeId id) {
+  const auto robot = fleet.robots.find(id.robot);
+  return robot != fleet.robots.end() && id.index < robot->second.nodes.size();
+}
+
+std::vector<PairOutcome> all_pairs(const FleetGraph& fleet) {
+  std::vector<PairOutcome> pairs;
+  for (auto a = fleet.robots.begin(); a != fleet.robots.end(); ++a) {
+    for (auto b = std::next(a); b != fleet.robots.end(); ++b) {
+      PairOutcome& pair = pairs.emplace_back();
+      pair.a = a->first;
+      pair.b = b->first;
+    }
+  }
+  return pairs;
+}
+
+/// All loops that may be chosen, none of them chosen yet.
+LoopSelection nothing_selected(const FleetGraph& fleet) {
+  LoopSelection selection;
+  for (const auto& [ends, loop] : fleet.loops) {
+    if (loop.verdict != LoopVerdict::accepted || !knows(fleet, loop.from) || !knows(fleet, loop.to)) continue;
+    selection.loops.push_back({loop, false, 0.0});
+  }
+  selection.pairs = all_pairs(fleet);
+  for (const PairOutcome& pair : selection.pairs) selection.of_pairs[{pair.a, pair.b}] = {};
+  for (std::size_t l = 0; l < selection.loops.size(); ++l) {
+    const LoopClosure& loop = selection.loops[l].loop;
+    selection.of_pairs[{loop.from.robot, loop.to.robot}].push_back(l);
+  }
+  return selection;
+}
+
+/// Runs PCM on the loops of one pair (indices into `loops`), marks the ones it keeps and fills in the clique
+/// sizes.
+void keep_consistent(Chains& chains, const BackEndConfig& config, const std::vector<std::size_t>& of_pair,
+                     std::vector<LoopOutcome>& loops, PairOutcome& pair) {
+  std::vector<PcmLoop> measured;
+  for (const std::size_t l : of_pair) measured.push_back(pcm_loop_of(loops[l].loop, config));
+  const PcmResult result = pcm(chains.of(pair.a), chains.of(pair.b), measured, config.pcm);
+  for (const std::size_t kept : result.largest) loops[of_pair[kept]].in_clique = true;
+  pair.clique = result.largest.size();
+  pair.second_clique = result.second.size();
+  pair.clique_exact = result.optimal;
+}
+
+/// Keeps the loops between two robots, or within one, that an accepted check speaks of; their number.
+std::size_t keep_checked(const FleetGraph& fleet, const std::pair<RobotId, RobotId>& robots,
+                         const std::vector<std::size_t>& of_pair, std::vector<LoopOutcome>& loops) {
+  const auto check = fleet.checks.find(robots);
+  if (check == fleet.checks.end() || !check->second.accepted) return 0;
+  std::size_t num = 0;
+  const std::set<std::pair<std::uint32_t, std::uint32_t>> checked(check->second.loops.begin(),
+                                                                  check->second.loops.end());
+  for (const std::size_t l : of_pair) {
+    const LoopClosure& loop = loops[l].loop;
+    loops[l].in_clique = checked.contains({loop.from.index, loop.to.index});
+    num += loops[l].in_clique ? 1 : 0;
+  }
+  return num;
+}
+
+/// Loops within one robot's map are used only where they passed their test, whatever the other pairs need.
+void keep_revisits(const FleetGraph& fleet, LoopSelection& selection) {
+  for (const auto& [robots, of_pair] : selection.of_pairs)
+    if (robots.first == robots.second) keep_checked(fleet, robots, of_pair, selection.loops);
+}
+
+std::string taken_back(const FleetGraph& fleet, const std::vector<Merge>& merges,
+                       const Contradiction& contradiction) {
+  if (!contradiction.refuted.empty()) {
+    std::string pairs;
+    for (const auto& [a, b] : contradiction.refuted)
+      pairs +=
+          format("{}{}-{}", pairs.empty() ? "" : " and ", fleet.robots.at(a).name, fleet.robots.at(b).name);
+    return format(
+        "taken back: with other merges it would put {} where their own scans differ; a meeting with further "
+        "robots would decide",
+        pairs);
+  }
+  std::string others;
+  bool has_least_evidence = true;
+  for (const std::size_t m : contradiction.others) {
+    others += format("{}{}-{}", others.empty() ? "" : " and ", fleet.robots.at(merges[m].a).name,
+                     fleet.robots.at(merges[m].b).name);
+    if (merges[m].evidence < merges[contradiction.merge].evidence) has_least_evidence = false;
+  }
+  return format(
+      "taken back: with {} it misses by {:.0f} m around a cycle with {:.0f} m of odometry, and {}; a meeting "
+      "with further robots would decide",
+      others, contradiction.miss_m, contradiction.driven_m,
+      has_least_evidence ? "has the least evidence of them" : "without it the others agree best");
+}
+
+std::string joined(const FleetGraph& fleet, const JointMerge& joint) {
+  std::string pairs;
+  for (const Merge& merge : joint.merges)
+    pairs += format("{}{}-{} ({:.1f})", pairs.empty() ? "" : " and ", fleet.robots.at(merge.a).name,
+                    fleet.robots.at(merge.b).name, merge.evidence);
+  return format("{} say the same: evidence {:.1f} together and {:.1f} needed", pairs, joint.evidence,
+                joint.needed);
+}
+
+/// What scans refuted about pairs of robots that did not merge.
+std::vector<Merge> refuted_hypotheses(const FleetGraph& fleet, const BackEndConfig& config) {
+  std::vector<Merge> out;
+  for (const auto& [pair, check] : fleet.checks) {
+    if (check.accepted || check.a == check.b) continue;
+    for (const MergeHypothesis& hypothesis : check.hypotheses) {
+      if (hypothesis.outcome != HypothesisOutcome::refuted) continue;
+      Merge merge = merge_of(fleet, check, hypothesis, config);
+      if (!merge.loops.empty()) out.push_back(std::move(merge));
+    }
+  }
+  return out;
+}
+
+/// The merges of all pairs, judged by one another.
+class MergeReview {
+ public:
+  MergeReview(const FleetGraph& fleet, Chains& chains, const BackEndConfig& config, LoopSelection& selection)
+      : fleet_(fleet), config_(config), selection_(selection) {
+    for (const PairOutcome& pair : selection.pairs) {
+      for (const RobotId robot : {pair.a, pair.b})
+        if (fleet.checks.contains({pair.a, pair.b})) chains_.emplace(robot, chains.of(robot));
+      if (pair.clique == 0) continue;
+      Merge merge{pair.a, pair.b, fleet.checks.at({pair.a, pair.b}).evidence, {}};
+      for (const std::size_t l : selection.of_pairs.at({pair.a, pair.b}))
+        if (selection.loops[l].in_clique) merge.loops.push_back(pcm_loop_of(selection.loops[l].loop, config));
+      merges_.push_back(std::move(merge));
+    }
+  }
+
+  /// Takes the loops of merges out that cycles of robots contradict.
+  void take_back() {
+    std::set<std::size_t> gone;
+    for (const Contradiction& contradiction :
+         contradictions(merges_, refuted_hypotheses(fleet_, config_), chains_)) {
+      const Merge& merge = merges_[contradiction.merge];
+      outcome_of(merge).refused_reason = taken_back(fleet_, merges_, contradiction);
+      for (const std::size_t l : selection_.of_pairs.at({merge.a, merge.b}))
+        selection_.loops[l].in_clique = false;
+      gone.insert(contradiction.merge);
+    }
+    std::vector<Merge> left;
+    for (std::size_t m = 0; m < merges_.size(); ++m)
+      if (!gone.contains(m)) left.push_back(std::move(merges_[m]));
+    merges_ = std::move(left);
+  }
+
+  /// Puts those in that have enough evidence only together.
+  void join() {
+    for (const JointMerge& joint : joint_merges(fleet_, merges_, chains_, config_))
+      for (const Merge& merge : joint.merges) {
+        PairOutcome& pair = outcome_of(merge);
+        std::set<std::pair<std::size_t, std::size_t>> ends;
+        for (const PcmLoop& loop : merge.loops) ends.emplace(loop.a, loop.b);
+        for (const std::size_t l : selection_.of_pairs.at({merge.a, merge.b})) {
+          const LoopClosure& loop = selection_.loops[l].loop;
+          selection_.loops[l].in_clique = ends.contains({loop.from.index, loop.to.index});
+        }
+        pair.clique = merge.loops.size();
+        pair.joined_reason = joined(fleet_, joint);
+      }
+  }
+
+ private:
+  PairOutcome& outcome_of(const Merge& merge) {
+    return *std::ranges::find_if(
+        selection_.pairs, [&](const PairOutcome& pair) { return pair.a == merge.a && pair.b == merge.b; });
+  }
+
+  const FleetGraph& fleet_;
+  const BackEndConfig& config_;
+  LoopSelection& selection_;
+  std::map<RobotId, OdometryChain> chains_;
+  std::vector<Merge> merges_;  ///< Those that stand.
+};
+
+}  // namespace
+
+LoopSelection select_loops(const FleetGraph& fleet, const BackEndConfig& config) {
+  const bool is_adaptive = fleet.policy == MergePolicy::adaptive;
+  LoopSelection selection = nothing_selected(fleet);
+  Chains chains(fleet);
+  for (PairOutcome& pair : selection.pairs) {
+    const std::vector<std::size_t>& of_pair = selection.of_pairs.at({pair.a, pair.b});
+    pair.num_loops = of_pair.size();
+    if (is_adaptive) {
+      pair.clique = keep_checked(fleet, {pair.a, pair.b}, of_pair, selection.loops);
+    } else if (!config.pcm_on || of_pair.empty()) {
+      for (const std::size_t l : of_pair) selection.loops[l].in_clique = true;
+    } else {
+      keep_consistent(chains, config, of_pair, selection.loops, pair);
+    }
+  }
+  keep_revisits(fleet, selection);
+  if (!is_adaptive) return selection;
+  MergeReview review(fleet, chains, config, selection);
+  if (config.cycles_needed) review.take_back();
+  if (config.joint_evidence) review.join();
+  return selection;
+}
+
+}  // namespace adit

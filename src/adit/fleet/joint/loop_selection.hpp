@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Which of the accepted loops take part in the joint solution. What GNC then makes of those is not said
+/// here.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "adit/fleet/joint/fleet_graph.hpp"
+
+namespace adit {
+
+/// Indices into LoopSelection::loops by the robots that they start and end at: of every pair, and of each
+/// robot with loops within its own map.
+using LoopsOfPairs = std::map<std::pair<RobotId, RobotId>, std::vector<std::size_t>>;
+
+struct LoopSelection {
+  std::vector<LoopOutcome> loops;  ///< The accepted ones between known keyframes; chosen are those in_clique.
+  std::vector<PairOutcome> pairs;  ///< Any two robots; with a reason only where their merge is taken back.
+  LoopsOfPairs of_pairs;
+};
+
+/// PCM per pair of robots, or, where checks are needed, the loops of the accepted ones but for those that
+/// merges with third robots contradict. Loops within one robot take part where an accepted check speaks of
+/// them, whatever the pairs need.
+[[nodiscard]] LoopSelection select_loops(const FleetGraph& fleet, const BackEndConfig& config);
+
+}  // namespace adit

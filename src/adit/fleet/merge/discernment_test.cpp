@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/merge/discernment.hpp"
+
+#include "adit/fleet/merge/merge_evidence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "adit/fleet/joint/fleet_graph.hpp"
+#include "support/box_world.hpp"
+#include "support/synthetic_scan.hpp"
+
+namespace adit {
+namespace {
+
+constexpr double kStep = 0.5;
+
+// A drive of 60 m along x through what `scan_at` sees.
+template <class ScanAt>
+std::shared_ptr<const RobotMap> driven(const ScanAt& scan_at) {
+  auto map = std::make_shared<RobotMap>();
+  for (std::uint32_t k = 0; k <= 120; ++k) {
+    const double x = kStep * k;
+    auto cloud = std::make_shared<const PointCloud>(scan_at(x, k));
+    map->places.push_back(describe(*cloud, ScanContextConfig{.max_radius_m = 25.0}));
+    map->keyframes.push_back({{{0}, k}, {k}, Pose::translation_of(x, 0, 0), std::move(cloud)});
+    map->step_covariances.push_back(k == 0 ? Matrix6::Zero() : odometry_covariance({}, kStep));
+  }
+  return map;
+}
+
+std::shared_ptr<const RobotMap> in_a_tube(const std::vector<test::Box>& boxes) {
+  test::Scene scene = test::smooth_tube();
+  scene.boxes = boxes;
+  return driven([&](double x, std::uint32_t k) {
+    test::Lidar lidar{32, 256, 0.6, 40.0, 0.01};
+    lidar.jitter = 0.5;
+    lidar.seed = k;
+    return test::scan_of(scene, lidar, Pose(), {Pose::planar(x, 0.0, 0.0), Vector6::Zero()}, 0).cloud;
+  });
+}
+
+std::vector<LoopCandidate> similar_places(const std::shared_ptr<const RobotMap>& map) {
+  const OtherPlaces others(map, chain_of(graph_of(*map)), {});
+  std::vector<LoopCandidate> found;
+  for (std::uint32_t k = 0; k < map->keyframes.size(); ++k)
+    if (const auto match = others.most_similar(k); match && k < match->match.index) found.push_back(*match);
+  return found;
+}
+
+struct OnAMap {
+  explicit OnAMap(const std::shared_ptr<const RobotMap>& map)
+      : discernment(map, chain_of(graph_of(*map)), [map] { return similar_places(map); },
+                    std::make_shared<FeatureStore>(map, RegistrationConfig{}), {}, {}) {}
+  Discernment discernment;
+};
+
+TEST(WayAlong, CountsMetresAndFindsKeyframes) {
+  const OdometryChain chain({Pose(), Pose::translation_of(1, 0, 0), Pose::translation_of(1, 2, 0)},
+                            {Matrix6::Identity(), Matrix6::Identity()});
+  const std::vector<double> way = way_along(chain);
+  EXPECT_EQ(way, (std::vector<double>{0.0, 1.0, 3.0}));
+  EXPECT_EQ(keyframe_at(way, 0.0), 0U);
+  EXPECT_EQ(keyframe_at(way, 1.5), 2U);
+  EXPECT_FALSE(keyframe_at(way, -0.1));
+  EXPECT_FALSE(keyframe_at(way, 3.1));
+  EXPECT_FALSE(keyframe_at({}, 0.0));
+}
+
+TEST(Discernment, ADisplacementDoesNotShowInASmoothTubeAndDoesBesideABlock) {
+  OnAMap smooth(in_a_tube({}));
+  const std::vector<std::uint32_t> places = {40, 50, 60, 70};
+  for (const bool tells : smooth.discernment.distinctive(places)) EXPECT_FALSE(tells);
+  OnAMap with_block(in_a_tube({{{29.0, 1.5, -2.0}, {31.0, 4.0, 1.0}}}));
+  const std::vector<bool> near = with_block.discernment.distinctive({56, 64});
+  EXPECT_TRUE(near[0]);
+  EXPECT_TRUE(near[1]);
+}
+
+TEST(Discernment, ScansOfOnePlaceDoNotDifferAndThoseOfAnotherDo) {
+  const auto map = in_a_tube({{{29.0, 1.5, -2.0}, {31.0, 4.0, 1.0}}});
+  OnAMap measured(map);
+  EXPECT_GT(measured.discernment.limit(), 0.0);
+  EXPECT_LT(measured.discernment.limit(), 30.0);
+  SurfaceStore& surfaces = measured.discernment.surfaces();
+  surfaces.prepare({20, 56, 58});
+  const auto fit = [&](std::uint32_t a, std::uint32_t b, const Pose& T_a_b) {
+    return fit_near(surfaces.at(a), surfaces.at(b), T_a_b, measured.discernment.limit(), {}).agreement;
+  };
+  EXPECT_FALSE(measured.discernment.differ(fit(56, 58, Pose::translation_of(1.0, 0, 0))));
+  EXPECT_TRUE(measured.discernment.differ(fit(20, 56, Pose())));
+}
+
+TEST(Discernment, BlocksThatRepeatGoOnLongerThanBlocksThatDoNot) {
+  std::vector<test::Box> repeating;
+  std::vector<test::Box> irregular;
+  Rng rng(4);
+  for (double x = -40.0; x < 110.0; x += 10.0) {
+    repeating.push_back({{x, 1.5, -2.0}, {x + 2.0, 4.0, 1.0}});
+    const double at = x + rng.uniform(0.0, 6.0);
+    const double side = rng.uniform() < 0.5 ? -4.0 : 1.5;
+    irregular.push_back({{at, side, -2.0}, {at + rng.uniform(0.8, 3.0), side + 2.5, rng.uniform(-1.0, 2.0)}});
+  }
+  OnAMap tiles(in_a_tube(repeating));
+  const LookAlikes with_tiles = tiles.discernment.measured().look_alikes;
+  const LookAlikes without = OnAMap(in_a_tube(irregular)).discernment.measured().look_alikes;
+  for (const std::size_t passed : {0U, 1U, 5U, 40U}) {
+    EXPECT_GT(chance_to_go_on(with_tiles.chances(), passed), 0.7);
+    EXPECT_LT(chance_to_go_on(without.chances(), passed), 0.6);
+  }
+  // All of them were cast in one mould: their walls say nothing.
+  EXPECT_FALSE(tiles.discernment.measured().walls.other());
+}
+
+TEST(Discernment, AHeadingThatWandersLeadsLessFar) {
+  const auto straight = in_a_tube({});
+  EXPECT_EQ(OnAMap(straight).discernment.reach_m(), 150.0);
+  auto wandering = std::make_shared<RobotMap>(*straight);
+  Rng rng(5);
+  Pose T_odom_base;
+  for (std::size_t k = 0; k < wandering->keyframes.size(); ++k) {
+    if (k > 0) T_odom_base = T_odom_base * Pose::planar(kStep, 0.0, 0.004 * rng.normal());
+    wandering->keyframes[k].T_odom_base = T_odom_base;
+  }
+  const double reach = OnAMap(wandering).discernment.reach_m();
+  EXPECT_LT(reach, 100.0);
+  EXPECT_GE(reach, 50.0);
+}
+
+TEST(LookAlikes, GoOnHalfTheTimeUntilSomethingIsKnown) {
+  for (const std::size_t passed : {0U, 1U, 2U, 100U})
+    EXPECT_EQ(chance_to_go_on(LookAlikes().chances(), passed), 0.5);
+}
+
+TEST(LookAlikes, ThatHaveGoneOnForLongAreTrustedToGoOn) {
+  LookAlikes seen;
+  for (int i = 0; i < 80; ++i) seen.add(0, i < 8);   // nine of ten end at once,
+  for (int i = 0; i < 80; ++i) seen.add(7, i < 76);  // and those that passed seven go on
+  EXPECT_LT(chance_to_go_on(seen.chances(), 0), 0.2);
+  EXPECT_LT(chance_to_go_on(seen.chances(), 6), 0.2);
+  EXPECT_GT(chance_to_go_on(seen.chances(), 7), 0.8);
+  EXPECT_EQ(chance_to_go_on(seen.chances(), 14), chance_to_go_on(seen.chances(), 7));  // one phase
+  EXPECT_EQ(chance_to_go_on(seen.chances(), 1000), chance_to_go_on(seen.chances(), 7));
+}
+
+TEST(LookAlikes, TheChanceNeverFallsWithTheWayThatTheyHaveGone) {
+  LookAlikes seen;
+  for (int i = 0; i < 80; ++i) seen.add(0, i < 72);
+  for (int i = 0; i < 80; ++i) seen.add(3, false);  // a mere chance of this map
+  EXPECT_GT(chance_to_go_on(seen.chances(), 0), 0.8);
+  EXPECT_EQ(chance_to_go_on(seen.chances(), 3), chance_to_go_on(seen.chances(), 0));
+}
+
+TEST(OtherPlaces, NamesThePlaceThatLooksAlikeAndNoneNearBy) {
+  const auto map = in_a_tube({{{15.0, 1.5, -2.0}, {17.0, 4.0, 1.0}}, {{45.0, 1.5, -2.0}, {47.0, 4.0, 1.0}}});
+  const OtherPlaces others(map, chain_of(graph_of(*map)), {});
+  const auto match = others.most_similar(30);
+  ASSERT_TRUE(match.has_value());
+  EXPECT_NEAR(kStep * match->match.index, 45.0, 4.0);  // 30 m farther, at the other block
+  const std::vector<double> likeness = others.likeness();
+  ASSERT_EQ(likeness.size(), map->keyframes.size());
+  EXPECT_EQ(likeness[30], match->distance);
+}
+
+}  // namespace
+}  // namespace adit

@@ -1,0 +1,363 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/merge/merge_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "adit/core/check.hpp"
+#include "adit/core/rng.hpp"
+#include "adit/fleet/joint/fleet_graph.hpp"
+#include "adit/fleet/merge/merge_evidence.hpp"
+#include "support/opposite_drives.hpp"
+
+namespace adit {
+namespace {
+
+using test::along_x;
+using test::kNum;
+using test::kTrueLoops;
+using test::loop_at;
+using test::T_a_b_true;
+
+// That go on with this chance, however long they have.
+LookAlikes look_alikes(double chance_to_go_on) {
+  constexpr int kSteps = 100'000;  // the prior of one half no longer shows
+  LookAlikes out;
+  if (chance_to_go_on != 0.5)
+    for (int i = 0; i < kSteps; ++i) out.add(0, i < chance_to_go_on * kSteps);
+  return out;
+}
+
+// What was measured beforehand.
+MeasuredWhenAsked measured(const LookAlikes& look_alikes, const StandingShares& walls = {}) {
+  return [all = Measured{look_alikes, walls}]() -> const Measured& { return all; };
+}
+
+MergeTest a_test(const std::vector<PcmLoop>& loops, double chance_to_go_on = 0.5,
+                 const MergeCheckConfig& config = {}) {
+  return {along_x(kNum), along_x(kNum), loops, 50.0, measured(look_alikes(chance_to_go_on)), config};
+}
+
+// Answers all that the test asks for.
+template <class Answer>
+MergeCheck run(MergeTest& test, const Answer& answer) {
+  for (std::vector<PlannedCheck> asked = test.next(16); !asked.empty(); asked = test.next(16)) {
+    EXPECT_LE(asked.size(), 16U);
+    std::vector<CheckedPlace> places;
+    for (const PlannedCheck& check : asked) places.push_back(answer(check));
+    test.add(places);
+  }
+  return test.verdict({0}, {1});
+}
+
+constexpr CheckedPlace kAgrees{0.5, true};
+constexpr CheckedPlace kDiffers{1.5, true};
+constexpr CheckedPlace kSilent{0.5, false};
+constexpr CheckedPlace kHasANiche{5.0, true};
+
+TEST(MergeTest, ALoopThatItsNeighboursContradictIsLeftOut) {
+  std::vector<PcmLoop> loops;
+  for (const std::uint32_t at : {70U, 80U, 90U, 100U, 110U}) loops.push_back(loop_at(at));
+  loops[2].T_a_b = loops[2].T_a_b * Pose::translation_of(1.0, 0.0, 0.0);
+  const OdometryChain chain = along_x(kNum, 0.05);  // which would allow it
+  const auto loops_of = [&](const std::vector<PcmLoop>& some) {
+    MergeTest test(chain, chain, some, 50.0, measured(look_alikes(0.5)), {});
+    const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+    EXPECT_TRUE(check.accepted) << check.reason;
+    return check.loops;
+  };
+  const auto kept = loops_of(loops);
+  EXPECT_EQ(kept.size(), 4U);
+  EXPECT_EQ(std::ranges::count(kept, 90U, &std::pair<std::uint32_t, std::uint32_t>::first), 0);
+  EXPECT_EQ(loops_of({loops[1], loops[2]}).size(), 2U) << "nobody knows which of the two is right";
+}
+
+TEST(MergeTest, SoManyLoopsHaveToAgreeWhateverThePlacesSay) {
+  MergeCheckConfig three;
+  three.min_loops = 3;
+  const auto check = [](const MergeCheckConfig& config) {
+    MergeTest test = a_test({loop_at(80), loop_at(100)}, 0.5, config);
+    return run(test, [](const PlannedCheck&) { return kAgrees; });
+  };
+  EXPECT_TRUE(check({}).accepted);
+  const MergeCheck too_few = check(three);
+  EXPECT_FALSE(too_few.accepted);
+  EXPECT_GT(too_few.evidence, too_few.needed);
+  EXPECT_NE(too_few.reason.find("2 loops agree, 3 are needed"), std::string::npos) << too_few.reason;
+}
+
+// Patches of its own for each place, seen there twice; of so many in a hundred both stand off on one side.
+CheckedPlace with_offsets(std::uint32_t theirs, int standing) {
+  CheckedPlace place = kAgrees;
+  for (int i = 0; i < 100; ++i)
+    for (const double metres : {0.01, i < standing ? 0.01 : -0.01})
+      place.offsets.push_back({{static_cast<int>(theirs), i, 0, 0}, metres});
+  return place;
+}
+
+TEST(MergeTest, WallsThatStandOffInAllScansAreOfOtherTunnels) {
+  MergeCheckConfig without;
+  without.relief = false;
+  const auto check = [](int standing, const MergeCheckConfig& config) {
+    MergeTest test = a_test(kTrueLoops, 0.5, config);
+    return run(test, [&](const PlannedCheck& c) { return with_offsets(c.theirs, standing); });
+  };
+  EXPECT_TRUE(check(50, {}).accepted);
+  const MergeCheck built_alike = check(62, {});
+  EXPECT_FALSE(built_alike.accepted);
+  EXPECT_EQ(built_alike.hypotheses.front().outcome, HypothesisOutcome::refuted);
+  EXPECT_NE(built_alike.reason.find("puts 62 % of"), std::string::npos) << built_alike.reason;
+  EXPECT_TRUE(check(62, without).accepted);
+}
+
+TEST(MergeTest, WallsCountWhereOwnLookAlikesHaveOthers) {
+  StandingShares shares;
+  const auto check = [&](int standing) {
+    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, measured(look_alikes(0.95), shares), {});
+    return run(test, [&](const PlannedCheck& c) { return with_offsets(c.theirs, standing); });
+  };
+  EXPECT_FALSE(check(50).accepted);  // look-alikes go on for long: places alone cannot do it
+  for (int i = 0; i < 10; ++i) shares.add_other({1000, 0.62, 0.015});
+  EXPECT_TRUE(check(50).accepted);
+  EXPECT_FALSE(check(55).accepted);  // not refuted by itself, but of others as likely
+}
+
+TEST(MergeTest, AfterAPlaceThatDiffersTheCountStartsAnew) {
+  LookAlikes rarely_begin;  // and go on once they have
+  for (int i = 0; i < 1000; ++i) rarely_begin.add(0, i < 100);
+  for (int i = 0; i < 1000; ++i) rarely_begin.add(1, i < 950);
+  const auto evidence = [&](std::uint32_t differs_at) {
+    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, measured(rarely_begin), {});
+    const std::uint32_t first =
+        test.next(1).front().own % 6;  // a place every six, looked at again two keyframes away
+    return run(test,
+               [&](const PlannedCheck& check) {
+                 return (check.own + 3 - first) / 6 == differs_at ? kDiffers : kAgrees;
+               })
+        .evidence;
+  };
+  const double never = evidence(1000);
+  const double in_the_middle = evidence(15);
+  // One place differs instead of going on, and the next one begins anew.
+  const double begins = std::log(0.99 / chance_to_go_on(rarely_begin.chances(), 0));
+  const double goes_on = std::log(0.99 / chance_to_go_on(rarely_begin.chances(), 1));
+  const double differs = std::log(0.01 / (1.0 - chance_to_go_on(rarely_begin.chances(), 1)));
+  EXPECT_NEAR(in_the_middle - never, differs - goes_on + begins - goes_on, 0.05);
+}
+
+TEST(MergeTest, APlaceDiffersOnlyIfItDoesByASecondLook) {
+  const auto checked = [&](bool also_beside) {
+    MergeTest test = a_test(kTrueLoops);
+    const std::uint32_t at = test.next(1).front().own;
+    std::size_t num_asked = 0;
+    const MergeCheck check = run(test, [&](const PlannedCheck& asked) {
+      ++num_asked;
+      const bool is_beside = asked.own != at && asked.own < at + 4 && at < asked.own + 4;
+      return asked.own == at || (also_beside && is_beside) ? kDiffers : kAgrees;
+    });
+    EXPECT_EQ(num_asked, check.num_checked + 1) << "only that place is looked at again";
+    return check;
+  };
+  const MergeCheck agrees = checked(false);
+  EXPECT_EQ(agrees.num_passed, agrees.num_checked);
+  EXPECT_NEAR(agrees.evidence, agrees.num_checked * std::log(0.99 / 0.5), 1e-9);
+  const MergeCheck differs = checked(true);
+  EXPECT_EQ(differs.num_passed + 1, differs.num_checked);
+}
+
+TEST(MergeTest, PlacesThatAgreeJoinTheMaps) {
+  MergeTest test = a_test(kTrueLoops);
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+  EXPECT_TRUE(check.accepted) << check.reason;
+  EXPECT_EQ(check.num_passed, check.num_checked);
+  EXPECT_NEAR(check.evidence, check.num_checked * std::log(0.99 / 0.5), 1e-9);
+  EXPECT_NEAR(check.needed, std::log(1e3), 1e-9);
+  const std::vector<std::pair<std::uint32_t, std::uint32_t>> loops = {{80, 119}, {90, 109}, {100, 99}};
+  EXPECT_EQ(check.loops, loops);
+  ASSERT_EQ(check.hypotheses.size(), 1U);
+  EXPECT_EQ(check.hypotheses[0].outcome, HypothesisOutcome::accepted);
+  EXPECT_EQ(check.hypotheses[0].loops, loops);
+  EXPECT_EQ(check.hypotheses[0].evidence, check.evidence);
+}
+
+TEST(MergeTest, AStretchThatDiffersHereAndThereIsACopy) {
+  MergeTest test = a_test(kTrueLoops);
+  int n = 0;
+  const MergeCheck check = run(test, [&](const PlannedCheck&) { return ++n % 4 == 0 ? kDiffers : kAgrees; });
+  EXPECT_FALSE(check.accepted);
+  EXPECT_NE(check.reason.find("scans differ at"), std::string::npos) << check.reason;
+  EXPECT_NE(check.reason.find("drive on until"), std::string::npos) << check.reason;
+  EXPECT_EQ(check.hypotheses.at(0).outcome, HypothesisOutcome::refuted);
+  EXPECT_EQ(check.hypotheses.at(0).num_differing(), check.num_checked - check.num_passed);
+}
+
+TEST(MergeTest, ANicheThatOnlyOneOfThemHasIsACopy) {
+  // One place in twelve: as many as noise would be forgiven.
+  for (const auto& [place, accepted] : {std::pair{kDiffers, true}, std::pair{kHasANiche, false}}) {
+    MergeTest test = a_test(kTrueLoops);
+    int n = 0;
+    const MergeCheck check = run(
+        test, [&, difference = place](const PlannedCheck&) { return ++n % 12 == 0 ? difference : kAgrees; });
+    EXPECT_EQ(check.accepted, accepted) << check.reason;
+  }
+}
+
+TEST(MergeTest, ARefutedHypothesisIsNotTestedToTheEnd) {
+  MergeTest test = a_test(kTrueLoops);
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kDiffers; });
+  EXPECT_FALSE(check.accepted);
+  EXPECT_EQ(check.num_checked, 8U);
+}
+
+TEST(MergeTest, WhatIsRefutedNeedsNoMeasuringOfTheOwnMap) {
+  const MeasuredWhenAsked nobody_asks = []() -> const Measured& { throw std::logic_error("asked"); };
+  MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, nobody_asks, {});
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kDiffers; });
+  EXPECT_FALSE(check.accepted);
+  ASSERT_EQ(check.hypotheses.size(), 1U);
+  EXPECT_EQ(check.hypotheses.front().outcome, HypothesisOutcome::refuted);
+  MergeTest other(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, nobody_asks, {});
+  EXPECT_THROW(run(other, [](const PlannedCheck&) { return kAgrees; }), std::logic_error);
+}
+
+TEST(MergeTest, PlacesWithoutAnAlongAxisConstraintSayNothing) {
+  MergeTest test = a_test(kTrueLoops);
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kSilent; });
+  EXPECT_FALSE(check.accepted);
+  EXPECT_NE(check.reason.find("no along-axis constraint"), std::string::npos) << check.reason;
+  EXPECT_NE(check.reason.find("drive on until both pass a junction"), std::string::npos) << check.reason;
+  MergeCheckConfig all_count;
+  all_count.distinctive_only = false;
+  MergeTest other = a_test(kTrueLoops, 0.5, all_count);
+  EXPECT_TRUE(run(other, [](const PlannedCheck&) { return kSilent; }).accepted);
+}
+
+TEST(MergeTest, WhereLookAlikesGoOnForLongALongerStretchIsNeeded) {
+  MergeTest test = a_test(kTrueLoops, 0.9);
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+  EXPECT_FALSE(check.accepted);
+  EXPECT_EQ(check.hypotheses.at(0).outcome, HypothesisOutcome::unsure);
+  // Every further 3 m bring log(0.99 / 0.9); what is missing, rounded up to 10 m.
+  const double metres = 3.0 * std::ceil((check.needed - check.evidence) / std::log(0.99 / 0.9));
+  const std::string asked =
+      "drive the same stretch for about another " + std::to_string(10 * std::lround(std::ceil(metres / 10)));
+  EXPECT_NE(check.reason.find(asked + " m"), std::string::npos) << check.reason;
+}
+
+TEST(MergeTest, WhereTunnelsLookAlikeForeverNoDriveAlongThemIsAskedFor) {
+  MergeTest test = a_test(kTrueLoops, 0.9899);
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+  EXPECT_NE(check.reason.find("past a junction or a niche"), std::string::npos) << check.reason;
+}
+
+TEST(MergeTest, ASmallerSetOfLoopsWinsWhereTheLargestIsRefuted) {
+  std::vector<PcmLoop> loops = kTrueLoops;
+  for (const std::size_t a : {60U, 70U, 110U, 120U}) loops.push_back(loop_at(a, 30.0));
+  MergeTest test = a_test(loops);
+  const MergeCheck check = run(test, [](const PlannedCheck& asked) {
+    const double off =
+        (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
+    return off > 5.0 ? kDiffers : kAgrees;
+  });
+  EXPECT_TRUE(check.accepted) << check.reason;
+  EXPECT_EQ(check.loops.size(), 3U);
+  EXPECT_EQ(check.loops.front().first, 80U);
+  ASSERT_EQ(check.hypotheses.size(), 2U);
+  EXPECT_EQ(check.hypotheses[0].outcome, HypothesisOutcome::accepted);
+  EXPECT_EQ(check.hypotheses[1].outcome, HypothesisOutcome::refuted);
+  EXPECT_EQ(check.hypotheses[1].loops.size(), 4U);
+  EXPECT_NEAR(check.hypotheses[1].from_best_m, 30.0, 0.5);
+}
+
+TEST(MergeTest, TwoHypothesesWithTheSameSupportDecideNothing) {
+  std::vector<PcmLoop> loops = kTrueLoops;
+  for (const std::size_t a : {70U, 120U, 130U}) loops.push_back(loop_at(a, 20.0));
+  MergeTest test = a_test(loops);
+  const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+  EXPECT_FALSE(check.accepted);
+  EXPECT_NE(check.reason.find("two hypotheses 20 m apart along the tunnel have similar support"),
+            std::string::npos)
+      << check.reason;
+  EXPECT_NE(check.reason.find("drive on until"), std::string::npos) << check.reason;
+  ASSERT_EQ(check.hypotheses.size(), 2U);
+  EXPECT_EQ(check.hypotheses[0].outcome, HypothesisOutcome::rival);
+  EXPECT_EQ(check.hypotheses[1].outcome, HypothesisOutcome::rival);
+}
+
+TEST(MergeTest, RivalsToEitherSideOfTheFirstAreAsFarApartAsTheyAre) {
+  std::vector<PcmLoop> loops = kTrueLoops;  // refuted; 20 m to each side of it two others agree everywhere
+  loops.push_back(loop_at(95));
+  for (const std::size_t a : {70U, 120U, 130U}) loops.push_back(loop_at(a, 20.0));
+  for (const std::size_t a : {60U, 65U, 75U}) loops.push_back(loop_at(a, -20.0));
+  MergeTest test = a_test(loops);
+  const MergeCheck check = run(test, [](const PlannedCheck& asked) {
+    const double off =
+        (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
+    return off < 5.0 ? kDiffers : kAgrees;
+  });
+  EXPECT_NE(check.reason.find("two hypotheses 40 m apart"), std::string::npos) << check.reason;
+}
+
+TEST(MergeTest, AHypothesisFarBehindTheBestIsNoRival) {
+  std::vector<PcmLoop> loops = kTrueLoops;
+  loops.push_back(loop_at(120, 20.0));
+  MergeTest test = a_test(loops);
+  const MergeCheck check = run(test, [](const PlannedCheck& asked) {
+    const double off =
+        (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
+    return off > 5.0 ? kSilent : kAgrees;
+  });
+  EXPECT_TRUE(check.accepted) << check.reason;
+  ASSERT_EQ(check.hypotheses.size(), 2U);
+  EXPECT_EQ(check.hypotheses[1].outcome, HypothesisOutcome::behind);
+}
+
+TEST(MergeTest, TellsOfABoundedNumberOfHypotheses) {
+  std::vector<PcmLoop> loops;
+  for (std::size_t h = 0; h < 20; ++h) loops.push_back(loop_at(190, 4.0 * static_cast<double>(h)));
+  MergeCheckConfig config;
+  config.max_hypotheses = 1000;
+  MergeTest test = a_test(loops, 0.5, config);
+  EXPECT_EQ(run(test, [](const PlannedCheck&) { return kDiffers; }).hypotheses.size(), kHypothesesPerCheck);
+}
+
+TEST(MergeTest, WithoutLoopsItIsOverAtOnce) {
+  MergeTest test = a_test({});
+  EXPECT_TRUE(test.next(16).empty());
+  EXPECT_FALSE(test.verdict({0}, {1}).accepted);
+}
+
+TEST(MergeTest, TakesOnlyWhatItAskedFor) {
+  MergeTest test = a_test({});
+  EXPECT_THROW(test.add({kAgrees}), ContractViolation);
+}
+
+TEST(MergeTest, ChanceJoinsMapsNoMoreOftenThanTheErrorRateSays) {
+  // Tunnels that look alike go on agreeing half the time; with an error rate that can be counted.
+  MergeCheckConfig config;
+  config.error_rate = 0.02;
+  Rng rng(5);
+  int num_wrong = 0;
+  constexpr int kTrials = 2000;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    MergeTest test = a_test(kTrueLoops, 0.5, config);
+    num_wrong +=
+        run(test, [&](const PlannedCheck&) { return rng.uniform() < 0.5 ? kAgrees : kDiffers; }).accepted;
+  }
+  EXPECT_LE(num_wrong, static_cast<int>(0.02 * kTrials));
+  // And true alignments pass: one check in fifty differs.
+  int num_right = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    MergeTest test = a_test(kTrueLoops);
+    num_right +=
+        run(test, [&](const PlannedCheck&) { return rng.uniform() < 0.98 ? kAgrees : kDiffers; }).accepted;
+  }
+  EXPECT_GE(num_right, 195);
+}
+
+}  // namespace
+}  // namespace adit
