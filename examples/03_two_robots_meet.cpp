@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
   }
   const adit::Vector3 start = session.solution.T_world_keyframe.at(pair.b).front().translation();
   std::printf("%s and %s share one map, by %zu loops whose claims were tested\n", first.c_str(),
-              second.c_str(), pair.clique);
+              second.c_str(), pair.num_selected);
   std::printf("%s started at (%.1f, %.1f, %.1f) as %s sees it\n", second.c_str(), start.x(), start.y(),
               start.z(), first.c_str());
 }

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-#include "adit/fleet/joint/fleet_graph.hpp"
+#include "adit/fleet/joint/fleet_solution.hpp"
 #include "adit/robot/robot_map.hpp"
 
 namespace adit::test {

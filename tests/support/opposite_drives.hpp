@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "adit/fleet/joint/fleet_graph.hpp"
+#include "adit/fleet/sync/fleet_graph.hpp"
 #include "adit/posegraph/pcm.hpp"
 
 namespace adit::test {

@@ -35,7 +35,7 @@ TEST(AdaptiveAgent, MergesRobotsThatShareAStreetAndBothKnowWhy) {
   const MergeCheck& check = fleet.agents[1].known().checks.at({{0}, {1}});
   EXPECT_TRUE(check.accepted);
   EXPECT_GE(check.evidence, check.needed);
-  EXPECT_EQ(check.loops.size(), first.pairs[0].clique);
+  EXPECT_EQ(check.loops.size(), first.pairs[0].num_selected);
   const Pose T_true = fleet.truth_0.front().inverse();
   for (std::size_t k = 0; k < fleet.truth_1.size(); ++k) {
     EXPECT_LT(
@@ -72,10 +72,10 @@ std::size_t num_tried_between_two_streets(const AgentConfig& config) {
 
 TEST(AdaptiveAgent, SearchesOnWhereManyLoopsAreAllRefuted) {
   AgentConfig config = adaptive();
-  config.adaptive.candidates = 4;
-  config.adaptive.further_candidates = 0;
+  config.adaptive.search.candidates = 4;
+  config.adaptive.search.further_candidates = 0;
   EXPECT_EQ(num_tried_between_two_streets(config), 4U);
-  config.adaptive.further_candidates = 9;
+  config.adaptive.search.further_candidates = 9;
   EXPECT_EQ(num_tried_between_two_streets(config), 13U);
   config.adaptive.registration.min_inliers = 1000;  // no loops
   EXPECT_EQ(num_tried_between_two_streets(config), 4U);
@@ -123,7 +123,8 @@ TEST(AdaptiveAgent, FindsThatItCameBackAndMapsBetterAlone) {
 
   agent.find_revisits();  // again: nothing new
   EXPECT_EQ(agent.known().checks.size(), 1U);
-  EXPECT_LE(agent.known().loops.size(), static_cast<std::size_t>(adaptive().adaptive.revisit_candidates));
+  EXPECT_LE(agent.known().loops.size(),
+            static_cast<std::size_t>(adaptive().adaptive.search.revisit_candidates));
 }
 
 TEST(AdaptiveAgent, FindsNoRevisitWhereItNeverCameBackOrMayNotLook) {
@@ -132,7 +133,7 @@ TEST(AdaptiveAgent, FindsNoRevisitWhereItNeverCameBackOrMayNotLook) {
   EXPECT_TRUE(fleet.agents[0].known().loops.empty());
   EXPECT_TRUE(fleet.agents[0].known().checks.empty());
   AgentConfig config = adaptive();
-  config.adaptive.revisits = false;
+  config.adaptive.search.revisits = false;
   Agent off = ThereAndBack().agent(config);
   off.find_revisits();
   EXPECT_TRUE(off.known().loops.empty());

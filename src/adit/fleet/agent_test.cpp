@@ -29,7 +29,7 @@ TEST(Agent, TwoRobotsThatMeetAgreeOnOneCorrectMap) {
   const FleetSolution second = fleet.agents[1].solve({});
   ASSERT_EQ(first.pairs.size(), 1U);
   ASSERT_TRUE(first.pairs[0].merged) << first.pairs[0].refused_reason;
-  EXPECT_GE(first.pairs[0].clique, 3U);
+  EXPECT_GE(first.pairs[0].num_selected, 3U);
 
   const Pose T_true = fleet.truth_0.front().inverse();  // odometry frame of robot 0
   const auto& poses_1 = first.T_world_keyframe.at({1});

@@ -84,9 +84,9 @@ std::string loop_row(const Session& session, const LoopOutcome& outcome, std::st
                   format("{:.4f}", loop.overlap),
                   format("{:.5f}", loop.weak_axis),
                   std::string(to_string(loop.verdict)),
-                  !accepted           ? ""
-                  : outcome.in_clique ? "kept"
-                                      : "dropped",
+                  !accepted             ? ""
+                  : outcome.is_selected ? "kept"
+                                        : "dropped",
                   accepted ? format("{:.4f}", outcome.weight) : "",
                   std::string(loop_class),
                   number_text(t.x()),

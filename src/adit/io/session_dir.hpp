@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "adit/evaluation/loop_stats.hpp"
-#include "adit/fleet/joint/fleet_graph.hpp"
+#include "adit/fleet/joint/fleet_solution.hpp"
 #include "adit/robot/robot_map.hpp"
 
 namespace adit {

@@ -7,11 +7,10 @@
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/progress.hpp"
+#include "adit/core/robot_ids.hpp"
 
 namespace adit {
 namespace {
-
-constexpr std::size_t kMaxRobots = 256;
 
 /// KISS-ICP where there are no wheels to go by.
 RobotSlamConfig config_for(const Recording& recording, RobotSlamConfig config,
@@ -45,9 +44,8 @@ std::size_t num_scans(const std::vector<Recording>& recordings) {
 }
 
 Result<Mapping> map_robots(const std::vector<Recording>& recordings, const SlamConfig& config) {
-  if (recordings.size() > kMaxRobots)
-    return fail(format("{} recordings, and one fleet has at most {} robots; give fewer at once",
-                       recordings.size(), kMaxRobots));
+  const Result<std::vector<RobotId>> ids = robot_ids(recordings.size());
+  if (!ids) return tl::unexpected(ids.error());
   Mapping mapping;
   std::vector<RobotSlamConfig> configs;
   for (const Recording& recording : recordings)
@@ -55,9 +53,8 @@ Result<Mapping> map_robots(const std::vector<Recording>& recordings, const SlamC
   std::vector<Result<RobotMap>> maps(recordings.size(), fail("not run"));
   {
     const Phase phase("mapping", num_scans(recordings));
-    parallel_for_each(recordings.size(), [&](std::size_t i) {
-      maps[i] = map_one(recordings[i], {static_cast<std::uint8_t>(i)}, configs[i], phase);
-    });
+    parallel_for_each(recordings.size(),
+                      [&](std::size_t i) { maps[i] = map_one(recordings[i], (*ids)[i], configs[i], phase); });
   }
   for (std::size_t i = 0; i < maps.size(); ++i) {
     if (!maps[i]) {

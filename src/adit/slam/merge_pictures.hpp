@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adit/evaluation/study_result.hpp"
-#include "adit/fleet/joint/fleet_graph.hpp"
+#include "adit/fleet/joint/fleet_solution.hpp"
 
 namespace adit {
 

@@ -36,7 +36,7 @@ Json pairs_json(const Session& session) {
   for (const PairOutcome& pair : session.solution.pairs)
     pairs.push_back({{"robots", {name_of(session, pair.a), name_of(session, pair.b)}},
                      {"loops", pair.num_loops},
-                     {"clique", pair.clique},
+                     {"clique", pair.num_selected},
                      {"second_clique", pair.second_clique},
                      {"merged", pair.merged},
                      {"refused_reason", pair.refused_reason}});

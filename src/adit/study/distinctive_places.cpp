@@ -8,8 +8,9 @@
 #include <utility>
 
 #include "adit/core/parallel.hpp"
-#include "adit/fleet/joint/fleet_graph.hpp"
 #include "adit/fleet/merge/discernment.hpp"
+#include "adit/fleet/search/path.hpp"
+#include "adit/fleet/sync/fleet_graph.hpp"
 #include "adit/registration/registration.hpp"
 
 namespace adit {
@@ -41,13 +42,13 @@ Result<Seen> seen_by(const RobotRun& run, const SlamConfig& config) {
   seen.features = std::make_shared<FeatureStore>(seen.map, registration);
   seen.discernment = std::make_unique<Discernment>(
       seen.map, chain_of(graph_of(*seen.map)), [] { return std::vector<LoopCandidate>(); }, seen.features,
-      registration, config.loops.adaptive.merge_check.discernment);
+      config.loops.adaptive);
   return seen;
 }
 
 std::vector<std::uint32_t> sampled(const Seen& seen) {
   std::vector<std::uint32_t> out;
-  const std::vector<double> way = way_along(chain_of(graph_of(*seen.map)));
+  const std::vector<double> way = path_lengths(chain_of(graph_of(*seen.map)));
   for (double metres = 0.5 * kEvery; const auto k = keyframe_at(way, metres); metres += kEvery)
     out.push_back(*k);
   return out;
@@ -57,7 +58,7 @@ std::vector<std::uint32_t> sampled(const Seen& seen) {
 class MostAlike {
  public:
   MostAlike(const std::vector<Seen>& all, const SlamConfig& config)
-      : all_(all), lanes_{config.loops.adaptive.lanes, config.loops.adaptive.lane_m} {
+      : all_(all), lanes_{config.loops.adaptive.search.lanes, config.loops.adaptive.search.lane_m} {
     PlaceIndexConfig search = config.loops.place;
     search.max_distance = 1.0;
     search.exclude_recent = 0;

@@ -114,7 +114,7 @@ PairResult pair_result(const std::vector<const RobotRun*>& runs, const Meeting& 
   result.robots = {robots[0], robots[1]};
   for (std::size_t l = 0; l < judged.loop_classes.size(); ++l) {
     result.loops_before_pcm.add(judged.loop_classes[l]);
-    if (judged.solution.loops[l].in_clique) result.loops_after_pcm.add(judged.loop_classes[l]);
+    if (judged.solution.loops[l].is_selected) result.loops_after_pcm.add(judged.loop_classes[l]);
   }
   result.wrong_loops_in_solution = wrong_in_use(judged);
   const PairOutcome& outcome = judged.solution.pairs.front();
@@ -122,7 +122,7 @@ PairResult pair_result(const std::vector<const RobotRun*>& runs, const Meeting& 
   result.refused_reason = outcome.refused_reason;
   const std::vector<std::vector<Vector3>> paths = odometry_paths(runs, meeting);
   result.initial = picture(paths, runs, judged, [](const LoopOutcome&) { return true; });
-  result.after_pcm = picture(paths, runs, judged, [](const LoopOutcome& loop) { return loop.in_clique; });
+  result.after_pcm = picture(paths, runs, judged, [](const LoopOutcome& loop) { return loop.is_selected; });
   std::vector<std::vector<Vector3>> solved;
   for (const MergedRobot& robot : robots)
     solved.push_back(robot.ate ? robot.ate->positions : std::vector<Vector3>{});
@@ -148,7 +148,7 @@ JointResult joint_result(const std::vector<const RobotRun*>& runs, const Meeting
   }
   result.robots = merged_robots(runs, meeting, judged.solution);
   for (std::size_t l = 0; l < judged.loop_classes.size(); ++l) {
-    if (judged.solution.loops[l].in_clique) result.loops.add(judged.loop_classes[l]);
+    if (judged.solution.loops[l].is_selected) result.loops.add(judged.loop_classes[l]);
   }
   result.wrong_loops_in_solution = wrong_in_use(judged);
   result.bytes_sent_per_robot = meeting.bytes_sent;

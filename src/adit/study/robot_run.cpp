@@ -7,6 +7,7 @@
 
 #include "adit/core/parallel.hpp"
 #include "adit/core/progress.hpp"
+#include "adit/core/robot_ids.hpp"
 #include "adit/evaluation/ate.hpp"
 #include "adit/evaluation/statistics.hpp"
 #include "adit/slam/mapping.hpp"
@@ -134,11 +135,12 @@ Result<std::vector<T>> all_or_first_error(std::vector<Result<T>> results) {
 }  // namespace
 
 Result<std::vector<RobotRun>> run_robots(const std::vector<Recording>& recordings, const RunConfig& config) {
+  const Result<std::vector<RobotId>> ids = robot_ids(recordings.size());
+  if (!ids) return tl::unexpected(ids.error());
   const Phase phase("mapping", num_scans(recordings));
   std::vector<Result<RobotRun>> runs(recordings.size(), fail("not run"));
-  parallel_for_each(recordings.size(), [&](std::size_t i) {
-    runs[i] = run_robot(recordings[i], {static_cast<std::uint8_t>(i)}, config, phase);
-  });
+  parallel_for_each(recordings.size(),
+                    [&](std::size_t i) { runs[i] = run_robot(recordings[i], (*ids)[i], config, phase); });
   return all_or_first_error(std::move(runs));
 }
 

@@ -33,14 +33,20 @@ Result<> LoopbackBus::meet(RobotId a, RobotId b) {
     queue_.pop_front();
     const Result<Message> message = decode(bytes);
     const auto agent = agents_.find(receiver);
-    if (!message || agent == agents_.end()) {
+    const auto note_failure = [&](const std::string& why) {
       ++num_lost_;
-      continue;
-    }
-    try {
-      send(agent->second->on(*message));
-    } catch (const std::exception&) {  // one robot's failure stops no other
-      ++num_lost_;
+      failures_.push_back(format("message to robot {}: {}", receiver.value, why));
+    };
+    if (!message) {
+      note_failure(message.error().message);
+    } else if (agent == agents_.end()) {
+      note_failure("not on the bus");
+    } else {
+      try {
+        send(agent->second->on(*message));
+      } catch (const std::exception& failure) {  // one robot's failure stops no other
+        note_failure(failure.what());
+      }
     }
   }
   return {};

@@ -6,6 +6,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "adit/core/config.hpp"
@@ -32,11 +33,14 @@ class LoopbackBus {
   void join(Agent& agent) { agents_[agent.id()] = &agent; }
 
   /// The two come into range: delivers until both have nothing more to say. A message that cannot be decoded,
-  /// or that an agent fails on, is dropped and counted; nobody else is affected.
+  /// or on which an agent fails, is dropped and noted in `failures`; nobody else is affected.
   Result<> meet(RobotId a, RobotId b);
 
   [[nodiscard]] std::uint64_t bytes_sent(RobotId robot) const;
+  /// Messages that were lost on purpose, could not be decoded or made an agent fail.
   [[nodiscard]] int num_lost() const { return num_lost_; }
+  /// What made messages fail, one sentence per message that was not lost on purpose.
+  [[nodiscard]] const std::vector<std::string>& failures() const { return failures_; }
 
  private:
   void send(const std::vector<Message>& messages);
@@ -47,6 +51,7 @@ class LoopbackBus {
   std::deque<std::pair<RobotId, std::vector<std::byte>>> queue_;
   std::uint64_t num_sent_ = 0;
   int num_lost_ = 0;
+  std::vector<std::string> failures_;
 };
 
 }  // namespace adit

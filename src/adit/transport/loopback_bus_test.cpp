@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <limits>
 
 #include "adit/core/rng.hpp"
 #include "support/box_world.hpp"
@@ -46,6 +47,23 @@ TEST(LoopbackBus, CarriesAMeetingAndCountsItsBytes) {
   EXPECT_GT(bus.bytes_sent({1}), bus.bytes_sent({0}));  // the one with the larger id sends clouds
   EXPECT_EQ(bus.bytes_sent({9}), 0U);
   EXPECT_EQ(bus.num_lost(), 0);
+  EXPECT_TRUE(bus.failures().empty());
+}
+
+TEST(LoopbackBus, AMessageThatFailsIsNotedAndStopsNobody) {
+  std::vector<Agent> agents = robots_on_a_street(2);
+  RobotMap broken = test::drive(test::BoxWorld(11), {1}, {Pose(), Pose::planar(2.0, 0.0, 0.0)}, 0.0);
+  broken.step_covariances[1](0, 0) = std::numeric_limits<double>::quiet_NaN();
+  AgentConfig config;
+  config.policy = MergePolicy::paper;
+  agents[1] = Agent(std::make_shared<const RobotMap>(broken), config);
+  LoopbackBus bus;
+  join_all(agents, bus);
+  ASSERT_TRUE(bus.meet({0}, {1}).has_value());
+  ASSERT_EQ(bus.failures().size(), 1U);
+  EXPECT_EQ(bus.failures()[0].find("message to robot 0: message of kind 1 makes no sense"), 0U)
+      << bus.failures()[0];
+  EXPECT_EQ(agents[1].known().robots.size(), 2U) << "what the other one said has arrived";
 }
 
 TEST(LoopbackBus, ASecondMeetingSendsNothingAnew) {

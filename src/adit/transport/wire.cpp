@@ -57,10 +57,10 @@ class Reader {
     return value;
   }
   template <class T>
-  void vector(std::vector<T>& items) {
+  void vector(std::vector<T>& items, std::size_t max_items = std::numeric_limits<std::size_t>::max()) {
     const auto size = scalar<std::uint32_t>();
     // Every item takes at least a byte: a damaged count must not make us allocate gigabytes.
-    if (size > bytes_.size() - at_) return refuse();
+    if (size > max_items || size > bytes_.size() - at_) return refuse();
     for (std::uint32_t i = 0; i < size && ok_; ++i) get(*this, items.emplace_back());
   }
   void refuse() { ok_ = false; }
@@ -238,7 +238,7 @@ void get(Reader& in, GraphPart& part) {
   part.owner.value = in.scalar<std::uint8_t>();
   get(in, part.name);
   part.first_index = in.scalar<std::uint32_t>();
-  in.vector(part.nodes);
+  in.vector(part.nodes, kNodesPerMessage);
 }
 
 void put(Writer& out, const Places& places) {
@@ -248,15 +248,15 @@ void put(Writer& out, const Places& places) {
 }
 void get(Reader& in, Places& places) {
   places.first = in.scalar<std::uint32_t>();
-  in.vector(places.places);
+  in.vector(places.places, kPlacesPerMessage);
   places.last = in.scalar<std::uint8_t>() != 0;
 }
 
 void put(Writer& out, const CloudRequest& request) { out.vector(request.indices); }
-void get(Reader& in, CloudRequest& request) { in.vector(request.indices); }
+void get(Reader& in, CloudRequest& request) { in.vector(request.indices, kCloudsPerMessage); }
 
 void put(Writer& out, const Clouds& clouds) { out.vector(clouds.clouds); }
-void get(Reader& in, Clouds& clouds) { in.vector(clouds.clouds); }
+void get(Reader& in, Clouds& clouds) { in.vector(clouds.clouds, kCloudsPerMessage); }
 
 void put(Writer& out, const Loops& loops) {
   out.scalar(loops.author.value);
@@ -266,7 +266,7 @@ void put(Writer& out, const Loops& loops) {
 void get(Reader& in, Loops& loops) {
   loops.author.value = in.scalar<std::uint8_t>();
   loops.first = in.scalar<std::uint32_t>();
-  in.vector(loops.loops);
+  in.vector(loops.loops, kLoopsPerMessage);
 }
 
 void put(Writer& out, const std::pair<std::uint32_t, std::uint32_t>& ends) {
@@ -287,7 +287,7 @@ void get(Reader& in, TestedPlace& place) {
   place.a = in.scalar<std::uint32_t>();
   place.b = in.scalar<std::uint32_t>();
   place.outcome = in.scalar<PlaceOutcome>();
-  if (place.outcome > PlaceOutcome::tells) in.refuse();
+  if (place.outcome > PlaceOutcome::distinctive) in.refuse();
 }
 
 void put(Writer& out, const MergeHypothesis& hypothesis) {
@@ -338,13 +338,12 @@ void get(Reader& in, MergeCheck& check) {
   check.accepted = in.scalar<std::uint8_t>() != 0;
   in.vector(check.loops);
   get(in, check.reason);
-  in.vector(check.hypotheses);
+  in.vector(check.hypotheses, kHypothesesPerCheck);
   for (double& chance : check.goes_on) {
     chance = in.scalar<double>();
     if (!(chance >= 0.0 && chance <= 1.0)) in.refuse();
   }
-  if (!std::isfinite(check.evidence) || !std::isfinite(check.needed) ||
-      check.num_passed > check.num_checked || check.hypotheses.size() > kHypothesesPerCheck)
+  if (!std::isfinite(check.evidence) || !std::isfinite(check.needed) || check.num_passed > check.num_checked)
     in.refuse();
 }
 
@@ -356,7 +355,7 @@ void put(Writer& out, const MergeChecks& checks) {
 void get(Reader& in, MergeChecks& checks) {
   checks.author.value = in.scalar<std::uint8_t>();
   checks.first = in.scalar<std::uint32_t>();
-  in.vector(checks.checks);
+  in.vector(checks.checks, kChecksPerMessage);
 }
 
 using Body = decltype(Message::body);

@@ -35,7 +35,7 @@ MergeCheck a_check() {
   MergeCheck check{{1}, {3}, 12.75, 9.25, 40, 39, true, {{5, 70000}, {6, 8}}, "39 of 40 places agree"};
   check.hypotheses = {{HypothesisOutcome::accepted, 12.75, 40, 39, 0.0, check.loops},
                       {HypothesisOutcome::refuted, -3.5, 20, 13, 21.5, {{7, 9}}}};
-  check.hypotheses[0].places = {{5, 70000, PlaceOutcome::tells}, {9, 70004, PlaceOutcome::differs}};
+  check.hypotheses[0].places = {{5, 70000, PlaceOutcome::distinctive}, {9, 70004, PlaceOutcome::differs}};
   check.hypotheses[0].walls = 2.5;
   check.goes_on = {0.25, 0.5, 0.5, 0.625, 0.75, 0.75, 0.75, 1.0};
   return check;
@@ -110,7 +110,7 @@ TEST(Wire, DecisionsTravelExactly) {
   ASSERT_EQ(places.size(), 2U);
   EXPECT_EQ(places[1].a, 9U);
   EXPECT_EQ(places[1].b, 70004U);
-  EXPECT_EQ(places[0].outcome, PlaceOutcome::tells);
+  EXPECT_EQ(places[0].outcome, PlaceOutcome::distinctive);
   EXPECT_EQ(places[1].outcome, PlaceOutcome::differs);
   EXPECT_EQ(check.hypotheses[0].walls, 2.5);
   EXPECT_EQ(check.goes_on, a_check().goes_on);
@@ -139,6 +139,13 @@ TEST(Wire, DecisionsThatCannotBeAreRefused) {
     spoilers[i](check);
     EXPECT_TRUE(is_refused(check)) << i;
   }
+}
+
+TEST(Wire, MessagesLargerThanTheProtocolAllowsAreRefused) {
+  const Message largest{{0}, {1}, CloudRequest{std::vector<std::uint32_t>(kCloudsPerMessage, 1)}};
+  EXPECT_TRUE(decode(encode(largest)).has_value());
+  const Message larger{{0}, {1}, CloudRequest{std::vector<std::uint32_t>(kCloudsPerMessage + 1, 1)}};
+  EXPECT_FALSE(decode(encode(larger)).has_value());
 }
 
 TEST(Wire, PointsKeepFiveMillimetresAndFarOnesStayBehind) {

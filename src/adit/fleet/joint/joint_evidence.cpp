@@ -7,14 +7,11 @@
 #include <optional>
 #include <set>
 
+#include "adit/fleet/joint/frames.hpp"
 #include "adit/fleet/merge/merge_evidence.hpp"
 
 namespace adit {
 namespace {
-
-using RobotPair = std::pair<RobotId, RobotId>;
-
-constexpr double kOneSpot = 4.0;  // metres within which two comparisons are of one place
 
 /// One hypothesis of a pair whose own test did not join it.
 struct Candidate {
@@ -61,22 +58,22 @@ struct Between {
   double needed = 0.0;
 };
 
-/// Loops of two pairs that lead around a cycle and back to where it began.
+/// Pairs of loops, of two pairs of robots, around which a cycle closes.
 double num_cycles(const std::vector<const Candidate*>& candidates, const CycleCheck& cycles) {
   double num = 0.0;
   for (std::size_t i = 0; i < candidates.size(); ++i)
     for (std::size_t j = i + 1; j < candidates.size(); ++j) {
       const Merge& one = candidates[i]->merge;
       const Merge& other = candidates[j]->merge;
-      if (std::pair(one.a, one.b) != std::pair(other.a, other.b) && cycles.say_the_same(one, other))
+      if (std::pair(one.a, one.b) != std::pair(other.a, other.b) && cycles.agree(one, other))
         num += static_cast<double>(one.loops.size() * other.loops.size());
     }
   return num;
 }
 
-/// Which of them say what the `seed` says, the likeliest of each pair.
-std::vector<const Candidate*> saying_the_same(const Between& between, const Candidate& seed,
-                                              const CycleCheck& cycles) {
+/// Those that agree with `seed`, the likeliest of each pair.
+std::vector<const Candidate*> agreeing_with(const Between& between, const Candidate& seed,
+                                            const CycleCheck& cycles) {
   std::map<RobotPair, const Candidate*> of_pair;
   of_pair[{seed.merge.a, seed.merge.b}] = &seed;
   for (const Candidate& other : between.candidates) {
@@ -85,60 +82,62 @@ std::vector<const Candidate*> saying_the_same(const Between& between, const Cand
     const auto known = of_pair.find(pair);
     const bool is_likelier = known == of_pair.end() || (known->second->is_refuted() && !other.is_refuted()) ||
                              (!other.is_refuted() && other.merge.evidence > known->second->merge.evidence);
-    if (is_likelier && cycles.say_the_same(seed.merge, other.merge)) of_pair[pair] = &other;
+    if (is_likelier && cycles.agree(seed.merge, other.merge)) of_pair[pair] = &other;
   }
   std::vector<const Candidate*> out;
   for (const auto& [pair, candidate] : of_pair) out.push_back(candidate);
   return out;
 }
 
-/// Where the places are that a hypothesis was tested at, in the frame of the group of its robots that is
-/// `group`.
-std::vector<Vector3> spots_of(const FleetGraph& fleet, const Groups& groups, const Candidate& candidate,
-                              RobotId group) {
+/// The frame of one group of robots, in which the places of hypotheses about it are told apart.
+struct GroupFrame {
+  const FleetGraph& fleet;
+  const Groups& groups;
+  RobotId group;
+  double one_place_m;  ///< Comparisons nearer than this are of one place.
+};
+
+/// Where the places are that a hypothesis was tested at.
+std::vector<Vector3> positions_of(const GroupFrame& frame, const Candidate& candidate) {
+  const auto& [fleet, groups, group, one_place_m] = frame;
   const bool by_a = groups.group.at(candidate.merge.a) == group;
   const RobotId robot = by_a ? candidate.merge.a : candidate.merge.b;
-  std::vector<Vector3> spots;
+  std::vector<Vector3> positions;
   for (const TestedPlace& place : candidate.hypothesis->places)
-    spots.push_back(groups.T_group_robot.at(robot) *
-                    fleet.robots.at(robot).nodes.at(by_a ? place.a : place.b).T_odom_base.translation());
-  return spots;
+    positions.push_back(groups.T_group_robot.at(robot) *
+                        fleet.robots.at(robot).nodes.at(by_a ? place.a : place.b).T_odom_base.translation());
+  return positions;
 }
 
-bool is_near(const std::vector<Vector3>& spots, const Vector3& spot) {
-  return std::ranges::any_of(spots, [&](const Vector3& s) { return (s - spot).norm() < kOneSpot; });
-}
-
-/// Of all their places, each counted once, and of walls.
-double evidence_of(const FleetGraph& fleet, const Groups& groups, RobotId group,
-                   const std::vector<const Candidate*>& members) {
-  std::vector<std::vector<Vector3>> spots;
-  for (const Candidate* member : members) spots.push_back(spots_of(fleet, groups, *member, group));
+/// Evidence of all their places, each counted once, and of walls.
+double evidence_of(const GroupFrame& frame, const std::vector<const Candidate*>& members) {
+  std::vector<std::vector<Vector3>> positions;
+  for (const Candidate* member : members) positions.push_back(positions_of(frame, *member));
+  /// Members that compared this place.
+  const auto num_sharing = [&](const Vector3& position) {
+    return std::ranges::count_if(positions, [&](const std::vector<Vector3>& of_one) {
+      return std::ranges::any_of(
+          of_one, [&](const Vector3& other) { return (other - position).norm() < frame.one_place_m; });
+    });
+  };
   double sum = 0.0;
   for (std::size_t m = 0; m < members.size(); ++m) {
     const std::vector<double> evidence =
         evidence_at_places(members[m]->hypothesis->places, members[m]->check->goes_on);
-    double for_it = 0.0;
+    double positive = 0.0;
     double counted = 0.0;
     for (std::size_t p = 0; p < evidence.size(); ++p) {
       if (evidence[p] <= 0.0) {
         sum += evidence[p];
         continue;
       }
-      const auto num = std::ranges::count_if(
-          spots, [&](const std::vector<Vector3>& of_one) { return is_near(of_one, spots[m][p]); });
-      for_it += evidence[p];
-      counted += evidence[p] / static_cast<double>(num);
+      positive += evidence[p];
+      counted += evidence[p] / static_cast<double>(num_sharing(positions[m][p]));
     }
     const double walls = members[m]->hypothesis->walls;
-    sum += counted + (walls > 0.0 && for_it > 0.0 ? walls * counted / for_it : walls);
+    sum += counted + (walls > 0.0 && positive > 0.0 ? walls * counted / positive : walls);
   }
   return sum;
-}
-
-bool has_node(const FleetGraph& fleet, RobotId robot, std::uint32_t index) {
-  const auto graph = fleet.robots.find(robot);
-  return graph != fleet.robots.end() && index < graph->second.nodes.size();
 }
 
 /// Messages about its keyframes and loops may still be on their way.
@@ -148,7 +147,7 @@ bool is_known(const FleetGraph& fleet, const Candidate& candidate) {
   const RobotId b = check->b;
   return !merge.loops.empty() && merge.loops.size() == hypothesis->loops.size() &&
          std::ranges::all_of(hypothesis->places, [&](const TestedPlace& place) {
-           return has_node(fleet, a, place.a) && has_node(fleet, b, place.b);
+           return fleet.knows({a, place.a}) && fleet.knows({b, place.b});
          });
 }
 
@@ -171,45 +170,55 @@ std::map<RobotPair, Between> between_groups(const FleetGraph& fleet, const Group
   return out;
 }
 
-/// Whether all that was not refuted would be enough if it agreed: going around cycles takes time in large
-/// fleets.
-bool can_be_enough(const FleetGraph& fleet, const Groups& groups, RobotId group, const Between& between) {
+/// Whether all that was not refuted would be enough if it agreed: most groups need no going around cycles
+/// then.
+bool can_be_enough(const GroupFrame& frame, const Between& between) {
   std::set<RobotPair> pairs;
   double most = 0.0;
   for (const Candidate& candidate : between.candidates) {
     if (candidate.is_refuted()) continue;
     pairs.emplace(candidate.merge.a, candidate.merge.b);
-    most += std::max(0.0, evidence_of(fleet, groups, group, {&candidate}));
+    most += std::max(0.0, evidence_of(frame, {&candidate}));
   }
   return pairs.size() > 1 && most >= between.needed;
 }
 
-/// The likeliest way to lay two groups over one another, where it is likely enough and no other one is.
-std::optional<JointMerge> likeliest(const FleetGraph& fleet, const Groups& groups, RobotId group,
-                                    const Between& between, const CycleCheck& cycles) {
-  if (!can_be_enough(fleet, groups, group, between)) return {};
-  struct Way {
-    std::vector<const Candidate*> members;
-    double evidence;
-  };
-  std::vector<Way> ways;
+/// One alignment of two groups.
+struct Alignment {
+  std::vector<const Candidate*> members;
+  double evidence;
+};
+
+/// All that no member refutes, the likeliest first.
+std::vector<Alignment> alignments_of(const GroupFrame& frame, const Between& between,
+                                     const CycleCheck& cycles) {
+  std::vector<Alignment> alignments;
   for (const Candidate& seed : between.candidates) {
-    const auto has_seed = [&](const Way& way) { return std::ranges::count(way.members, &seed) > 0; };
-    if (seed.is_refuted() || std::ranges::any_of(ways, has_seed)) continue;
-    std::vector<const Candidate*> members = saying_the_same(between, seed, cycles);
+    const auto has_seed = [&](const Alignment& one) { return std::ranges::count(one.members, &seed) > 0; };
+    if (seed.is_refuted() || std::ranges::any_of(alignments, has_seed)) continue;
+    std::vector<const Candidate*> members = agreeing_with(between, seed, cycles);
     if (std::ranges::any_of(members, &Candidate::is_refuted)) continue;
-    const double evidence = evidence_of(fleet, groups, group, members);
-    ways.push_back({std::move(members), evidence});
+    const double evidence = evidence_of(frame, members);
+    alignments.push_back({std::move(members), evidence});
   }
-  std::ranges::stable_sort(ways, std::greater{}, &Way::evidence);
-  if (ways.empty() || ways[0].members.size() < 2 || ways[0].evidence < between.needed) return {};
-  if (ways.size() > 1 && ways[1].evidence > ways[0].evidence - between.needed) return {};
+  std::ranges::stable_sort(alignments, std::greater{}, &Alignment::evidence);
+  return alignments;
+}
+
+/// The likeliest alignment, where it has enough evidence and no other one has nearly as much.
+std::optional<JointMerge> likeliest(const GroupFrame& frame, const Between& between,
+                                    const CycleCheck& cycles) {
+  if (!can_be_enough(frame, between)) return {};
+  const std::vector<Alignment> alignments = alignments_of(frame, between, cycles);
+  if (alignments.empty() || alignments[0].members.size() < 2 || alignments[0].evidence < between.needed)
+    return {};
+  if (alignments.size() > 1 && alignments[1].evidence > alignments[0].evidence - between.needed) return {};
   std::vector<const Candidate*> all;
   for (const Candidate& candidate : between.candidates) all.push_back(&candidate);
-  const double share = num_cycles(ways[0].members, cycles) / num_cycles(all, cycles);
-  JointMerge out{{}, ways[0].evidence + std::log(share), between.needed};
+  const double share = num_cycles(alignments[0].members, cycles) / num_cycles(all, cycles);
+  JointMerge out{{}, alignments[0].evidence + std::log(share), between.needed};
   if (out.evidence < out.needed) return {};
-  for (const Candidate* member : ways[0].members) out.merges.push_back(member->merge);
+  for (const Candidate* member : alignments[0].members) out.merges.push_back(member->merge);
   return out;
 }
 
@@ -220,22 +229,22 @@ Merge merge_of(const FleetGraph& fleet, const MergeCheck& check, const MergeHypo
   Merge merge{check.a, check.b, hypothesis.evidence, {}};
   for (const auto& [a, b] : hypothesis.loops) {
     const auto loop = fleet.loops.find({{check.a, a}, {check.b, b}});
-    if (loop != fleet.loops.end() && has_node(fleet, check.a, a) && has_node(fleet, check.b, b))
-      merge.loops.push_back(pcm_loop_of(loop->second, config));
+    if (loop != fleet.loops.end() && fleet.knows({check.a, a}) && fleet.knows({check.b, b}))
+      merge.loops.push_back(pcm_loop_of(loop->second, config.loop_noise));
   }
   return merge;
 }
 
-std::vector<JointMerge> joint_merges(const FleetGraph& fleet, std::vector<Merge> merges,
-                                     const std::map<RobotId, OdometryChain>& chains,
+std::vector<JointMerge> joint_merges(const FleetGraph& fleet, std::vector<Merge> merges, const Chains& chains,
                                      const BackEndConfig& config) {
   std::vector<JointMerge> out;
   while (true) {
     const Groups groups = groups_of(fleet, merges);
-    const CycleCheck cycles(merges, chains);
+    const CycleCheck cycles(merges, chains, config.cycles);
     std::optional<JointMerge> best;
     for (const auto& [pair, between] : between_groups(fleet, groups, config)) {
-      std::optional<JointMerge> one = likeliest(fleet, groups, pair.first, between, cycles);
+      std::optional<JointMerge> one =
+          likeliest({fleet, groups, pair.first, config.one_place_m}, between, cycles);
       if (one && (!best || one->evidence > best->evidence)) best = std::move(one);
     }
     if (!best) return out;

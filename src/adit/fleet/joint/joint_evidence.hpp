@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "adit/fleet/joint/fleet_graph.hpp"
+#include "adit/fleet/joint/fleet_solution.hpp"
 #include "adit/fleet/joint/merge_cycles.hpp"
 
 namespace adit {
@@ -32,7 +32,6 @@ struct JointMerge {
 /// that says the same and was refuted keeps them apart. Pairs whose test accepted a hypothesis are not asked
 /// again: that one is among `merges`, or was taken back.
 [[nodiscard]] std::vector<JointMerge> joint_merges(const FleetGraph& fleet, std::vector<Merge> merges,
-                                                   const std::map<RobotId, OdometryChain>& chains,
-                                                   const BackEndConfig& config);
+                                                   const Chains& chains, const BackEndConfig& config);
 
 }  // namespace adit

@@ -36,7 +36,7 @@ void add_hypothesis(FleetGraph& fleet, RobotId a, RobotId b, double angle, Hypot
   for (int i = 0; i < 5; ++i) {
     const std::uint32_t ka = at(a, angle + 0.15 * i);
     const std::uint32_t kb = at(b, angle + 0.15 * i);
-    hypothesis.places.push_back({ka, kb, PlaceOutcome::tells});
+    hypothesis.places.push_back({ka, kb, PlaceOutcome::distinctive});
     if (i % 2 != 0) continue;
     // Of several hypotheses each has loops of its own.
     const auto end = kb + static_cast<std::uint32_t>(check.hypotheses.size());

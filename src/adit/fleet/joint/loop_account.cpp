@@ -61,18 +61,18 @@ std::string reason_of(const LoopOutcome& outcome, const MergeCheck* check,
   if (outcome.in_use())
     return hypothesis ? "in use: " + finding(*check, *hypothesis)
                       : std::string("in use: agrees with the odometries and the other loops in use");
-  // Of a merge that passed its test and was taken back, no loop is in the clique.
+  // Of a merge that passed its test and was taken back, no loop is selected.
   const bool passed = hypothesis && check->hypotheses[*hypothesis].outcome == HypothesisOutcome::accepted;
-  if ((outcome.in_clique || passed) && pair != nullptr && !pair->merged)
+  if ((outcome.is_selected || passed) && pair != nullptr && !pair->merged)
     return "maps not joined: " + pair->refused_reason;
-  if (outcome.in_clique)
+  if (outcome.is_selected)
     return "switched off by GNC: errs by more than noise from what odometry and the other loops say";
   if (check != nullptr && !check->hypotheses.empty())
     return hypothesis ? "not in use: " + finding(*check, *hypothesis)
                       : std::string("not in use: agrees with too few other loops to be a hypothesis");
-  if (pair != nullptr && pair->clique > 0)
+  if (pair != nullptr && pair->num_selected > 0)
     return format("dropped by PCM: disagrees with some of the {} loops of the largest set that agree",
-                  pair->clique);
+                  pair->num_selected);
   return pair != nullptr && !pair->merged ? "maps not joined: " + pair->refused_reason
                                           : std::string("not in use: a keyframe of it is not known yet");
 }

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "adit/fleet/joint/fleet_graph.hpp"
+#include "adit/fleet/joint/fleet_solution.hpp"
 
 namespace adit {
 

@@ -7,13 +7,13 @@
 namespace adit {
 namespace {
 
-LoopOutcome outcome_of(std::uint32_t a, std::uint32_t b, bool in_clique, double weight) {
+LoopOutcome outcome_of(std::uint32_t a, std::uint32_t b, bool is_selected, double weight) {
   LoopOutcome outcome;
   outcome.loop.from = {{0}, a};
   outcome.loop.to = {{1}, b};
   outcome.loop.verdict = LoopVerdict::accepted;
   outcome.loop.reason = "70 inliers";
-  outcome.in_clique = in_clique;
+  outcome.is_selected = is_selected;
   outcome.weight = weight;
   return outcome;
 }
@@ -23,7 +23,7 @@ FleetSolution pair_with(std::size_t clique, const std::string& refused_reason) {
   PairOutcome& pair = solution.pairs.emplace_back();
   pair.a = {0};
   pair.b = {1};
-  pair.clique = clique;
+  pair.num_selected = clique;
   pair.merged = refused_reason.empty();
   pair.refused_reason = refused_reason;
   return solution;

@@ -12,10 +12,10 @@
 namespace adit {
 namespace {
 
-/// The chains of those robots that have loops, each made once.
-class Chains {
+/// The odometry of those robots that have loops, each made once.
+class ChainsOnDemand {
  public:
-  explicit Chains(const FleetGraph& fleet) : fleet_(fleet) {}
+  explicit ChainsOnDemand(const FleetGraph& fleet) : fleet_(fleet) {}
   const OdometryChain& of(RobotId robot) {
     const auto known = chains_.find(robot);
     return known != chains_.end() ? known->second
@@ -24,13 +24,8 @@ class Chains {
 
  private:
   const FleetGraph& fleet_;
-  std::map<RobotId, OdometryChain> chains_;
+  Chains chains_;
 };
-
-bool knows(const FleetGraph& fleet, KeyframeId id) {
-  const auto robot = fleet.robots.find(id.robot);
-  return robot != fleet.robots.end() && id.index < robot->second.nodes.size();
-}
 
 std::vector<PairOutcome> all_pairs(const FleetGraph& fleet) {
   std::vector<PairOutcome> pairs;
@@ -48,7 +43,7 @@ std::vector<PairOutcome> all_pairs(const FleetGraph& fleet) {
 LoopSelection nothing_selected(const FleetGraph& fleet) {
   LoopSelection selection;
   for (const auto& [ends, loop] : fleet.loops) {
-    if (loop.verdict != LoopVerdict::accepted || !knows(fleet, loop.from) || !knows(fleet, loop.to)) continue;
+    if (loop.verdict != LoopVerdict::accepted || !fleet.knows(loop.from) || !fleet.knows(loop.to)) continue;
     selection.loops.push_back({loop, false, 0.0});
   }
   selection.pairs = all_pairs(fleet);
@@ -62,19 +57,20 @@ LoopSelection nothing_selected(const FleetGraph& fleet) {
 
 /// Runs PCM on the loops of one pair (indices into `loops`), marks the ones it keeps and fills in the clique
 /// sizes.
-void keep_consistent(Chains& chains, const BackEndConfig& config, const std::vector<std::size_t>& of_pair,
-                     std::vector<LoopOutcome>& loops, PairOutcome& pair) {
+void keep_consistent(ChainsOnDemand& chains, const BackEndConfig& config,
+                     const std::vector<std::size_t>& of_pair, std::vector<LoopOutcome>& loops,
+                     PairOutcome& pair) {
   std::vector<PcmLoop> measured;
-  for (const std::size_t l : of_pair) measured.push_back(pcm_loop_of(loops[l].loop, config));
+  for (const std::size_t l : of_pair) measured.push_back(pcm_loop_of(loops[l].loop, config.loop_noise));
   const PcmResult result = pcm(chains.of(pair.a), chains.of(pair.b), measured, config.pcm);
-  for (const std::size_t kept : result.largest) loops[of_pair[kept]].in_clique = true;
-  pair.clique = result.largest.size();
+  for (const std::size_t kept : result.largest) loops[of_pair[kept]].is_selected = true;
+  pair.num_selected = result.largest.size();
   pair.second_clique = result.second.size();
   pair.clique_exact = result.optimal;
 }
 
 /// Keeps the loops between two robots, or within one, that an accepted check speaks of; their number.
-std::size_t keep_checked(const FleetGraph& fleet, const std::pair<RobotId, RobotId>& robots,
+std::size_t keep_checked(const FleetGraph& fleet, const RobotPair& robots,
                          const std::vector<std::size_t>& of_pair, std::vector<LoopOutcome>& loops) {
   const auto check = fleet.checks.find(robots);
   if (check == fleet.checks.end() || !check->second.accepted) return 0;
@@ -83,8 +79,8 @@ std::size_t keep_checked(const FleetGraph& fleet, const std::pair<RobotId, Robot
                                                                   check->second.loops.end());
   for (const std::size_t l : of_pair) {
     const LoopClosure& loop = loops[l].loop;
-    loops[l].in_clique = checked.contains({loop.from.index, loop.to.index});
-    num += loops[l].in_clique ? 1 : 0;
+    loops[l].is_selected = checked.contains({loop.from.index, loop.to.index});
+    num += loops[l].is_selected ? 1 : 0;
   }
   return num;
 }
@@ -147,15 +143,17 @@ std::vector<Merge> refuted_hypotheses(const FleetGraph& fleet, const BackEndConf
 /// The merges of all pairs, judged by one another.
 class MergeReview {
  public:
-  MergeReview(const FleetGraph& fleet, Chains& chains, const BackEndConfig& config, LoopSelection& selection)
+  MergeReview(const FleetGraph& fleet, ChainsOnDemand& chains, const BackEndConfig& config,
+              LoopSelection& selection)
       : fleet_(fleet), config_(config), selection_(selection) {
     for (const PairOutcome& pair : selection.pairs) {
       for (const RobotId robot : {pair.a, pair.b})
         if (fleet.checks.contains({pair.a, pair.b})) chains_.emplace(robot, chains.of(robot));
-      if (pair.clique == 0) continue;
+      if (pair.num_selected == 0) continue;
       Merge merge{pair.a, pair.b, fleet.checks.at({pair.a, pair.b}).evidence, {}};
       for (const std::size_t l : selection.of_pairs.at({pair.a, pair.b}))
-        if (selection.loops[l].in_clique) merge.loops.push_back(pcm_loop_of(selection.loops[l].loop, config));
+        if (selection.loops[l].is_selected)
+          merge.loops.push_back(pcm_loop_of(selection.loops[l].loop, config.loop_noise));
       merges_.push_back(std::move(merge));
     }
   }
@@ -164,11 +162,11 @@ class MergeReview {
   void take_back() {
     std::set<std::size_t> gone;
     for (const Contradiction& contradiction :
-         contradictions(merges_, refuted_hypotheses(fleet_, config_), chains_)) {
+         contradictions(merges_, refuted_hypotheses(fleet_, config_), chains_, config_.cycles)) {
       const Merge& merge = merges_[contradiction.merge];
       outcome_of(merge).refused_reason = taken_back(fleet_, merges_, contradiction);
       for (const std::size_t l : selection_.of_pairs.at({merge.a, merge.b}))
-        selection_.loops[l].in_clique = false;
+        selection_.loops[l].is_selected = false;
       gone.insert(contradiction.merge);
     }
     std::vector<Merge> left;
@@ -186,9 +184,9 @@ class MergeReview {
         for (const PcmLoop& loop : merge.loops) ends.emplace(loop.a, loop.b);
         for (const std::size_t l : selection_.of_pairs.at({merge.a, merge.b})) {
           const LoopClosure& loop = selection_.loops[l].loop;
-          selection_.loops[l].in_clique = ends.contains({loop.from.index, loop.to.index});
+          selection_.loops[l].is_selected = ends.contains({loop.from.index, loop.to.index});
         }
-        pair.clique = merge.loops.size();
+        pair.num_selected = merge.loops.size();
         pair.joined_reason = joined(fleet_, joint);
       }
   }
@@ -202,7 +200,7 @@ class MergeReview {
   const FleetGraph& fleet_;
   const BackEndConfig& config_;
   LoopSelection& selection_;
-  std::map<RobotId, OdometryChain> chains_;
+  Chains chains_;
   std::vector<Merge> merges_;  ///< Those that stand.
 };
 
@@ -211,14 +209,14 @@ class MergeReview {
 LoopSelection select_loops(const FleetGraph& fleet, const BackEndConfig& config) {
   const bool is_adaptive = fleet.policy == MergePolicy::adaptive;
   LoopSelection selection = nothing_selected(fleet);
-  Chains chains(fleet);
+  ChainsOnDemand chains(fleet);
   for (PairOutcome& pair : selection.pairs) {
     const std::vector<std::size_t>& of_pair = selection.of_pairs.at({pair.a, pair.b});
     pair.num_loops = of_pair.size();
     if (is_adaptive) {
-      pair.clique = keep_checked(fleet, {pair.a, pair.b}, of_pair, selection.loops);
+      pair.num_selected = keep_checked(fleet, {pair.a, pair.b}, of_pair, selection.loops);
     } else if (!config.pcm_on || of_pair.empty()) {
-      for (const std::size_t l : of_pair) selection.loops[l].in_clique = true;
+      for (const std::size_t l : of_pair) selection.loops[l].is_selected = true;
     } else {
       keep_consistent(chains, config, of_pair, selection.loops, pair);
     }

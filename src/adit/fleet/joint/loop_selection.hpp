@@ -9,16 +9,17 @@
 #include <utility>
 #include <vector>
 
-#include "adit/fleet/joint/fleet_graph.hpp"
+#include "adit/fleet/joint/fleet_solution.hpp"
 
 namespace adit {
 
 /// Indices into LoopSelection::loops by the robots that they start and end at: of every pair, and of each
 /// robot with loops within its own map.
-using LoopsOfPairs = std::map<std::pair<RobotId, RobotId>, std::vector<std::size_t>>;
+using LoopsOfPairs = std::map<RobotPair, std::vector<std::size_t>>;
 
 struct LoopSelection {
-  std::vector<LoopOutcome> loops;  ///< The accepted ones between known keyframes; chosen are those in_clique.
+  std::vector<LoopOutcome>
+      loops;  ///< The accepted ones between known keyframes; chosen are those is_selected.
   std::vector<PairOutcome> pairs;  ///< Any two robots; with a reason only where their merge is taken back.
   LoopsOfPairs of_pairs;
 };

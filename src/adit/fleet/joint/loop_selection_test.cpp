@@ -25,8 +25,8 @@ TEST(LoopSelection, SortsLoopsByPairsAndChoosesNoneThatWasNeverTestedWithinARobo
   EXPECT_EQ(selection.pairs.size(), 3U);
   const LoopsOfPairs expected = {{{{0}, {1}}, {0}}, {{{0}, {2}}, {}}, {{{1}, {2}}, {}}, {{{2}, {2}}, {1}}};
   EXPECT_EQ(selection.of_pairs, expected);
-  EXPECT_TRUE(selection.loops[0].in_clique);
-  EXPECT_FALSE(selection.loops[1].in_clique);
+  EXPECT_TRUE(selection.loops[0].is_selected);
+  EXPECT_FALSE(selection.loops[1].is_selected);
 }
 
 TEST(LoopSelection, WhereChecksAreNeededOnlyTheLoopsOfAnAcceptedOneCount) {
@@ -53,7 +53,7 @@ TEST(LoopSelection, WhereChecksAreNeededOnlyTheLoopsOfAnAcceptedOneCount) {
   fleet.checks[{{0}, {1}}] = check;
   const FleetSolution merged = solve(fleet, config);
   ASSERT_TRUE(merged.pairs[0].merged) << merged.pairs[0].refused_reason;
-  EXPECT_EQ(merged.pairs[0].clique, 6U);
+  EXPECT_EQ(merged.pairs[0].num_selected, 6U);
   ASSERT_EQ(merged.components.size(), 1U);
   EXPECT_LT(largest_error(merged, merged.components[0]), 1e-3);
 }
@@ -156,7 +156,7 @@ TEST(LoopSelection, FalseLoopsAreDroppedByPcm) {
   ASSERT_EQ(solution.components.size(), 1U);
   EXPECT_EQ(solution.components[0].anchor, RobotId{0});
   EXPECT_EQ(solution.pairs[0].num_loops, 11U);
-  EXPECT_EQ(solution.pairs[0].clique, 6U);
+  EXPECT_EQ(solution.pairs[0].num_selected, 6U);
   EXPECT_LT(largest_error(solution, solution.components[0]), 0.05);
   for (const LoopOutcome& outcome : solution.loops) {
     EXPECT_EQ(outcome.in_use(), outcome.loop.to.index == outcome.loop.from.index);

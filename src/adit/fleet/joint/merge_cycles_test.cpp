@@ -9,7 +9,7 @@
 #include <set>
 
 #include "adit/core/rng.hpp"
-#include "adit/fleet/joint/fleet_graph.hpp"
+#include "adit/fleet/joint/fleet_solution.hpp"
 #include "adit/robot/robot_map.hpp"
 
 namespace adit {
@@ -52,7 +52,7 @@ struct RandomFleet {
     for (std::size_t k = 0; k < 20; k += 4) {
       const Pose T_a_b =
           truth[robots.first][from_a + k].inverse() * displaced * truth[robots.second][from_b + k];
-      merge.loops.push_back({from_a + k, from_b + k, T_a_b, loop_information({})});
+      merge.loops.push_back({from_a + k, from_b + k, T_a_b, loop_information()});
     }
     merges.push_back(std::move(merge));
   }

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-#include "adit/fleet/joint/fleet_graph.hpp"
+#include "adit/fleet/sync/fleet_graph.hpp"
 #include "support/box_world.hpp"
 #include "support/synthetic_scan.hpp"
 
@@ -43,7 +43,7 @@ std::shared_ptr<const RobotMap> in_a_tube(const std::vector<test::Box>& boxes) {
 }
 
 std::vector<LoopCandidate> similar_places(const std::shared_ptr<const RobotMap>& map) {
-  const OtherPlaces others(map, chain_of(graph_of(*map)), {});
+  const SelfSimilarity others(map, chain_of(graph_of(*map)), {});
   std::vector<LoopCandidate> found;
   for (std::uint32_t k = 0; k < map->keyframes.size(); ++k)
     if (const auto match = others.most_similar(k); match && k < match->match.index) found.push_back(*match);
@@ -53,21 +53,9 @@ std::vector<LoopCandidate> similar_places(const std::shared_ptr<const RobotMap>&
 struct OnAMap {
   explicit OnAMap(const std::shared_ptr<const RobotMap>& map)
       : discernment(map, chain_of(graph_of(*map)), [map] { return similar_places(map); },
-                    std::make_shared<FeatureStore>(map, RegistrationConfig{}), {}, {}) {}
+                    std::make_shared<FeatureStore>(map, RegistrationConfig{}), {}) {}
   Discernment discernment;
 };
-
-TEST(WayAlong, CountsMetresAndFindsKeyframes) {
-  const OdometryChain chain({Pose(), Pose::translation_of(1, 0, 0), Pose::translation_of(1, 2, 0)},
-                            {Matrix6::Identity(), Matrix6::Identity()});
-  const std::vector<double> way = way_along(chain);
-  EXPECT_EQ(way, (std::vector<double>{0.0, 1.0, 3.0}));
-  EXPECT_EQ(keyframe_at(way, 0.0), 0U);
-  EXPECT_EQ(keyframe_at(way, 1.5), 2U);
-  EXPECT_FALSE(keyframe_at(way, -0.1));
-  EXPECT_FALSE(keyframe_at(way, 3.1));
-  EXPECT_FALSE(keyframe_at({}, 0.0));
-}
 
 TEST(Discernment, ADisplacementDoesNotShowInASmoothTubeAndDoesBesideABlock) {
   OnAMap smooth(in_a_tube({}));
@@ -129,39 +117,15 @@ TEST(Discernment, AHeadingThatWandersLeadsLessFar) {
   EXPECT_GE(reach, 50.0);
 }
 
-TEST(LookAlikes, GoOnHalfTheTimeUntilSomethingIsKnown) {
-  for (const std::size_t passed : {0U, 1U, 2U, 100U})
-    EXPECT_EQ(chance_to_go_on(LookAlikes().chances(), passed), 0.5);
-}
-
-TEST(LookAlikes, ThatHaveGoneOnForLongAreTrustedToGoOn) {
-  LookAlikes seen;
-  for (int i = 0; i < 80; ++i) seen.add(0, i < 8);   // nine of ten end at once,
-  for (int i = 0; i < 80; ++i) seen.add(7, i < 76);  // and those that passed seven go on
-  EXPECT_LT(chance_to_go_on(seen.chances(), 0), 0.2);
-  EXPECT_LT(chance_to_go_on(seen.chances(), 6), 0.2);
-  EXPECT_GT(chance_to_go_on(seen.chances(), 7), 0.8);
-  EXPECT_EQ(chance_to_go_on(seen.chances(), 14), chance_to_go_on(seen.chances(), 7));  // one phase
-  EXPECT_EQ(chance_to_go_on(seen.chances(), 1000), chance_to_go_on(seen.chances(), 7));
-}
-
-TEST(LookAlikes, TheChanceNeverFallsWithTheWayThatTheyHaveGone) {
-  LookAlikes seen;
-  for (int i = 0; i < 80; ++i) seen.add(0, i < 72);
-  for (int i = 0; i < 80; ++i) seen.add(3, false);  // a mere chance of this map
-  EXPECT_GT(chance_to_go_on(seen.chances(), 0), 0.8);
-  EXPECT_EQ(chance_to_go_on(seen.chances(), 3), chance_to_go_on(seen.chances(), 0));
-}
-
-TEST(OtherPlaces, NamesThePlaceThatLooksAlikeAndNoneNearBy) {
+TEST(SelfSimilarity, NamesThePlaceThatLooksAlikeAndNoneNearBy) {
   const auto map = in_a_tube({{{15.0, 1.5, -2.0}, {17.0, 4.0, 1.0}}, {{45.0, 1.5, -2.0}, {47.0, 4.0, 1.0}}});
-  const OtherPlaces others(map, chain_of(graph_of(*map)), {});
+  const SelfSimilarity others(map, chain_of(graph_of(*map)), {});
   const auto match = others.most_similar(30);
   ASSERT_TRUE(match.has_value());
   EXPECT_NEAR(kStep * match->match.index, 45.0, 4.0);  // 30 m farther, at the other block
-  const std::vector<double> likeness = others.likeness();
-  ASSERT_EQ(likeness.size(), map->keyframes.size());
-  EXPECT_EQ(likeness[30], match->distance);
+  const std::vector<double> distances = others.distances();
+  ASSERT_EQ(distances.size(), map->keyframes.size());
+  EXPECT_EQ(distances[30], match->distance);
 }
 
 }  // namespace

@@ -8,34 +8,40 @@
 #include <utility>
 
 namespace adit {
-namespace {
-
-constexpr double kTrueCheck = 0.99;  // chance that scans do not differ where the alignment is true
-
-}  // namespace
 
 double chance_to_go_on(const ChancesToGoOn& chances, std::size_t passed) {
   const std::size_t phase = std::min<std::size_t>(std::bit_width(passed + 1), chances.size()) - 1;
-  return std::min(chances[phase], kTrueCheck);
+  return std::min(chances[phase], kAgreementIfTrue);
 }
 
 double evidence_of_agreement(const ChancesToGoOn& chances, std::size_t passed) {
-  return std::log(kTrueCheck / chance_to_go_on(chances, passed));
+  return std::log(kAgreementIfTrue / chance_to_go_on(chances, passed));
 }
 
-std::vector<double> evidence_at_places(const std::vector<TestedPlace>& along_the_way,
-                                       const ChancesToGoOn& chances) {
+std::vector<double> evidence_at_places(const std::vector<TestedPlace>& places, const ChancesToGoOn& chances) {
   std::vector<double> evidence;
   std::size_t passed = 0;  // since places differed
-  for (const TestedPlace& place : along_the_way) {
+  for (const TestedPlace& place : places) {
     double of_place = 0.0;
     if (place.outcome == PlaceOutcome::differs)
-      of_place = std::log((1.0 - kTrueCheck) / (1.0 - chance_to_go_on(chances, std::exchange(passed, 0))));
-    else if (place.outcome == PlaceOutcome::tells)
+      of_place =
+          std::log((1.0 - kAgreementIfTrue) / (1.0 - chance_to_go_on(chances, std::exchange(passed, 0))));
+    else if (place.outcome == PlaceOutcome::distinctive)
       of_place = evidence_of_agreement(chances, passed++);
     evidence.push_back(of_place);
   }
   return evidence;
+}
+
+double binomial_tail(std::size_t k, std::size_t n, double p) {
+  double chance = 0.0;
+  for (std::size_t i = k; i <= n; ++i) {
+    const auto x = static_cast<double>(i);
+    const auto all = static_cast<double>(n);
+    chance += std::exp(std::lgamma(all + 1.0) - std::lgamma(x + 1.0) - std::lgamma(all - x + 1.0) +
+                       x * std::log(p) + (all - x) * std::log1p(-p));
+  }
+  return chance;
 }
 
 }  // namespace adit

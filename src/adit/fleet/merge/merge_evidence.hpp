@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// What the places at which two maps were compared say about one way to lay them over one another.
+/// What the places at which two maps were compared say about one alignment of them.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +10,24 @@
 
 namespace adit {
 
-/// At one more place that tells, after `passed` of them. Never more than where the alignment is true.
+/// P(scans of one place do not differ | the alignment is true), as it is on average. Constant, not a setting:
+/// the evidence of several robots is added up, so that all have to weigh alike. (A hypothesis is refuted by a
+/// lower share, MergeCheckConfig::agreement_at_worst, because single stretches are worse than the average.)
+inline constexpr double kAgreementIfTrue = 0.99;
+
+/// P(the next distinctive place agrees | look-alikes), after `passed` that agreed; at most kAgreementIfTrue.
 [[nodiscard]] double chance_to_go_on(const ChancesToGoOn& chances, std::size_t passed);
 
-/// At one more place that tells: the logarithm of the likelihood ratio of "the same stretch" to "looks
-/// alike".
+/// Evidence of one more distinctive place that agrees, after `passed` of them: the logarithm of the
+/// likelihood ratio of "the same stretch" to "look-alikes".
 [[nodiscard]] double evidence_of_agreement(const ChancesToGoOn& chances, std::size_t passed);
 
-/// The same of each place, in the order of the way: negative where scans differ, and there look-alikes begin
-/// anew; zero where a place does not tell.
-[[nodiscard]] std::vector<double> evidence_at_places(const std::vector<TestedPlace>& along_the_way,
+/// Evidence of each place, in the order driven: negative where scans differ, and there look-alikes begin
+/// anew; zero where a place agrees and is not distinctive.
+[[nodiscard]] std::vector<double> evidence_at_places(const std::vector<TestedPlace>& places,
                                                      const ChancesToGoOn& chances);
+
+/// P(`k` or more of `n` events), each with probability `p`.
+[[nodiscard]] double binomial_tail(std::size_t k, std::size_t n, double p);
 
 }  // namespace adit

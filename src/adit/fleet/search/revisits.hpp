@@ -1,31 +1,45 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Places of its own map to which a robot may have come back: what odometry says about them.
+/// Places of its own map to which a robot may have come back, and what its odometry says about loops there.
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
+#include "adit/core/config.hpp"
 #include "adit/posegraph/pcm.hpp"
 
 namespace adit {
 
-/// Metres that a robot has driven at least between two visits: two keyframes no farther apart along the way
-/// may see the same walls without its having come back.
-inline constexpr double kRevisitWay = 40.0;
+struct RevisitConfig {
+  double path_m = 40.0;
+  double near_m = 5.0;
+  double sigmas = 3.0;
+  double probability = 0.99;
+};
+inline Fields fields_of(RevisitConfig& c) {
+  return {{"path_m", &c.path_m, "m", 1.0, 10000.0,
+           "path driven between two visits at least: nearer keyframes see the same walls without a return"},
+          {"near_m", &c.near_m, "m", 0.0, 1000.0, "two keyframes of one place stand this near"},
+          {"sigmas", &c.sigmas, "", 0.1, 100.0,
+           "sigmas by which odometry may be off, and factor on its noise in the test of a loop"},
+          {"probability", &c.probability, "", 0.5, 0.999999, "a true loop passes that test this often"}};
+}
 
-/// The later keyframes that may stand where keyframe k does: `kRevisitWay` or more along `way` (way_along)
-/// and no farther away than a few metres and what the odometry may be off.
+/// The later keyframes that may stand where keyframe k does: at least `config.path_m` on along `path_m`
+/// (path_lengths), and within a few metres and the drift of the odometry.
 [[nodiscard]] std::vector<std::uint32_t> possible_revisits(const OdometryChain& chain,
-                                                           const std::vector<double>& way, std::uint32_t k);
+                                                           const std::vector<double>& path_m, std::uint32_t k,
+                                                           const RevisitConfig& config = {});
 
 /// Whether a loop within one map is compatible with its odometry, generously: odometry slips.
-[[nodiscard]] bool fits_odometry(const OdometryChain& chain, const PcmLoop& loop);
+[[nodiscard]] bool fits_odometry(const OdometryChain& chain, const PcmLoop& loop,
+                                 const RevisitConfig& config = {});
 
 /// Evidence that such a loop is true: the logarithm of the likelihood ratio of how far it lies, in the plane,
 /// from where the odometry led. A true one is as far as the odometry drifts; one that only looks alike may be
 /// anywhere that `possible_revisits` allows.
-[[nodiscard]] double odometry_evidence(const OdometryChain& chain, const PcmLoop& loop);
+[[nodiscard]] double odometry_evidence(const OdometryChain& chain, const PcmLoop& loop,
+                                       const RevisitConfig& config = {});
 
 }  // namespace adit

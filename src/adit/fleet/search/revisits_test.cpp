@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "adit/core/rng.hpp"
-#include "adit/fleet/joint/fleet_graph.hpp"
-#include "adit/fleet/merge/discernment.hpp"
+#include "adit/fleet/search/path.hpp"
+#include "adit/fleet/sync/fleet_graph.hpp"
 #include "adit/robot/robot_map.hpp"
 
 namespace adit {
@@ -28,13 +28,13 @@ TEST(Revisits, NoneOnAStraightDriveOrBesideItself) {
   for (const double turn : {0.0, 0.5 * kRound}) {
     const OdometryChain chain = drive(200, turn);
     for (std::uint32_t k = 0; k < chain.size(); ++k)
-      EXPECT_TRUE(possible_revisits(chain, way_along(chain), k).empty()) << k;
+      EXPECT_TRUE(possible_revisits(chain, path_lengths(chain), k).empty()) << k;
   }
 }
 
 TEST(Revisits, TheSecondRoundMayMeetTheFirst) {
   const OdometryChain chain = drive(300, kRound);
-  const std::vector<std::uint32_t> found = possible_revisits(chain, way_along(chain), 40);
+  const std::vector<std::uint32_t> found = possible_revisits(chain, path_lengths(chain), 40);
   ASSERT_FALSE(found.empty());
   EXPECT_GT(found.front(), 200U);
   EXPECT_LE(found.front(), 236U);
@@ -46,7 +46,7 @@ TEST(Revisits, OdometryAcceptsItsDriftAndExcludesWhatIsFarBeyond) {
   const OdometryChain chain = drive(300, kRound);
   const auto loop = [&](double ahead) {
     return PcmLoop{40, 240, chain.between(40, 240) * Pose::translation_of(ahead, 0.0, 0.0),
-                   loop_information({})};
+                   loop_information()};
   };
   EXPECT_TRUE(fits_odometry(chain, loop(0.0)));
   EXPECT_TRUE(fits_odometry(chain, loop(4.0)));
@@ -66,7 +66,7 @@ TEST(Revisits, OfLookAlikesTheEvidenceIsNoneOnAverage) {
     const double y = rng.uniform(-radius, radius);
     if (std::hypot(x, y) > radius) continue;
     const Pose T_a_b = chain.between(40, 240) * Pose::translation_of(x, y, 0.0);
-    sum += std::exp(odometry_evidence(chain, {40, 240, T_a_b, loop_information({})}));
+    sum += std::exp(odometry_evidence(chain, {40, 240, T_a_b, loop_information()}));
     ++num;
   }
   EXPECT_NEAR(sum / num, 1.0, 0.1);  // a likelihood ratio: Wald's error rate stands

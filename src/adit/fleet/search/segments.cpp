@@ -7,123 +7,149 @@
 #include <map>
 #include <numbers>
 #include <numeric>
-#include <optional>
-#include <span>
 #include <tuple>
+#include <utility>
 
 #include "adit/core/parallel.hpp"
-#include "adit/fleet/merge/discernment.hpp"
+#include "adit/fleet/search/path.hpp"
 
 namespace adit {
 namespace {
 
-constexpr double kReach = 60.0;  // metres along the own way, before and behind
-constexpr double kBin = 3.0;     // metres of way that count once
-// A descriptor finds its like some metres ahead or behind, and its heading to half of a sector of 6 degrees.
-constexpr double kOff = 3.0;  // metres
-const double kOffPerMetre = 3.0 * std::numbers::pi / 180.0;
-const double kTurned = 18.0 * std::numbers::pi / 180.0;
+double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
 struct Match {
   const LoopCandidate* candidate;
-  double own_way;
-  double their_way;
+  double own_path_m;
+  double their_path_m;
   Vector3 own_position;    // in the own odometry's frame
   Vector3 their_position;  // in theirs
   Pose T_own_theirs;       // between those frames, as this match alone says
   double weight;
 };
 
-double weight_of(const LoopCandidate& candidate, const std::vector<double>& likeness) {
-  if (likeness.empty()) return 1.0;
-  const double ratio = candidate.distance / std::max(likeness[candidate.query.index], 1e-6);
+double weight_of(const LoopCandidate& candidate, const std::vector<double>& self_distances) {
+  if (self_distances.empty()) return 1.0;
+  const double ratio = candidate.distance / std::max(self_distances[candidate.query.index], 1e-6);
   return 1.0 / (1.0 + ratio * ratio);
 }
 
-std::vector<Match> along_the_way(const OdometryChain& own, const OdometryChain& theirs,
-                                 const std::vector<LoopCandidate>& found,
-                                 const std::vector<double>& likeness) {
-  const std::vector<double> own_way = way_along(own);
-  const std::vector<double> their_way = way_along(theirs);
+/// In the order of the own path.
+std::vector<Match> matches_of(const OdometryChain& own, const OdometryChain& theirs,
+                              const std::vector<LoopCandidate>& found,
+                              const std::vector<double>& self_distances) {
+  const std::vector<double> own_path_m = path_lengths(own);
+  const std::vector<double> their_path_m = path_lengths(theirs);
   std::vector<Match> matches;
   matches.reserve(found.size());
   for (const LoopCandidate& c : found) {
     const Pose& T_own_query = own.pose(c.query.index);
     const Pose& T_their_match = theirs.pose(c.match.index);
     const Pose T_match_query = Pose::planar(0.0, 0.0, c.yaw);
-    matches.push_back({&c, own_way[c.query.index], their_way[c.match.index], T_own_query.translation(),
+    matches.push_back({&c, own_path_m[c.query.index], their_path_m[c.match.index], T_own_query.translation(),
                        T_their_match.translation(),
                        T_own_query * T_match_query.inverse() * T_their_match.inverse(),
-                       weight_of(c, likeness)});
+                       weight_of(c, self_distances)});
   }
   std::ranges::sort(matches, {},
                     [](const Match& m) { return std::tuple(m.candidate->query, m.candidate->match); });
   return matches;
 }
 
-bool agree(const Match& anchor, const Match& other) {
-  const double metres = (other.own_position - anchor.own_position).norm();
-  const Vector3 there = anchor.T_own_theirs * other.their_position;
-  return (there - other.own_position).norm() <= kOff + kOffPerMetre * metres &&
-         anchor.T_own_theirs.rotation().angularDistance(other.T_own_theirs.rotation()) <= kTurned;
-}
-
-std::span<const Match> within_reach(const std::vector<Match>& matches, const Match& anchor) {
-  const auto first = std::ranges::lower_bound(matches, anchor.own_way - kReach, {}, &Match::own_way);
-  const auto last = std::ranges::upper_bound(matches, anchor.own_way + kReach, {}, &Match::own_way);
-  return {first, last};
-}
-
-std::size_t bin_of(double way) { return static_cast<std::size_t>(way / kBin); }
-
-double support_of(const std::vector<Match>& matches, const Match& anchor, std::size_t num_bins) {
-  std::vector<double> own_bins(num_bins, 0.0);  // the largest weight in each
-  std::vector<double> their_bins(num_bins, 0.0);
-  for (const Match& other : within_reach(matches, anchor)) {
-    if (!agree(anchor, other)) continue;
-    for (double* bin : {&own_bins[bin_of(other.own_way)], &their_bins[bin_of(other.their_way)]})
-      *bin = std::max(*bin, other.weight);
+/// The matches, and which of them agree with one another.
+class Agreeing {
+ public:
+  Agreeing(std::vector<Match> matches, const SegmentConfig& config)
+      : matches_(std::move(matches)),
+        config_(config),
+        off_per_metre_(radians(config.off_deg_per_m)),
+        turned_(radians(config.turned_deg)) {
+    for (const Match& match : matches_)
+      num_bins_ = std::max({num_bins_, bin_of(match.own_path_m) + 1, bin_of(match.their_path_m) + 1});
   }
-  const auto sum = [](const std::vector<double>& bins) {
-    return std::accumulate(bins.begin(), bins.end(), 0.0);
-  };
-  return kBin * std::min(sum(own_bins), sum(their_bins));
+
+  [[nodiscard]] std::size_t size() const { return matches_.size(); }
+  [[nodiscard]] const Match& at(std::size_t i) const { return matches_[i]; }
+  [[nodiscard]] std::size_t bin_of(double metres) const {
+    return static_cast<std::size_t>(metres / config_.bin_m);
+  }
+
+  /// Indices of the matches near `anchor` along the own path that align the paths as it does.
+  [[nodiscard]] std::vector<std::size_t> with(const Match& anchor) const {
+    const double from = anchor.own_path_m - config_.reach_m;
+    const double to = anchor.own_path_m + config_.reach_m;
+    const auto first = std::ranges::lower_bound(matches_, from, {}, &Match::own_path_m) - matches_.begin();
+    const auto last = std::ranges::upper_bound(matches_, to, {}, &Match::own_path_m) - matches_.begin();
+    std::vector<std::size_t> out;
+    for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i)
+      if (agree(anchor, matches_[i])) out.push_back(i);
+    return out;
+  }
+
+  [[nodiscard]] double support_of(const Match& anchor) const {
+    std::vector<double> own_bins(num_bins_, 0.0);  // the largest weight in each
+    std::vector<double> their_bins(num_bins_, 0.0);
+    for (const std::size_t i : with(anchor)) {
+      const Match& other = matches_[i];
+      for (double* bin : {&own_bins[bin_of(other.own_path_m)], &their_bins[bin_of(other.their_path_m)]})
+        *bin = std::max(*bin, other.weight);
+    }
+    const auto sum = [](const std::vector<double>& bins) {
+      return std::accumulate(bins.begin(), bins.end(), 0.0);
+    };
+    return config_.bin_m * std::min(sum(own_bins), sum(their_bins));
+  }
+
+ private:
+  [[nodiscard]] bool agree(const Match& anchor, const Match& other) const {
+    const double metres = (other.own_position - anchor.own_position).norm();
+    const Vector3 there = anchor.T_own_theirs * other.their_position;
+    return (there - other.own_position).norm() <= config_.off_m + off_per_metre_ * metres &&
+           anchor.T_own_theirs.rotation().angularDistance(other.T_own_theirs.rotation()) <= turned_;
+  }
+
+  std::vector<Match> matches_;
+  SegmentConfig config_;
+  double off_per_metre_;
+  double turned_;
+  std::size_t num_bins_ = 0;
+};
+
+/// The matches that agree with `anchor` and are not taken yet, the most similar one of each bin; takes them
+/// all.
+Segment segment_around(const Agreeing& matches, std::size_t anchor, double support_m,
+                       std::vector<bool>& taken) {
+  std::map<std::size_t, const LoopCandidate*> best;
+  for (const std::size_t i : matches.with(matches.at(anchor))) {
+    if (taken[i]) continue;
+    taken[i] = true;
+    const Match& match = matches.at(i);
+    const LoopCandidate*& in_bin = best[matches.bin_of(match.own_path_m)];
+    if (in_bin == nullptr || match.candidate->distance < in_bin->distance) in_bin = match.candidate;
+  }
+  Segment segment{support_m, {}};
+  for (const auto& [bin, candidate] : best) segment.candidates.push_back(*candidate);
+  std::ranges::stable_sort(segment.candidates, {}, &LoopCandidate::distance);
+  return segment;
 }
 
 }  // namespace
 
 std::vector<Segment> agreeing_segments(const OdometryChain& own, const OdometryChain& theirs,
-                                       const std::vector<LoopCandidate>& found, std::size_t num,
-                                       const std::vector<double>& likeness) {
-  const std::vector<Match> matches = along_the_way(own, theirs, found, likeness);
-  std::size_t num_bins = 0;
-  for (const Match& match : matches)
-    num_bins = std::max({num_bins, bin_of(match.own_way) + 1, bin_of(match.their_way) + 1});
-  std::vector<double> support(matches.size());
+                                       const std::vector<LoopCandidate>& found, const SegmentQuery& query) {
+  const Agreeing matches(matches_of(own, theirs, found, query.self_distances), query.config);
+  std::vector<double> support_m(matches.size());
   parallel_for_each(
-      matches.size(), [&](std::size_t i) { support[i] = support_of(matches, matches[i], num_bins); }, 16);
+      matches.size(), [&](std::size_t i) { support_m[i] = matches.support_of(matches.at(i)); }, 16);
   std::vector<std::size_t> order(matches.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return support[i]; });
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return support_m[i]; });
 
   std::vector<Segment> segments;
   std::vector<bool> taken(matches.size(), false);
   for (const std::size_t i : order) {
-    if (segments.size() == num) break;
-    if (taken[i]) continue;
-    std::map<std::size_t, const LoopCandidate*> best;
-    for (const Match& other : within_reach(matches, matches[i])) {
-      if (!agree(matches[i], other)) continue;
-      const auto at = static_cast<std::size_t>(&other - matches.data());
-      if (taken[at]) continue;
-      taken[at] = true;
-      const LoopCandidate*& in_bin = best[bin_of(other.own_way)];
-      if (in_bin == nullptr || other.candidate->distance < in_bin->distance) in_bin = other.candidate;
-    }
-    Segment segment{support[i], {}};
-    for (const auto& [bin, candidate] : best) segment.candidates.push_back(*candidate);
-    std::ranges::stable_sort(segment.candidates, {}, &LoopCandidate::distance);
-    segments.push_back(std::move(segment));
+    if (segments.size() == query.num) break;
+    if (!taken[i]) segments.push_back(segment_around(matches, i, support_m[i], taken));
   }
   return segments;
 }

@@ -1,34 +1,60 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Places recognised along the way. One keyframe of a tunnel looks like hundreds of others; that keyframe
-/// after keyframe looks like the one that another robot's odometry leads to, over tens of metres, happens
-/// elsewhere less often. Sequences do the same for images in SeqSLAM (Milford and Wyeth, "SeqSLAM: Visual
-/// route-based navigation for sunny summer days and stormy winter nights", ICRA 2012), at one speed and in
-/// one direction; here odometry gives both, so that robots may drive to and fro.
+/// Sequences of candidates that agree. One keyframe of a tunnel looks like hundreds of others; that one
+/// keyframe after the other, over tens of metres, looks like the one that the other robot's odometry leads to
+/// is rarer. SeqSLAM does the same for images (Milford and Wyeth, "SeqSLAM: Visual route-based navigation for
+/// sunny summer days and stormy winter nights", ICRA 2012), at one speed and in one direction; here odometry
+/// gives both, so that robots may drive to and fro.
 #pragma once
 
 #include <vector>
 
+#include "adit/core/config.hpp"
 #include "adit/core/records.hpp"
 #include "adit/posegraph/pcm.hpp"
 
 namespace adit {
 
-/// Candidates that lay two ways over one another alike, within some tens of metres.
+struct SegmentConfig {
+  double reach_m = 60.0;
+  double bin_m = 3.0;
+  double off_m = 3.0;
+  double off_deg_per_m = 3.0;
+  double turned_deg = 18.0;
+};
+inline Fields fields_of(SegmentConfig& c) {
+  return {{"reach_m", &c.reach_m, "m", 1.0, 10000.0,
+           "candidates of one segment lie this near along the own path, before and behind"},
+          {"bin_m", &c.bin_m, "m", 0.1, 1000.0, "stretch of path that counts once"},
+          {"off_m", &c.off_m, "m", 0.0, 1000.0,
+           "agreeing candidates place the other robot within this; a descriptor matches some metres ahead or "
+           "behind"},
+          {"off_deg_per_m", &c.off_deg_per_m, "deg", 0.0, 90.0,
+           "that grows by this angle times the distance between them: half a sector of 6 degrees"},
+          {"turned_deg", &c.turned_deg, "deg", 0.0, 180.0, "and within this heading"}};
+}
+
+/// Candidates that align two paths alike, within some tens of metres.
 struct Segment {
-  /// Metres of way that they cover: of the query's or of the match's, whichever is less. Each counts for as
-  /// much as it stands out.
+  /// Metres of path that they cover, of the query's or of the match's, whichever is less; each bin counts by
+  /// the weight of its best candidate.
   double support_m = 0.0;
-  /// The most similar one of each few metres, most similar first.
+  /// The most similar one of each bin, most similar first.
   std::vector<LoopCandidate> candidates;
 };
 
-/// At most `num` segments of all `found`, those with the largest support first; each candidate belongs to the
-/// first one that it agrees with. `own` and `theirs` have the poses of all queries and matches. `likeness`:
-/// of each keyframe of the own robot the distance of the most similar other place of its own map; a candidate
-/// counts for 1 / (1 + r^2), where r is its distance over that. Without it all count for 1.
+struct SegmentQuery {
+  std::size_t num = 0;  ///< Segments at most.
+  /// Of each keyframe of the own robot the descriptor distance to the most similar other place of its own
+  /// map: a candidate weighs 1 / (1 + r^2), where r is its distance over that. Empty: all weigh 1.
+  std::vector<double> self_distances = {};
+  SegmentConfig config = {};
+};
+
+/// Segments of all `found`, those with the largest support first; each candidate belongs to the first one
+/// that it agrees with. `own` and `theirs`: odometry of the robots of all queries and matches.
 [[nodiscard]] std::vector<Segment> agreeing_segments(const OdometryChain& own, const OdometryChain& theirs,
-                                                     const std::vector<LoopCandidate>& found, std::size_t num,
-                                                     const std::vector<double>& likeness = {});
+                                                     const std::vector<LoopCandidate>& found,
+                                                     const SegmentQuery& query);
 
 }  // namespace adit

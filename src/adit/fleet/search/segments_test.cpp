@@ -46,7 +46,7 @@ bool operator==(const LoopCandidate& a, const LoopCandidate& b) {
 TEST(AgreeingSegments, FindTheStretchAmongBetterLooksAnywhereElse) {
   std::vector<LoopCandidate> found = anywhere(1);
   for (std::uint32_t k = 200; k < 280; k += 2) found.push_back(candidate(k, k - 150));  // 40 m
-  const std::vector<Segment> segments = agreeing_segments(along_x(), along_x(), found, 5);
+  const std::vector<Segment> segments = agreeing_segments(along_x(), along_x(), found, {5});
   ASSERT_EQ(segments.size(), 5U);
   EXPECT_GE(segments[0].support_m, 39.0);
   EXPECT_LE(segments[0].support_m, 60.0);  // some of those anywhere happen to agree
@@ -69,29 +69,29 @@ TEST(AgreeingSegments, HoldAgainstTheDriveAndRoundABend) {
     back.push_back(*pose * Pose::planar(0.0, 0.0, std::numbers::pi));
   std::vector<LoopCandidate> found;
   for (std::uint32_t k = 60; k < 140; ++k) found.push_back(candidate(k, 199 - k, std::numbers::pi));
-  const std::vector<Segment> segments = agreeing_segments(chain_of(there), chain_of(back), found, 3);
+  const std::vector<Segment> segments = agreeing_segments(chain_of(there), chain_of(back), found, {3});
   ASSERT_EQ(segments.size(), 1U);
   EXPECT_NEAR(segments[0].support_m, 40.0, 7.0);
   // The same matches, but as if both had driven the same way: the bend contradicts.
   for (LoopCandidate& c : found) c.yaw = 0.0;
-  EXPECT_LT(agreeing_segments(chain_of(there), chain_of(back), found, 3)[0].support_m, 15.0);
+  EXPECT_LT(agreeing_segments(chain_of(there), chain_of(back), found, {3})[0].support_m, 15.0);
 }
 
 TEST(AgreeingSegments, AStretchThatAllLooksLikeOnePlaceIsNotLong) {
   std::vector<LoopCandidate> found;
   for (std::uint32_t k = 100; k < 300; ++k) found.push_back(candidate(k, 50));
-  EXPECT_LE(agreeing_segments(along_x(), along_x(), found, 1)[0].support_m, 3.0);
+  EXPECT_LE(agreeing_segments(along_x(), along_x(), found, {1})[0].support_m, 3.0);
 }
 
 TEST(AgreeingSegments, AShortStretchThatStandsOutGoesBeforeALongOneThatDoesNot) {
   std::vector<LoopCandidate> found;
   for (std::uint32_t k = 100; k < 200; ++k) found.push_back(candidate(k, k + 90, 0.0, 0.2));
   for (std::uint32_t k = 240; k < 300; ++k) found.push_back(candidate(k, k - 200, 0.0, 0.2));
-  EXPECT_LT(agreeing_segments(along_x(), along_x(), found, 1)[0].candidates[0].query.index, 200U);
+  EXPECT_LT(agreeing_segments(along_x(), along_x(), found, {1})[0].candidates[0].query.index, 200U);
   // The own map has places as similar beside the long one, and none beside the short one.
-  std::vector<double> likeness(kNum, 0.2);
-  for (std::size_t k = 240; k < 300; ++k) likeness[k] = 1.0;
-  const std::vector<Segment> segments = agreeing_segments(along_x(), along_x(), found, 2, likeness);
+  std::vector<double> self_distances(kNum, 0.2);
+  for (std::size_t k = 240; k < 300; ++k) self_distances[k] = 1.0;
+  const std::vector<Segment> segments = agreeing_segments(along_x(), along_x(), found, {2, self_distances});
   ASSERT_EQ(segments.size(), 2U);
   EXPECT_GE(segments[0].candidates[0].query.index, 240U);
   EXPECT_LT(segments[1].candidates[0].query.index, 200U);
@@ -103,7 +103,7 @@ TEST(AgreeingSegments, EachCandidateBelongsToOneAndThreadsDoNotMatter) {
   std::vector<std::vector<Segment>> answers;
   for (const int threads : {1, 3}) {
     set_num_threads(threads);
-    answers.push_back(agreeing_segments(along_x(), along_x(), found, 1000));
+    answers.push_back(agreeing_segments(along_x(), along_x(), found, {1000}));
   }
   set_num_threads(1);
   std::vector<std::pair<KeyframeId, KeyframeId>> seen;
@@ -119,8 +119,8 @@ TEST(AgreeingSegments, EachCandidateBelongsToOneAndThreadsDoNotMatter) {
 }
 
 TEST(AgreeingSegments, OfNothingAreNone) {
-  EXPECT_TRUE(agreeing_segments(along_x(), along_x(), {}, 5).empty());
-  EXPECT_TRUE(agreeing_segments(along_x(), along_x(), anywhere(3), 0).empty());
+  EXPECT_TRUE(agreeing_segments(along_x(), along_x(), {}, {5}).empty());
+  EXPECT_TRUE(agreeing_segments(along_x(), along_x(), anywhere(3), {0}).empty());
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// What robots say to one another. Every message is bounded in size, can be encoded (transport/wire), may
-/// arrive twice and may be lost: state is synchronised by asking "what do you have" and sending the rest.
+/// The messages of the fleet. Every message is bounded in size, can be encoded (transport/wire), may arrive
+/// twice and may be lost: robots say how much they have of each other's results, and are sent the rest.
 #pragma once
 
 #include <array>
@@ -21,14 +21,15 @@ inline constexpr std::size_t kPlacesPerMessage = 64;
 inline constexpr std::size_t kCloudsPerMessage = 16;
 inline constexpr std::size_t kNodesPerMessage = 512;
 inline constexpr std::size_t kLoopsPerMessage = 256;
+inline constexpr std::size_t kChecksPerMessage = 16;
 inline constexpr std::size_t kHypothesesPerCheck = 16;
 
-/// A keyframe as the graph needs it. `step_covariance` is of the relative pose from the keyframe before (zero
-/// for the first).
+/// A keyframe as the graph needs it.
 struct GraphNode {
   Stamp stamp;
   Pose T_odom_base;
-  Matrix6 step_covariance = Matrix6::Zero();
+  Matrix6 step_covariance =
+      Matrix6::Zero();  ///< Of the pose relative to the keyframe before; zero for the first.
 };
 
 /// Opens a meeting: what the sender knows already, so that only the rest is sent.
@@ -71,8 +72,7 @@ struct CloudRequest {
 struct Clouds {
   struct Cloud {
     std::uint32_t index = 0;
-    Eigen::Vector3f viewpoint =
-        Eigen::Vector3f::Zero();  ///< Where the LiDAR stood, in the frame of the points.
+    Eigen::Vector3f viewpoint = Eigen::Vector3f::Zero();  ///< The LiDAR, in the frame of the points.
     std::vector<Eigen::Vector3f> points;
   };
   std::vector<Cloud> clouds;
@@ -89,58 +89,60 @@ struct Loops {
 
 enum class HypothesisOutcome : std::uint8_t {
   accepted,
-  refuted,  ///< Scans differ at more places than a true one would leave.
+  refuted,  ///< Scans differ at more places, or walls stand apart in more scans, than a true alignment
+            ///< leaves.
   unsure,   ///< The best one, with less evidence than needed.
-  rival,    ///< So near to another one, or another one to it, that neither can be believed.
-  behind,   ///< Left so far behind by the best one that it is out of the question.
+  rival,    ///< Its evidence and that of another one differ by less than what is needed.
+  behind,   ///< Its evidence is less than that of the best one by at least what is needed.
 };
 [[nodiscard]] std::string_view to_string(HypothesisOutcome outcome);
 
-/// What comparing two scans of one place, if it is one, has shown.
+/// What comparing two scans that a hypothesis puts side by side has shown.
 enum class PlaceOutcome : std::uint8_t {
   differs,
-  agrees,  ///< As it would some metres farther along the way, too: no evidence.
-  tells,   ///< Agrees, and a displacement along the way would have shown.
+  agrees,       ///< It would agree if displaced along the tunnel, too: no evidence.
+  distinctive,  ///< Agrees, and a displacement along the tunnel would have shown.
 };
 
-/// That tunnels which only look alike agree at one more place that tells, after 0, 1, 3, 7, ... of them.
+/// P(the next distinctive place agrees | the alignment is wrong), after 0, 1-2, 3-6, 7-14, ... that agreed.
 using ChancesToGoOn = std::array<double, 8>;
 
-/// Keyframes of the two robots that were compared.
+/// A place of the claimed overlap: the keyframes that were compared there.
 struct TestedPlace {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   PlaceOutcome outcome = PlaceOutcome::differs;
 };
 
-/// Loops that agree with one another lay one map over the other; this is one way to do so, as it was tested.
+/// One alignment of two maps, put forward by loops that agree with one another, and what testing it has
+/// shown.
 struct MergeHypothesis {
   HypothesisOutcome outcome = HypothesisOutcome::refuted;
-  double evidence = 0.0;  ///< As in MergeCheck; 0 where it is refuted, for then it is not weighed.
+  double evidence = 0.0;  ///< As in MergeCheck; 0 where it is refuted.
   std::uint32_t num_checked = 0;
   std::uint32_t num_passed = 0;
-  double from_best_m = 0.0;  ///< How far from the best one it puts the other robot.
+  double from_best_m = 0.0;  ///< Metres between where it and the best one put the other robot.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> loops;  ///< Keyframes of a and b.
-  std::vector<TestedPlace> places{};  ///< Along the way of a; none of a refuted one, nobody asks for them.
-  double walls = 0.0;                 ///< The part of the evidence that is of walls.
+  std::vector<TestedPlace> places{};  ///< In the order driven by a; left out where it is refuted.
+  double walls = 0.0;                 ///< The part of the evidence that comes from the relief of walls.
 
   [[nodiscard]] std::uint32_t num_differing() const { return num_checked - num_passed; }
 };
 
-/// Whether the loops of two robots may join their maps, decided by the one that searched, `a`; or, where `b`
-/// is the same robot, whether it came back to places of its own map. A later one replaces those before it.
-/// Evidence, numbers and loops are those of the best hypothesis.
+/// The verdict on the loops between two robots: whether they may join the maps. Robot `a`, which searched,
+/// decides; where `b` is the same robot it is about places of its own map that it came back to. A later
+/// verdict replaces those before it. Evidence, numbers and loops are those of the best hypothesis.
 struct MergeCheck {
   RobotId a, b;
-  double evidence = 0.0;  ///< Logarithm of the likelihood ratio of "same stretch" to "looks alike",
-  double needed = 0.0;    ///< and how much of it joins maps.
+  double evidence = 0.0;  ///< log P(what was observed | same stretch) / P(... | stretches only look alike).
+  double needed = 0.0;    ///< Evidence that joins maps: log(1 / error rate).
   std::uint32_t num_checked = 0;
   std::uint32_t num_passed = 0;
   bool accepted = false;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> loops;  ///< Keyframes of a and b: those it speaks of.
-  std::string reason;                         ///< One sentence: why, and what would resolve a refusal.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> loops;  ///< Keyframes of a and b.
+  std::string reason;                         ///< One sentence: why, and what would lead to a merge.
   std::vector<MergeHypothesis> hypotheses{};  ///< At most kHypothesesPerCheck, the best one first.
-  ChancesToGoOn goes_on{};                    ///< As robot a has measured them.
+  ChancesToGoOn goes_on{};                    ///< As robot a measured them on its own map.
 };
 
 /// Number first, first + 1, ... of those that `author`, who need not be the sender, decided.
@@ -150,10 +152,12 @@ struct MergeChecks {
   std::vector<MergeCheck> checks;
 };
 
+using MessageBody = std::variant<Hello, GraphPart, Places, CloudRequest, Clouds, Loops, MergeChecks>;
+
 struct Message {
   RobotId from;
   RobotId to;
-  std::variant<Hello, GraphPart, Places, CloudRequest, Clouds, Loops, MergeChecks> body;
+  MessageBody body;
 };
 
 }  // namespace adit

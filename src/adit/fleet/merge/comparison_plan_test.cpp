@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-#include "adit/fleet/merge/check_plan.hpp"
+#include "adit/fleet/merge/comparison_plan.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,18 +19,18 @@ using test::kNum;
 using test::kTrueLoops;
 using test::T_a_b_true;
 
-std::vector<PlannedCheck> plan_of(const std::vector<PcmLoop>& loops) {
+std::vector<PlannedComparison> plan_of(const std::vector<PcmLoop>& loops) {
   const OdometryChain drive = along_x(kNum);
   const OdometryChain other = along_x(kNum);
-  return CheckPlanner(drive, other, loops, 50.0).plan(3.0, 200);
+  return ComparisonPlanner(drive, other, loops, {.reach_m = 50.0}).plan(200);
 }
 
-TEST(CheckPlanner, PutsNeighboursTogetherAllAlongTheStretch) {
-  const std::vector<PlannedCheck> plan = plan_of(kTrueLoops);
+TEST(ComparisonPlanner, PutsNeighboursTogetherAllAlongTheStretch) {
+  const std::vector<PlannedComparison> plan = plan_of(kTrueLoops);
   // 50 m to each side of the loops and the 10 m between them, every 3 m; both drives end sooner.
   ASSERT_GE(plan.size(), 30U);
   std::set<std::uint32_t> theirs;
-  for (const PlannedCheck& check : plan) {
+  for (const PlannedComparison& check : plan) {
     EXPECT_TRUE(theirs.insert(check.theirs).second) << "twice: " << check.theirs;
     const Pose T_true = T_a_b_true(check.own, check.theirs);
     EXPECT_LT((check.T_own_theirs.inverse() * T_true).log().norm(), 1e-9);
@@ -38,36 +38,37 @@ TEST(CheckPlanner, PutsNeighboursTogetherAllAlongTheStretch) {
   }
 }
 
-TEST(CheckPlanner, LooksFarApartFirst) {
-  const std::vector<PlannedCheck> plan = plan_of(kTrueLoops);
+TEST(ComparisonPlanner, LooksFarApartFirst) {
+  const std::vector<PlannedComparison> plan = plan_of(kTrueLoops);
   std::vector<std::uint32_t> first;
   for (std::size_t i = 0; i < 4; ++i) first.push_back(plan[i].theirs);
   std::ranges::sort(first);
   for (std::size_t i = 1; i < first.size(); ++i) EXPECT_GT(first[i] - first[i - 1], 20U);
 }
 
-TEST(CheckPlanner, WithoutLoopsThereIsNothingToCheck) { EXPECT_TRUE(plan_of({}).empty()); }
+TEST(ComparisonPlanner, WithoutLoopsThereIsNothingToCheck) { EXPECT_TRUE(plan_of({}).empty()); }
 
-TEST(CheckPlanner, WithinOneMapAKeyframeIsNotComparedWithItselfOrItsNeighbours) {
+TEST(ComparisonPlanner, WithinOneMapAKeyframeIsNotComparedWithItselfOrItsNeighbours) {
   std::vector<Pose> poses;  // up a street of 100 m and back
   for (int k = 0; k <= 200; ++k)
     poses.push_back(k <= 100 ? Pose::planar(k, 0.0, 0.0) : Pose::planar(200 - k, 1.0, std::numbers::pi));
   const OdometryChain chain(poses, std::vector<Matrix6>(200, odometry_covariance({}, 1.0)));
   const std::vector<PcmLoop> loops = {{70, 130, chain.between(70, 130)}, {50, 150, chain.between(50, 150)}};
-  const std::vector<PlannedCheck> plan = CheckPlanner(chain, chain, loops, 50.0).plan(3.0, 200);
+  const std::vector<PlannedComparison> plan =
+      ComparisonPlanner(chain, chain, loops, {.reach_m = 50.0}).plan(200);
   ASSERT_GE(plan.size(), 10U);
-  for (const PlannedCheck& check : plan) {
+  for (const PlannedComparison& check : plan) {
     EXPECT_GE(check.theirs, check.own + 40);
     EXPECT_LT((poses[check.own].translation() - poses[check.theirs].translation()).norm(), 3.0);
   }
 }
 
-TEST(CheckPlanner, TheSecondLookIsAMetreOnAndAtTheEndAMetreBack) {
+TEST(ComparisonPlanner, TheSecondLookIsAMetreOnAndAtTheEndAMetreBack) {
   const OdometryChain drive = along_x(kNum);
   const OdometryChain other = along_x(kNum);
-  const CheckPlanner planner(drive, other, kTrueLoops, 60.0);
-  for (const PlannedCheck& check : planner.plan(3.0, 200)) {
-    const auto again = planner.again(check);
+  const ComparisonPlanner planner(drive, other, kTrueLoops, {.reach_m = 60.0});
+  for (const PlannedComparison& check : planner.plan(200)) {
+    const auto again = planner.second_look(check);
     ASSERT_TRUE(again);
     const double by = 0.5 * (static_cast<double>(again->theirs) - static_cast<double>(check.theirs));
     EXPECT_NEAR(std::abs(by), 1.0, 1e-9);

@@ -1,82 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-#include "adit/fleet/joint/fleet_graph.hpp"
+#include "adit/fleet/joint/fleet_solution.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
-#include <numbers>
 
 #include "adit/core/format.hpp"
 #include "adit/fleet/joint/condensed_graph.hpp"
+#include "adit/fleet/joint/frames.hpp"
 #include "adit/fleet/joint/loop_selection.hpp"
 
 namespace adit {
 
-Pose mean_frame(const FleetGraph& fleet, const std::vector<const LoopClosure*>& loops) {
-  Matrix3 sum = Matrix3::Zero();
-  Vector3 seen_in_a = Vector3::Zero();
-  Vector3 seen_in_b = Vector3::Zero();
-  for (const LoopClosure* loop : loops) {
-    const Pose& T_oa_from = fleet.robots.at(loop->from.robot).nodes.at(loop->from.index).T_odom_base;
-    const Pose& T_ob_to = fleet.robots.at(loop->to.robot).nodes.at(loop->to.index).T_odom_base;
-    const Pose T_oa_to = T_oa_from * loop->T_from_to;
-    sum += (T_oa_to * T_ob_to.inverse()).rotation_matrix();
-    seen_in_a += T_oa_to.translation();
-    seen_in_b += T_ob_to.translation();
-  }
-  const Eigen::JacobiSVD<Matrix3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix3 flip = Matrix3::Identity();
-  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  const Matrix3 R = svd.matrixU() * flip * svd.matrixV().transpose();
-  return {R, (seen_in_a - R * seen_in_b) / static_cast<double>(loops.size())};
-}
-
 namespace {
-
-using RobotPair = std::pair<RobotId, RobotId>;
-using Frames = std::map<RobotId, Pose>;  // T_anchor_odom of each robot
-
-std::map<RobotPair, std::vector<const LoopClosure*>> loops_by_pair(
-    const std::vector<const LoopOutcome*>& outcomes) {
-  std::map<RobotPair, std::vector<const LoopClosure*>> by_pair;
-  for (const LoopOutcome* outcome : outcomes) {
-    by_pair[{outcome->loop.from.robot, outcome->loop.to.robot}].push_back(&outcome->loop);
-  }
-  return by_pair;
-}
-
-/// Puts every robot into the frame of the smallest id that its loops lead to, pairs with most loops first.
-Frames common_frames(const FleetGraph& fleet, const std::vector<const LoopOutcome*>& outcomes) {
-  const auto by_pair = loops_by_pair(outcomes);
-  Frames frames;
-  for (const auto& [root, graph] : fleet.robots) {
-    if (frames.contains(root)) continue;
-    frames[root] = Pose();
-    while (true) {
-      const std::vector<const LoopClosure*>* widest = nullptr;
-      RobotPair bridge;
-      for (const auto& [pair, loops] : by_pair) {
-        if (frames.contains(pair.first) == frames.contains(pair.second)) continue;
-        if (widest != nullptr && loops.size() <= widest->size()) continue;
-        widest = &loops;
-        bridge = pair;
-      }
-      if (widest == nullptr) break;
-      const Pose T_a_b = mean_frame(fleet, *widest);
-      if (frames.contains(bridge.first)) {
-        frames[bridge.second] = frames[bridge.first] * T_a_b;
-      } else {
-        frames[bridge.first] = frames[bridge.second] * T_a_b.inverse();
-      }
-    }
-  }
-  return frames;
-}
 
 PoseGraph build_graph(const FleetGraph& fleet, const std::vector<const LoopOutcome*>& outcomes,
                       const BackEndConfig& config) {
-  const Frames frames = common_frames(fleet, outcomes);
+  std::vector<const LoopClosure*> loops;
+  for (const LoopOutcome* outcome : outcomes) loops.push_back(&outcome->loop);
+  const Frames frames = common_frames(fleet, loops);
   PoseGraph graph;
   std::map<RobotId, std::size_t> offset;
   for (const auto& [robot, own] : fleet.robots) {
@@ -93,8 +35,8 @@ PoseGraph build_graph(const FleetGraph& fleet, const std::vector<const LoopOutco
   for (const LoopOutcome* outcome : outcomes) {
     const LoopClosure& loop = outcome->loop;
     graph.edges.push_back({offset.at(loop.from.robot) + loop.from.index,
-                           offset.at(loop.to.robot) + loop.to.index, loop.T_from_to, loop_information(config),
-                           EdgeKind::loop});
+                           offset.at(loop.to.robot) + loop.to.index, loop.T_from_to,
+                           loop_information(config.loop_noise), EdgeKind::loop});
   }
   return graph;
 }
@@ -187,7 +129,7 @@ void decide_merges(const FleetGraph& fleet, const BackEndConfig& config, const L
     pair.joined_reason.clear();
     if (pair.refused_reason.empty())
       pair.refused_reason = refusal(fleet, config, pair, tried[{pair.a, pair.b}], num_used);
-    // Too few loops are no bridge: they must not join the maps through the back door either.
+    // Too few loops join no maps, by way of third robots either.
     for (const std::size_t l : of_pair) solution.loops[l].weight = 0.0;
   }
 }
@@ -197,7 +139,7 @@ void solve_group(const FleetGraph& fleet, const std::vector<RobotId>& robots, co
                  FleetSolution& solution) {
   std::vector<LoopOutcome*> loops;
   for (LoopOutcome& outcome : solution.loops) {
-    if (outcome.in_clique && std::ranges::find(robots, outcome.loop.from.robot) != robots.end() &&
+    if (outcome.is_selected && std::ranges::find(robots, outcome.loop.from.robot) != robots.end() &&
         std::ranges::find(robots, outcome.loop.to.robot) != robots.end()) {
       loops.push_back(&outcome);
     }
@@ -248,48 +190,20 @@ PoseGraph optimized_graph(const FleetGraph& fleet, const FleetSolution& solution
 
 }  // namespace
 
-Matrix6 loop_information(const BackEndConfig& config) {
-  const double rotation = config.loop_rotation_deg * std::numbers::pi / 180.0;
-  Vector6 information;
-  information << Vector3::Constant(1.0 / (config.loop_translation * config.loop_translation)),
-      Vector3::Constant(1.0 / (rotation * rotation));
-  return information.asDiagonal();
-}
-
-PcmLoop pcm_loop_of(const LoopClosure& loop, const BackEndConfig& config) {
-  return {loop.from.index, loop.to.index, loop.T_from_to, loop_information(config)};
-}
-
-RobotGraph graph_of(const RobotMap& map) {
-  RobotGraph graph{map.name, {}};
-  graph.nodes.reserve(map.keyframes.size());
-  for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
-    graph.nodes.push_back({map.keyframes[k].stamp, map.keyframes[k].T_odom_base, map.step_covariances[k]});
-  }
-  return graph;
-}
-
-OdometryChain chain_of(const RobotGraph& graph, double slack) {
-  std::vector<Pose> poses;
-  std::vector<Matrix6> steps;
-  for (std::size_t k = 0; k < graph.nodes.size(); ++k) {
-    poses.push_back(graph.nodes[k].T_odom_base);
-    if (k > 0) steps.push_back(slack * slack * graph.nodes[k].step_covariance);
-  }
-  return {std::move(poses), steps};
-}
-
 Fields fields_of(BackEndConfig& c) {
   Fields fields = {
       {"pcm_on", &c.pcm_on, "", 0, 0, "drop loops that disagree pairwise before the graph is solved"},
       {"gnc_on", &c.gnc_on, "", 0, 0, "let graduated non-convexity reject loops while the graph is solved"},
       {"cycles_needed", &c.cycles_needed, "", 0, 0,
-       "take back merges that passed it and that merges with third robots contradict"},
+       "take back merges that passed the merge check where merges with third robots contradict them"},
       {"joint_evidence", &c.joint_evidence, "", 0, 0,
-       "join maps, too, for which several pairs of robots have enough evidence only together"},
+       "also join maps for which several pairs of robots have enough evidence only together"},
       {"min_loops", &c.min_loops, "", 1, 10000, "loops in use that two robots need to share a map"},
-      {"loop_translation", &c.loop_translation, "m", 1e-4, 10.0, "sigma of a loop's translation"},
-      {"loop_rotation_deg", &c.loop_rotation_deg, "deg", 1e-3, 90.0, "sigma of a loop's rotation"}};
+      {"loop_translation", &c.loop_noise.translation, "m", 1e-4, 10.0, "sigma of a loop's translation"},
+      {"one_place_m", &c.one_place_m, "m", 0.1, 1000.0,
+       "places that several pairs compared this near to one another count once"},
+      {"loop_rotation_deg", &c.loop_noise.rotation_deg, "deg", 1e-3, 90.0, "sigma of a loop's rotation"}};
+  append(fields, "cycles", fields_of(c.cycles));
   append(fields, "pcm", fields_of(c.pcm));
   append(fields, "gnc", fields_of(c.gnc));
   return fields;
@@ -305,14 +219,14 @@ FleetSolution solve(const FleetGraph& fleet, const BackEndConfig& config) {
   std::vector<const LoopOutcome*> consistent;
   for (const LoopOutcome& outcome : solution.loops) {
     accepted.push_back(&outcome);
-    if (outcome.in_clique) consistent.push_back(&outcome);
+    if (outcome.is_selected) consistent.push_back(&outcome);
   }
   solution.initial = build_graph(fleet, accepted, config);
   solution.after_pcm = build_graph(fleet, consistent, config);
 
   // First all robots that consistent loops link, solved together; what remains in use then says who shares a
   // map.
-  for (LoopOutcome& outcome : solution.loops) outcome.weight = outcome.in_clique ? 1.0 : 0.0;
+  for (LoopOutcome& outcome : solution.loops) outcome.weight = outcome.is_selected ? 1.0 : 0.0;
   for (const std::vector<RobotId>& group : linked_robots(fleet, solution.loops)) {
     solve_group(fleet, group, config, solution);
   }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-#include "adit/fleet/joint/fleet_graph.hpp"
+#include "adit/fleet/joint/fleet_solution.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-#include "adit/fleet/merge/merge_check.hpp"
+#include "adit/fleet/merge/merge_checker.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 
 #include "adit/core/check.hpp"
 #include "adit/core/rng.hpp"
-#include "adit/fleet/joint/fleet_graph.hpp"
 #include "adit/fleet/merge/merge_evidence.hpp"
 #include "support/opposite_drives.hpp"
 
@@ -28,7 +27,7 @@ LookAlikes look_alikes(double chance_to_go_on) {
   constexpr int kSteps = 100'000;  // the prior of one half no longer shows
   LookAlikes out;
   if (chance_to_go_on != 0.5)
-    for (int i = 0; i < kSteps; ++i) out.add(0, i < chance_to_go_on * kSteps);
+    for (int i = 0; i < kSteps; ++i) i < chance_to_go_on* kSteps ? out.add_agreed(0) : out.add_differed(0);
   return out;
 }
 
@@ -37,36 +36,44 @@ MeasuredWhenAsked measured(const LookAlikes& look_alikes, const StandingShares& 
   return [all = Measured{look_alikes, walls}]() -> const Measured& { return all; };
 }
 
-MergeTest a_test(const std::vector<PcmLoop>& loops, double chance_to_go_on = 0.5,
-                 const MergeCheckConfig& config = {}) {
-  return {along_x(kNum), along_x(kNum), loops, 50.0, measured(look_alikes(chance_to_go_on)), config};
+MergeChecker checker_of(const std::vector<PcmLoop>& loops, MeasuredWhenAsked measured,
+                        const MergeCheckConfig& config = {}, const OdometryChain& chain = along_x(kNum)) {
+  AdaptiveConfig all;
+  all.merge_check = config;
+  const OdometryChain other = chain;  // another robot: the same chain twice would mean revisits
+  return {{chain, other, loops}, {50.0, std::move(measured)}, all};
+}
+
+MergeChecker a_check(const std::vector<PcmLoop>& loops, double chance_to_go_on = 0.5,
+                     const MergeCheckConfig& config = {}) {
+  return checker_of(loops, measured(look_alikes(chance_to_go_on)), config);
 }
 
 // Answers all that the test asks for.
 template <class Answer>
-MergeCheck run(MergeTest& test, const Answer& answer) {
-  for (std::vector<PlannedCheck> asked = test.next(16); !asked.empty(); asked = test.next(16)) {
+MergeCheck run(MergeChecker& checker, const Answer& answer) {
+  for (std::vector<PlannedComparison> asked = checker.next(16); !asked.empty(); asked = checker.next(16)) {
     EXPECT_LE(asked.size(), 16U);
-    std::vector<CheckedPlace> places;
-    for (const PlannedCheck& check : asked) places.push_back(answer(check));
-    test.add(places);
+    std::vector<ComparedPlace> places;
+    for (const PlannedComparison& check : asked) places.push_back(answer(check));
+    checker.add(places);
   }
-  return test.verdict({0}, {1});
+  return checker.verdict({0}, {1});
 }
 
-constexpr CheckedPlace kAgrees{0.5, true};
-constexpr CheckedPlace kDiffers{1.5, true};
-constexpr CheckedPlace kSilent{0.5, false};
-constexpr CheckedPlace kHasANiche{5.0, true};
+constexpr ComparedPlace kAgrees{0.5, true};
+constexpr ComparedPlace kDiffers{1.5, true};
+constexpr ComparedPlace kSilent{0.5, false};
+constexpr ComparedPlace kHasANiche{5.0, true};
 
-TEST(MergeTest, ALoopThatItsNeighboursContradictIsLeftOut) {
+TEST(MergeChecker, ALoopThatItsNeighboursContradictIsLeftOut) {
   std::vector<PcmLoop> loops;
   for (const std::uint32_t at : {70U, 80U, 90U, 100U, 110U}) loops.push_back(loop_at(at));
   loops[2].T_a_b = loops[2].T_a_b * Pose::translation_of(1.0, 0.0, 0.0);
   const OdometryChain chain = along_x(kNum, 0.05);  // which would allow it
   const auto loops_of = [&](const std::vector<PcmLoop>& some) {
-    MergeTest test(chain, chain, some, 50.0, measured(look_alikes(0.5)), {});
-    const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+    MergeChecker checker = checker_of(some, measured(look_alikes(0.5)), {}, chain);
+    const MergeCheck check = run(checker, [](const PlannedComparison&) { return kAgrees; });
     EXPECT_TRUE(check.accepted) << check.reason;
     return check.loops;
   };
@@ -76,12 +83,12 @@ TEST(MergeTest, ALoopThatItsNeighboursContradictIsLeftOut) {
   EXPECT_EQ(loops_of({loops[1], loops[2]}).size(), 2U) << "nobody knows which of the two is right";
 }
 
-TEST(MergeTest, SoManyLoopsHaveToAgreeWhateverThePlacesSay) {
+TEST(MergeChecker, SoManyLoopsHaveToAgreeWhateverThePlacesSay) {
   MergeCheckConfig three;
   three.min_loops = 3;
   const auto check = [](const MergeCheckConfig& config) {
-    MergeTest test = a_test({loop_at(80), loop_at(100)}, 0.5, config);
-    return run(test, [](const PlannedCheck&) { return kAgrees; });
+    MergeChecker checker = a_check({loop_at(80), loop_at(100)}, 0.5, config);
+    return run(checker, [](const PlannedComparison&) { return kAgrees; });
   };
   EXPECT_TRUE(check({}).accepted);
   const MergeCheck too_few = check(three);
@@ -91,20 +98,20 @@ TEST(MergeTest, SoManyLoopsHaveToAgreeWhateverThePlacesSay) {
 }
 
 // Patches of its own for each place, seen there twice; of so many in a hundred both stand off on one side.
-CheckedPlace with_offsets(std::uint32_t theirs, int standing) {
-  CheckedPlace place = kAgrees;
+ComparedPlace with_offsets(std::uint32_t theirs, int standing) {
+  ComparedPlace place = kAgrees;
   for (int i = 0; i < 100; ++i)
     for (const double metres : {0.01, i < standing ? 0.01 : -0.01})
       place.offsets.push_back({{static_cast<int>(theirs), i, 0, 0}, metres});
   return place;
 }
 
-TEST(MergeTest, WallsThatStandOffInAllScansAreOfOtherTunnels) {
+TEST(MergeChecker, WallsThatStandOffInAllScansAreOfOtherTunnels) {
   MergeCheckConfig without;
   without.relief = false;
   const auto check = [](int standing, const MergeCheckConfig& config) {
-    MergeTest test = a_test(kTrueLoops, 0.5, config);
-    return run(test, [&](const PlannedCheck& c) { return with_offsets(c.theirs, standing); });
+    MergeChecker checker = a_check(kTrueLoops, 0.5, config);
+    return run(checker, [&](const PlannedComparison& c) { return with_offsets(c.theirs, standing); });
   };
   EXPECT_TRUE(check(50, {}).accepted);
   const MergeCheck built_alike = check(62, {});
@@ -114,11 +121,11 @@ TEST(MergeTest, WallsThatStandOffInAllScansAreOfOtherTunnels) {
   EXPECT_TRUE(check(62, without).accepted);
 }
 
-TEST(MergeTest, WallsCountWhereOwnLookAlikesHaveOthers) {
+TEST(MergeChecker, WallsCountWhereOwnLookAlikesHaveOthers) {
   StandingShares shares;
   const auto check = [&](int standing) {
-    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, measured(look_alikes(0.95), shares), {});
-    return run(test, [&](const PlannedCheck& c) { return with_offsets(c.theirs, standing); });
+    MergeChecker checker = checker_of(kTrueLoops, measured(look_alikes(0.95), shares));
+    return run(checker, [&](const PlannedComparison& c) { return with_offsets(c.theirs, standing); });
   };
   EXPECT_FALSE(check(50).accepted);  // look-alikes go on for long: places alone cannot do it
   for (int i = 0; i < 10; ++i) shares.add_other({1000, 0.62, 0.015});
@@ -126,16 +133,16 @@ TEST(MergeTest, WallsCountWhereOwnLookAlikesHaveOthers) {
   EXPECT_FALSE(check(55).accepted);  // not refuted by itself, but of others as likely
 }
 
-TEST(MergeTest, AfterAPlaceThatDiffersTheCountStartsAnew) {
+TEST(MergeChecker, AfterAPlaceThatDiffersTheCountStartsAnew) {
   LookAlikes rarely_begin;  // and go on once they have
-  for (int i = 0; i < 1000; ++i) rarely_begin.add(0, i < 100);
-  for (int i = 0; i < 1000; ++i) rarely_begin.add(1, i < 950);
+  for (int i = 0; i < 1000; ++i) i < 100 ? rarely_begin.add_agreed(0) : rarely_begin.add_differed(0);
+  for (int i = 0; i < 1000; ++i) i < 950 ? rarely_begin.add_agreed(1) : rarely_begin.add_differed(1);
   const auto evidence = [&](std::uint32_t differs_at) {
-    MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, measured(rarely_begin), {});
+    MergeChecker checker = checker_of(kTrueLoops, measured(rarely_begin));
     const std::uint32_t first =
-        test.next(1).front().own % 6;  // a place every six, looked at again two keyframes away
-    return run(test,
-               [&](const PlannedCheck& check) {
+        checker.next(1).front().own % 6;  // a place every six, looked at again two keyframes away
+    return run(checker,
+               [&](const PlannedComparison& check) {
                  return (check.own + 3 - first) / 6 == differs_at ? kDiffers : kAgrees;
                })
         .evidence;
@@ -149,12 +156,12 @@ TEST(MergeTest, AfterAPlaceThatDiffersTheCountStartsAnew) {
   EXPECT_NEAR(in_the_middle - never, differs - goes_on + begins - goes_on, 0.05);
 }
 
-TEST(MergeTest, APlaceDiffersOnlyIfItDoesByASecondLook) {
+TEST(MergeChecker, APlaceDiffersOnlyIfItDoesByASecondLook) {
   const auto checked = [&](bool also_beside) {
-    MergeTest test = a_test(kTrueLoops);
-    const std::uint32_t at = test.next(1).front().own;
+    MergeChecker checker = a_check(kTrueLoops);
+    const std::uint32_t at = checker.next(1).front().own;
     std::size_t num_asked = 0;
-    const MergeCheck check = run(test, [&](const PlannedCheck& asked) {
+    const MergeCheck check = run(checker, [&](const PlannedComparison& asked) {
       ++num_asked;
       const bool is_beside = asked.own != at && asked.own < at + 4 && at < asked.own + 4;
       return asked.own == at || (also_beside && is_beside) ? kDiffers : kAgrees;
@@ -169,9 +176,9 @@ TEST(MergeTest, APlaceDiffersOnlyIfItDoesByASecondLook) {
   EXPECT_EQ(differs.num_passed + 1, differs.num_checked);
 }
 
-TEST(MergeTest, PlacesThatAgreeJoinTheMaps) {
-  MergeTest test = a_test(kTrueLoops);
-  const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+TEST(MergeChecker, PlacesThatAgreeJoinTheMaps) {
+  MergeChecker checker = a_check(kTrueLoops);
+  const MergeCheck check = run(checker, [](const PlannedComparison&) { return kAgrees; });
   EXPECT_TRUE(check.accepted) << check.reason;
   EXPECT_EQ(check.num_passed, check.num_checked);
   EXPECT_NEAR(check.evidence, check.num_checked * std::log(0.99 / 0.5), 1e-9);
@@ -184,10 +191,11 @@ TEST(MergeTest, PlacesThatAgreeJoinTheMaps) {
   EXPECT_EQ(check.hypotheses[0].evidence, check.evidence);
 }
 
-TEST(MergeTest, AStretchThatDiffersHereAndThereIsACopy) {
-  MergeTest test = a_test(kTrueLoops);
+TEST(MergeChecker, AStretchThatDiffersHereAndThereIsACopy) {
+  MergeChecker checker = a_check(kTrueLoops);
   int n = 0;
-  const MergeCheck check = run(test, [&](const PlannedCheck&) { return ++n % 4 == 0 ? kDiffers : kAgrees; });
+  const MergeCheck check =
+      run(checker, [&](const PlannedComparison&) { return ++n % 4 == 0 ? kDiffers : kAgrees; });
   EXPECT_FALSE(check.accepted);
   EXPECT_NE(check.reason.find("scans differ at"), std::string::npos) << check.reason;
   EXPECT_NE(check.reason.find("drive on until"), std::string::npos) << check.reason;
@@ -195,50 +203,51 @@ TEST(MergeTest, AStretchThatDiffersHereAndThereIsACopy) {
   EXPECT_EQ(check.hypotheses.at(0).num_differing(), check.num_checked - check.num_passed);
 }
 
-TEST(MergeTest, ANicheThatOnlyOneOfThemHasIsACopy) {
+TEST(MergeChecker, ANicheThatOnlyOneOfThemHasIsACopy) {
   // One place in twelve: as many as noise would be forgiven.
   for (const auto& [place, accepted] : {std::pair{kDiffers, true}, std::pair{kHasANiche, false}}) {
-    MergeTest test = a_test(kTrueLoops);
+    MergeChecker checker = a_check(kTrueLoops);
     int n = 0;
-    const MergeCheck check = run(
-        test, [&, difference = place](const PlannedCheck&) { return ++n % 12 == 0 ? difference : kAgrees; });
+    const MergeCheck check = run(checker, [&, difference = place](const PlannedComparison&) {
+      return ++n % 12 == 0 ? difference : kAgrees;
+    });
     EXPECT_EQ(check.accepted, accepted) << check.reason;
   }
 }
 
-TEST(MergeTest, ARefutedHypothesisIsNotTestedToTheEnd) {
-  MergeTest test = a_test(kTrueLoops);
-  const MergeCheck check = run(test, [](const PlannedCheck&) { return kDiffers; });
+TEST(MergeChecker, ARefutedHypothesisIsNotTestedToTheEnd) {
+  MergeChecker checker = a_check(kTrueLoops);
+  const MergeCheck check = run(checker, [](const PlannedComparison&) { return kDiffers; });
   EXPECT_FALSE(check.accepted);
   EXPECT_EQ(check.num_checked, 8U);
 }
 
-TEST(MergeTest, WhatIsRefutedNeedsNoMeasuringOfTheOwnMap) {
+TEST(MergeChecker, WhatIsRefutedNeedsNoMeasuringOfTheOwnMap) {
   const MeasuredWhenAsked nobody_asks = []() -> const Measured& { throw std::logic_error("asked"); };
-  MergeTest test(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, nobody_asks, {});
-  const MergeCheck check = run(test, [](const PlannedCheck&) { return kDiffers; });
+  MergeChecker checker = checker_of(kTrueLoops, nobody_asks);
+  const MergeCheck check = run(checker, [](const PlannedComparison&) { return kDiffers; });
   EXPECT_FALSE(check.accepted);
   ASSERT_EQ(check.hypotheses.size(), 1U);
   EXPECT_EQ(check.hypotheses.front().outcome, HypothesisOutcome::refuted);
-  MergeTest other(along_x(kNum), along_x(kNum), kTrueLoops, 50.0, nobody_asks, {});
-  EXPECT_THROW(run(other, [](const PlannedCheck&) { return kAgrees; }), std::logic_error);
+  MergeChecker other = checker_of(kTrueLoops, nobody_asks);
+  EXPECT_THROW(run(other, [](const PlannedComparison&) { return kAgrees; }), std::logic_error);
 }
 
-TEST(MergeTest, PlacesWithoutAnAlongAxisConstraintSayNothing) {
-  MergeTest test = a_test(kTrueLoops);
-  const MergeCheck check = run(test, [](const PlannedCheck&) { return kSilent; });
+TEST(MergeChecker, PlacesWithoutAnAlongAxisConstraintSayNothing) {
+  MergeChecker checker = a_check(kTrueLoops);
+  const MergeCheck check = run(checker, [](const PlannedComparison&) { return kSilent; });
   EXPECT_FALSE(check.accepted);
   EXPECT_NE(check.reason.find("no along-axis constraint"), std::string::npos) << check.reason;
   EXPECT_NE(check.reason.find("drive on until both pass a junction"), std::string::npos) << check.reason;
   MergeCheckConfig all_count;
   all_count.distinctive_only = false;
-  MergeTest other = a_test(kTrueLoops, 0.5, all_count);
-  EXPECT_TRUE(run(other, [](const PlannedCheck&) { return kSilent; }).accepted);
+  MergeChecker other = a_check(kTrueLoops, 0.5, all_count);
+  EXPECT_TRUE(run(other, [](const PlannedComparison&) { return kSilent; }).accepted);
 }
 
-TEST(MergeTest, WhereLookAlikesGoOnForLongALongerStretchIsNeeded) {
-  MergeTest test = a_test(kTrueLoops, 0.9);
-  const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+TEST(MergeChecker, WhereLookAlikesGoOnForLongALongerStretchIsNeeded) {
+  MergeChecker checker = a_check(kTrueLoops, 0.9);
+  const MergeCheck check = run(checker, [](const PlannedComparison&) { return kAgrees; });
   EXPECT_FALSE(check.accepted);
   EXPECT_EQ(check.hypotheses.at(0).outcome, HypothesisOutcome::unsure);
   // Every further 3 m bring log(0.99 / 0.9); what is missing, rounded up to 10 m.
@@ -248,17 +257,17 @@ TEST(MergeTest, WhereLookAlikesGoOnForLongALongerStretchIsNeeded) {
   EXPECT_NE(check.reason.find(asked + " m"), std::string::npos) << check.reason;
 }
 
-TEST(MergeTest, WhereTunnelsLookAlikeForeverNoDriveAlongThemIsAskedFor) {
-  MergeTest test = a_test(kTrueLoops, 0.9899);
-  const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+TEST(MergeChecker, WhereTunnelsLookAlikeForeverNoDriveAlongThemIsAskedFor) {
+  MergeChecker checker = a_check(kTrueLoops, 0.9899);
+  const MergeCheck check = run(checker, [](const PlannedComparison&) { return kAgrees; });
   EXPECT_NE(check.reason.find("past a junction or a niche"), std::string::npos) << check.reason;
 }
 
-TEST(MergeTest, ASmallerSetOfLoopsWinsWhereTheLargestIsRefuted) {
+TEST(MergeChecker, ASmallerSetOfLoopsWinsWhereTheLargestIsRefuted) {
   std::vector<PcmLoop> loops = kTrueLoops;
   for (const std::size_t a : {60U, 70U, 110U, 120U}) loops.push_back(loop_at(a, 30.0));
-  MergeTest test = a_test(loops);
-  const MergeCheck check = run(test, [](const PlannedCheck& asked) {
+  MergeChecker checker = a_check(loops);
+  const MergeCheck check = run(checker, [](const PlannedComparison& asked) {
     const double off =
         (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
     return off > 5.0 ? kDiffers : kAgrees;
@@ -273,11 +282,11 @@ TEST(MergeTest, ASmallerSetOfLoopsWinsWhereTheLargestIsRefuted) {
   EXPECT_NEAR(check.hypotheses[1].from_best_m, 30.0, 0.5);
 }
 
-TEST(MergeTest, TwoHypothesesWithTheSameSupportDecideNothing) {
+TEST(MergeChecker, TwoHypothesesWithTheSameSupportDecideNothing) {
   std::vector<PcmLoop> loops = kTrueLoops;
   for (const std::size_t a : {70U, 120U, 130U}) loops.push_back(loop_at(a, 20.0));
-  MergeTest test = a_test(loops);
-  const MergeCheck check = run(test, [](const PlannedCheck&) { return kAgrees; });
+  MergeChecker checker = a_check(loops);
+  const MergeCheck check = run(checker, [](const PlannedComparison&) { return kAgrees; });
   EXPECT_FALSE(check.accepted);
   EXPECT_NE(check.reason.find("two hypotheses 20 m apart along the tunnel have similar support"),
             std::string::npos)
@@ -288,13 +297,13 @@ TEST(MergeTest, TwoHypothesesWithTheSameSupportDecideNothing) {
   EXPECT_EQ(check.hypotheses[1].outcome, HypothesisOutcome::rival);
 }
 
-TEST(MergeTest, RivalsToEitherSideOfTheFirstAreAsFarApartAsTheyAre) {
+TEST(MergeChecker, RivalsToEitherSideOfTheFirstAreAsFarApartAsTheyAre) {
   std::vector<PcmLoop> loops = kTrueLoops;  // refuted; 20 m to each side of it two others agree everywhere
   loops.push_back(loop_at(95));
   for (const std::size_t a : {70U, 120U, 130U}) loops.push_back(loop_at(a, 20.0));
   for (const std::size_t a : {60U, 65U, 75U}) loops.push_back(loop_at(a, -20.0));
-  MergeTest test = a_test(loops);
-  const MergeCheck check = run(test, [](const PlannedCheck& asked) {
+  MergeChecker checker = a_check(loops);
+  const MergeCheck check = run(checker, [](const PlannedComparison& asked) {
     const double off =
         (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
     return off < 5.0 ? kDiffers : kAgrees;
@@ -302,11 +311,11 @@ TEST(MergeTest, RivalsToEitherSideOfTheFirstAreAsFarApartAsTheyAre) {
   EXPECT_NE(check.reason.find("two hypotheses 40 m apart"), std::string::npos) << check.reason;
 }
 
-TEST(MergeTest, AHypothesisFarBehindTheBestIsNoRival) {
+TEST(MergeChecker, AHypothesisFarBehindTheBestIsNoRival) {
   std::vector<PcmLoop> loops = kTrueLoops;
   loops.push_back(loop_at(120, 20.0));
-  MergeTest test = a_test(loops);
-  const MergeCheck check = run(test, [](const PlannedCheck& asked) {
+  MergeChecker checker = a_check(loops);
+  const MergeCheck check = run(checker, [](const PlannedComparison& asked) {
     const double off =
         (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
     return off > 5.0 ? kSilent : kAgrees;
@@ -316,27 +325,28 @@ TEST(MergeTest, AHypothesisFarBehindTheBestIsNoRival) {
   EXPECT_EQ(check.hypotheses[1].outcome, HypothesisOutcome::behind);
 }
 
-TEST(MergeTest, TellsOfABoundedNumberOfHypotheses) {
+TEST(MergeChecker, TellsOfABoundedNumberOfHypotheses) {
   std::vector<PcmLoop> loops;
   for (std::size_t h = 0; h < 20; ++h) loops.push_back(loop_at(190, 4.0 * static_cast<double>(h)));
   MergeCheckConfig config;
   config.max_hypotheses = 1000;
-  MergeTest test = a_test(loops, 0.5, config);
-  EXPECT_EQ(run(test, [](const PlannedCheck&) { return kDiffers; }).hypotheses.size(), kHypothesesPerCheck);
+  MergeChecker checker = a_check(loops, 0.5, config);
+  EXPECT_EQ(run(checker, [](const PlannedComparison&) { return kDiffers; }).hypotheses.size(),
+            kHypothesesPerCheck);
 }
 
-TEST(MergeTest, WithoutLoopsItIsOverAtOnce) {
-  MergeTest test = a_test({});
-  EXPECT_TRUE(test.next(16).empty());
-  EXPECT_FALSE(test.verdict({0}, {1}).accepted);
+TEST(MergeChecker, WithoutLoopsItIsOverAtOnce) {
+  MergeChecker checker = a_check({});
+  EXPECT_TRUE(checker.next(16).empty());
+  EXPECT_FALSE(checker.verdict({0}, {1}).accepted);
 }
 
-TEST(MergeTest, TakesOnlyWhatItAskedFor) {
-  MergeTest test = a_test({});
-  EXPECT_THROW(test.add({kAgrees}), ContractViolation);
+TEST(MergeChecker, TakesOnlyWhatItAskedFor) {
+  MergeChecker checker = a_check({});
+  EXPECT_THROW(checker.add({kAgrees}), ContractViolation);
 }
 
-TEST(MergeTest, ChanceJoinsMapsNoMoreOftenThanTheErrorRateSays) {
+TEST(MergeChecker, ChanceJoinsMapsNoMoreOftenThanTheErrorRateSays) {
   // Tunnels that look alike go on agreeing half the time; with an error rate that can be counted.
   MergeCheckConfig config;
   config.error_rate = 0.02;
@@ -344,17 +354,19 @@ TEST(MergeTest, ChanceJoinsMapsNoMoreOftenThanTheErrorRateSays) {
   int num_wrong = 0;
   constexpr int kTrials = 2000;
   for (int trial = 0; trial < kTrials; ++trial) {
-    MergeTest test = a_test(kTrueLoops, 0.5, config);
-    num_wrong +=
-        run(test, [&](const PlannedCheck&) { return rng.uniform() < 0.5 ? kAgrees : kDiffers; }).accepted;
+    MergeChecker checker = a_check(kTrueLoops, 0.5, config);
+    num_wrong += run(checker, [&](const PlannedComparison&) {
+                   return rng.uniform() < 0.5 ? kAgrees : kDiffers;
+                 }).accepted;
   }
   EXPECT_LE(num_wrong, static_cast<int>(0.02 * kTrials));
   // And true alignments pass: one check in fifty differs.
   int num_right = 0;
   for (int trial = 0; trial < 200; ++trial) {
-    MergeTest test = a_test(kTrueLoops);
-    num_right +=
-        run(test, [&](const PlannedCheck&) { return rng.uniform() < 0.98 ? kAgrees : kDiffers; }).accepted;
+    MergeChecker checker = a_check(kTrueLoops);
+    num_right += run(checker, [&](const PlannedComparison&) {
+                   return rng.uniform() < 0.98 ? kAgrees : kDiffers;
+                 }).accepted;
   }
   EXPECT_GE(num_right, 195);
 }

@@ -1,0 +1,79 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "adit/core/config.hpp"
+#include "adit/fleet/joint/cycle.hpp"
+#include "adit/fleet/sync/fleet_graph.hpp"
+#include "adit/posegraph/gnc.hpp"
+#include "adit/posegraph/optimizer.hpp"
+#include "adit/posegraph/pcm.hpp"
+#include "adit/posegraph/pose_graph.hpp"
+
+namespace adit {
+
+struct BackEndConfig {
+  bool pcm_on = true;
+  bool gnc_on = true;
+  /// Under MergePolicy::adaptive pairs with an accepted MergeCheck share a map,
+  bool cycles_needed = true;   ///< as long as cycles of merges do not contradict it,
+  bool joint_evidence = true;  ///< and pairs whose evidence suffices only when it is added up.
+  int min_loops = 1;           ///< Loops in use between two robots before they count as merged.
+  LoopNoise loop_noise;
+  CycleConfig cycles;
+  double one_place_m = 4.0;  ///< Comparisons of several pairs this near to one another count once.
+  PcmConfig pcm;
+  GncConfig gnc;
+};
+Fields fields_of(BackEndConfig& config);
+
+/// What became of one accepted loop.
+struct LoopOutcome {
+  LoopClosure loop;
+  bool is_selected = false;  ///< By PCM or by an accepted merge check (always true where neither is on).
+  double weight = 0.0;       ///< Final GNC weight; 0 where it was not selected.
+  [[nodiscard]] bool in_use() const { return weight >= 0.5; }
+};
+
+/// What became of two robots.
+struct PairOutcome {
+  RobotId a, b;
+  std::size_t num_loops = 0;     ///< Accepted by the registration.
+  std::size_t num_selected = 0;  ///< Loops that take part: PCM's largest clique, or those of the merge check.
+  std::size_t second_clique = 0;  ///< PCM's largest clique disjoint from it.
+  bool clique_exact = true;       ///< PCM proved both to be the largest.
+  bool merged = false;
+  std::string joined_reason;   ///< One sentence where several pairs together had enough evidence; else "".
+  std::string refused_reason;  ///< One sentence; "" when merged.
+};
+
+/// Robots that share one frame: that of `anchor`'s odometry, the smallest id of them.
+struct Component {
+  RobotId anchor;
+  std::vector<RobotId> robots;
+  SolveStatus status = SolveStatus::converged;
+  std::string reason;  ///< Why the solver stopped, where it did not converge.
+  int iterations = 0;
+  double cost = 0.0;
+};
+
+struct FleetSolution {
+  std::map<RobotId, std::vector<Pose>> T_world_keyframe;
+  std::vector<LoopOutcome> loops;
+  std::vector<PairOutcome> pairs;
+  std::vector<Component> components;
+  PoseGraph initial;    ///< All accepted loops, robots placed in a common frame by their loops.
+  PoseGraph after_pcm;  ///< The same with only the loops that PCM kept.
+  PoseGraph optimized;
+};
+
+/// Selects loops (select_loops), then solves each connected component by GNC with odometry as known inliers.
+/// A robot without loops is a component of its own, at its odometry. Loops whose keyframes are not (yet)
+/// known take no part.
+[[nodiscard]] FleetSolution solve(const FleetGraph& fleet, const BackEndConfig& config);
+
+}  // namespace adit

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// All settings of MergePolicy::adaptive: how candidates are found, registered and turned into merges.
+#pragma once
+
+#include "adit/core/config.hpp"
+#include "adit/fleet/search/candidate_search.hpp"
+#include "adit/registration/registration_config.hpp"
+
+namespace adit {
+
+/// What a robot measures on its own map (Discernment).
+struct DiscernmentConfig {
+  int samples = 32;
+  int look_alikes = 16;
+  double displacement_m = 5.0;
+  double usual_share = 0.9;
+  double allowance = 1.5;
+  bool second_looks = true;
+  double second_look_m = 1.0;
+  double followed_m = 60.0;
+  int starts_per_look_alike = 4;
+  double prior_chance = 0.5;
+  double prior_steps = 8.0;
+  double shortest_reach_m = 50.0;
+  double longest_reach_m = 150.0;
+  double reach_off_m = 0.5;
+};
+Fields fields_of(DiscernmentConfig& config);
+
+/// When loops between two robots may join their maps (MergeChecker, decision 0010).
+struct MergeCheckConfig {
+  double error_rate = 1e-3;
+  double refusal_rate = 0.01;
+  double spacing_m = 3.0;
+  int max_checks = 200;
+  int first_checks = 8;
+  int max_hypotheses = 12;
+  int min_loops = 1;
+  double odometry_slack = 1.0;
+  double same_alignment_m = 3.0;
+  double agreement_at_worst = 0.95;
+  double gross_difference = 3.0;
+  double gross_rate = 0.005;
+  double misplaced_m = 0.75;
+  int misplaced_keyframes = 60;
+  int misplaced_neighbours = 5;
+  int misplaced_quorum = 3;
+  bool distinctive_only = true;
+  bool relief = true;
+  DiscernmentConfig discernment;
+};
+Fields fields_of(MergeCheckConfig& config);
+
+struct AdaptiveConfig {
+  SearchConfig search;
+  RegistrationConfig registration;
+  double one_place_m = 10.0;
+  int second_search_share = 4;
+  MergeCheckConfig merge_check;
+};
+/// The keys of `search` carry no prefix of their own.
+Fields fields_of(AdaptiveConfig& config);
+
+}  // namespace adit

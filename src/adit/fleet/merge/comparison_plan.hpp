@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// At which places two maps are compared that loops align.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "adit/posegraph/pcm.hpp"
+
+namespace adit {
+
+/// Two keyframes that stand side by side if the loops are true.
+struct PlannedComparison {
+  std::uint32_t own = 0;
+  std::uint32_t theirs = 0;
+  Pose T_own_theirs;
+};
+
+/// Lengths along the path, metres.
+struct ComparisonSpacing {
+  double spacing_m = 3.0;      ///< From one place to the next.
+  double reach_m = 50.0;       ///< No place is farther from the nearest loop.
+  double revisit_m = 40.0;     ///< Within one map: between the two keyframes (RevisitConfig::path_m).
+  double second_look_m = 1.0;  ///< From a place to where it is looked at again.
+};
+
+class ComparisonPlanner {
+ public:
+  /// `loops` agree with one another. With the same chain given twice: revisits, the earlier keyframe as
+  /// `own`. All must outlive the planner.
+  ComparisonPlanner(const OdometryChain& own, const OdometryChain& theirs, const std::vector<PcmLoop>& loops,
+                    const ComparisonSpacing& spacing);
+
+  /// At most `max_places`, evenly spaced along the whole stretch that both drove; far apart first, those
+  /// between them later.
+  [[nodiscard]] std::vector<PlannedComparison> plan(std::size_t max_places) const;
+  /// The same place by two other keyframes.
+  [[nodiscard]] std::optional<PlannedComparison> second_look(const PlannedComparison& first) const;
+
+ private:
+  /// Their keyframe j beside the own one that is nearest.
+  [[nodiscard]] std::optional<PlannedComparison> at(std::uint32_t j) const;
+
+  const OdometryChain& own_;
+  const OdometryChain& theirs_;
+  std::vector<double> own_path_m_;
+  std::vector<double> their_path_m_;
+  const std::vector<PcmLoop>& loops_;
+  ComparisonSpacing spacing_;
+};
+
+}  // namespace adit

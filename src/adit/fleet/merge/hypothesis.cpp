@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/merge/hypothesis.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "adit/fleet/search/path.hpp"
+
+namespace adit {
+namespace {
+
+std::vector<PcmLoop> picked(const std::vector<PcmLoop>& loops, const std::vector<std::size_t>& indices) {
+  std::vector<PcmLoop> out;
+  for (const std::size_t i : indices) out.push_back(loops[i]);
+  return out;
+}
+
+/// Metres between where two sets of loops put the other robot, at the loops of the second.
+double apart_m(const std::vector<PcmLoop>& first, const std::vector<PcmLoop>& second,
+               const LoopsBetween& between) {
+  const std::vector<double> their_path_m = path_lengths(between.theirs);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const PcmLoop& loop : second) {
+    const PcmLoop& of_first = nearest_loop(first, their_path_m, loop.b);
+    const Vector3 by_first = between.own.pose(of_first.a) *
+                             (of_first.T_a_b * between.theirs.between(of_first.b, loop.b)).translation();
+    const Vector3 by_second = between.own.pose(loop.a) * loop.T_a_b.translation();
+    nearest = std::min(nearest, (by_first - by_second).norm());
+  }
+  return nearest;
+}
+
+std::size_t keyframes_between(const PcmLoop& one, const PcmLoop& other) {
+  return one.b > other.b ? one.b - other.b : other.b - one.b;
+}
+
+/// Metres by which two loops disagree, with odometry between them.
+double disagreement_m(const PcmLoop& loop, const PcmLoop& other, const LoopsBetween& between) {
+  const Pose T_a_b =
+      between.own.between(loop.a, other.a) * other.T_a_b * between.theirs.between(other.b, loop.b);
+  return (T_a_b.translation() - loop.T_a_b.translation()).norm();
+}
+
+/// Loops that agree may differ by as much as odometry may drift over the whole path. Those near one another
+/// have to agree better, whatever odometry's noise was taken for: loops that most of their neighbours
+/// contradict go.
+std::vector<std::size_t> without_misplaced(const std::vector<std::size_t>& agreeing,
+                                           const LoopsBetween& between, const MergeCheckConfig& config) {
+  std::vector<std::size_t> out;
+  for (const std::size_t l : agreeing) {
+    const PcmLoop& loop = between.loops[l];
+    std::vector<std::pair<std::size_t, double>> neighbours;  // keyframes away, metres of disagreement
+    for (const std::size_t other : agreeing) {
+      const std::size_t keyframes = keyframes_between(loop, between.loops[other]);
+      if (other == l || keyframes > static_cast<std::size_t>(config.misplaced_keyframes)) continue;
+      neighbours.emplace_back(keyframes, disagreement_m(loop, between.loops[other], between));
+    }
+    std::ranges::stable_sort(neighbours, {}, &std::pair<std::size_t, double>::first);
+    neighbours.resize(std::min(neighbours.size(), static_cast<std::size_t>(config.misplaced_neighbours)));
+    const auto num_contradicting = static_cast<std::size_t>(std::ranges::count_if(
+        neighbours, [&](const auto& neighbour) { return neighbour.second > config.misplaced_m; }));
+    const bool too_few = neighbours.size() < static_cast<std::size_t>(config.misplaced_quorum);
+    if (too_few || 2 * num_contradicting <= neighbours.size()) out.push_back(l);
+  }
+  return out.empty() ? agreeing : out;
+}
+
+void plan_comparisons(Hypothesis& hypothesis, const LoopsBetween& between, double reach_m,
+                      const AdaptiveConfig& config) {
+  const MergeCheckConfig& check = config.merge_check;
+  const std::vector<PcmLoop> agreeing = picked(between.loops, hypothesis.loops);
+  const ComparisonPlanner planner(
+      between.own, between.theirs, agreeing,
+      {check.spacing_m, reach_m, config.search.revisit.path_m, check.discernment.second_look_m});
+  hypothesis.plan = planner.plan(static_cast<std::size_t>(check.max_checks));
+  for (const PlannedComparison& place : hypothesis.plan)
+    hypothesis.second_looks.push_back(check.discernment.second_looks ? planner.second_look(place)
+                                                                     : std::nullopt);
+}
+
+}  // namespace
+
+bool Hypothesis::is_finished() const { return compared.size() == plan.size() && to_look_at_again().empty(); }
+
+std::vector<std::size_t> Hypothesis::to_look_at_again() const {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    if (compared[i].differs() && second_looks[i]) out.push_back(i);
+  return out;
+}
+
+std::size_t Hypothesis::num_differing(double by_more_than) const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      compared, [&](const ComparedPlace& place) { return !(place.difference <= by_more_than); }));
+}
+
+std::size_t Hypothesis::num_distinctive() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      compared, [](const ComparedPlace& place) { return place.is_distinctive && !place.differs(); }));
+}
+
+std::vector<TestedPlace> Hypothesis::places(bool distinctive_only) const {
+  std::vector<TestedPlace> places;
+  for (std::size_t i = 0; i < compared.size(); ++i) {
+    const bool counts = compared[i].is_distinctive || !distinctive_only;
+    places.push_back({plan[i].own, plan[i].theirs,
+                      compared[i].differs() ? PlaceOutcome::differs
+                      : counts              ? PlaceOutcome::distinctive
+                                            : PlaceOutcome::agrees});
+  }
+  std::ranges::stable_sort(places, {}, &TestedPlace::a);
+  return places;
+}
+
+std::vector<Hypothesis> hypotheses_of(const LoopsBetween& between, double reach_m,
+                                      const AdaptiveConfig& config) {
+  const MergeCheckConfig& check = config.merge_check;
+  std::vector<Hypothesis> hypotheses;
+  std::vector<std::size_t> rest(between.loops.size());
+  std::iota(rest.begin(), rest.end(), std::size_t{0});
+  while (!rest.empty() && hypotheses.size() < static_cast<std::size_t>(check.max_hypotheses)) {
+    Hypothesis hypothesis;
+    for (const std::size_t l : pcm(between.own, between.theirs, picked(between.loops, rest)).largest)
+      hypothesis.loops.push_back(rest[l]);
+    std::erase_if(rest, [&](std::size_t l) { return std::ranges::binary_search(hypothesis.loops, l); });
+    hypothesis.loops = without_misplaced(hypothesis.loops, between, check);
+    for (const Hypothesis& other : hypotheses)
+      hypothesis.apart_m.push_back(
+          apart_m(picked(between.loops, other.loops), picked(between.loops, hypothesis.loops), between));
+    const auto is_same = [&](double metres) { return metres <= check.same_alignment_m; };
+    if (std::ranges::any_of(hypothesis.apart_m, is_same)) continue;
+    plan_comparisons(hypothesis, between, reach_m, config);
+    if (!between.known_before.empty()) {
+      const auto known = [&](std::size_t l) { return between.known_before[l]; };
+      hypothesis.known_before = known(*std::ranges::min_element(hypothesis.loops, {}, known));
+    }
+    hypotheses.push_back(std::move(hypothesis));
+  }
+  return hypotheses;
+}
+
+}  // namespace adit

@@ -1,0 +1,211 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/merge/merge_checker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "adit/core/check.hpp"
+#include "adit/fleet/merge/merge_evidence.hpp"
+
+namespace adit {
+
+MergeChecker::MergeChecker(LoopsBetween between, OwnMeasurements own, const AdaptiveConfig& config)
+    : hypotheses_(hypotheses_of(between, own.reach_m, config)),
+      own_(std::move(own)),
+      config_(config.merge_check) {
+  loops_ = std::move(between.loops);
+}
+
+/// The first of these that holds of the best hypothesis; decision 0010 in this order.
+MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first) const {
+  if (best_first.empty()) return MergeDecision::no_loops;
+  const Hypothesis& best = hypotheses_[best_first.front()];
+
+  // Against copies. Scans of one place seldom differ, and one wall stands apart from itself to either side.
+  if (has_other_walls(best)) return MergeDecision::other_walls;
+  if (differs_too_often(best)) return MergeDecision::scans_differ;
+
+  // Against chance. Only places where a displacement along the tunnel would show are evidence, by how seldom
+  // look-alikes of the own map agree for as long (Wald's test).
+  if (evidence(best) < needed())
+    return best.num_distinctive() == 0 ? MergeDecision::nothing_distinctive
+                                       : MergeDecision::too_little_evidence;
+  if (std::ssize(best.loops) < config_.min_loops) return MergeDecision::too_few_loops;
+
+  // Against every other hypothesis, the next best one first.
+  if (best_first.size() > 1 && are_rivals(best, hypotheses_[best_first[1]])) return MergeDecision::rival;
+  return best.is_finished() ? MergeDecision::accepted : MergeDecision::unfinished;
+}
+
+bool MergeChecker::has_other_walls(const Hypothesis& h) const {
+  // Asked again after every comparison: before the end only what leaves little doubt counts.
+  constexpr double kStricterBeforeTheEnd = 100.0;
+  const double rate = h.is_finished() ? config_.refusal_rate : config_.refusal_rate / kStricterBeforeTheEnd;
+  // What was measured only raises the share that one wall may have: without it the answer is often known
+  // already.
+  return config_.relief && h.offsets.are_of_other_walls({}, rate) &&
+         h.offsets.are_of_other_walls(own_.measured().walls, rate);
+}
+
+bool MergeChecker::differs_too_often(const Hypothesis& h) const {
+  const std::size_t num = h.compared.size();
+  const double differs_at_worst = 1.0 - config_.agreement_at_worst;
+  return binomial_tail(h.num_differing(), num, differs_at_worst) < config_.refusal_rate ||
+         binomial_tail(h.num_differing(config_.gross_difference), num, config_.gross_rate) <
+             config_.refusal_rate;
+}
+
+bool MergeChecker::is_refuted(const Hypothesis& h) const {
+  return differs_too_often(h) || has_other_walls(h);
+}
+
+bool MergeChecker::are_rivals(const Hypothesis& best, const Hypothesis& other) const {
+  return !is_refuted(other) && evidence(best) - evidence(other) < needed();
+}
+
+double MergeChecker::needed() const { return std::log(1.0 / config_.error_rate); }
+
+double MergeChecker::evidence(const Hypothesis& h) const {
+  return evidence_of_scans(h) + evidence_of_walls(h);
+}
+
+double MergeChecker::evidence_of_scans(const Hypothesis& h) const {
+  const std::vector<double> at_places = evidence_at_places(h.places(config_.distinctive_only), chances());
+  const double prior = static_cast<double>(h.loops.size()) / static_cast<double>(loops_.size());
+  return h.known_before + std::log(prior) + std::accumulate(at_places.begin(), at_places.end(), 0.0);
+}
+
+double MergeChecker::evidence_of_walls(const Hypothesis& h) const {
+  return config_.relief ? h.offsets.evidence(own_.measured().walls) : 0.0;
+}
+
+std::optional<std::size_t> MergeChecker::to_go_on_with() const {
+  double best_finished = -std::numeric_limits<double>::infinity();
+  for (const Hypothesis& h : hypotheses_)
+    if (h.is_finished() && !is_refuted(h)) best_finished = std::max(best_finished, evidence_of_scans(h));
+  const auto can_no_longer_be_a_rival = [&](const Hypothesis& h) {
+    if (!std::isfinite(best_finished)) return false;
+    const auto num_left = static_cast<double>(h.plan.size() - h.compared.size());
+    return evidence_of_scans(h) + num_left * evidence_of_agreement(chances(), 0) < best_finished - needed();
+  };
+  // Ranked by what needs no measuring of the own map: many a check ends with all refuted.
+  const auto share_differing = [](const Hypothesis& h) {
+    return static_cast<double>(h.num_differing()) / static_cast<double>(h.compared.size());
+  };
+  std::optional<std::size_t> found;
+  for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
+    const Hypothesis& h = hypotheses_[i];
+    if (h.is_finished() || is_refuted(h)) continue;
+    if (h.compared.empty()) return i;
+    if (can_no_longer_be_a_rival(h)) continue;
+    if (!found || share_differing(h) < share_differing(hypotheses_[*found])) found = i;
+  }
+  return found;
+}
+
+std::vector<PlannedComparison> MergeChecker::next(std::size_t num) const {
+  const auto which = to_go_on_with();
+  if (!which) return {};
+  const Hypothesis& h = hypotheses_[*which];
+  const std::size_t from = h.compared.size();
+  if (from == h.plan.size()) {
+    std::vector<PlannedComparison> again;
+    for (const std::size_t i : h.to_look_at_again())
+      if (again.size() < num) again.push_back(*h.second_looks[i]);
+    return again;
+  }
+  const std::size_t at_once = from == 0 ? std::min(num, static_cast<std::size_t>(config_.first_checks)) : num;
+  const std::size_t to = std::min(h.plan.size(), from + at_once);
+  return {h.plan.begin() + static_cast<std::ptrdiff_t>(from),
+          h.plan.begin() + static_cast<std::ptrdiff_t>(to)};
+}
+
+void MergeChecker::add(const std::vector<ComparedPlace>& places) {
+  const auto which = to_go_on_with();
+  ADIT_CHECK(which, "only what was asked for is added");
+  Hypothesis& h = hypotheses_[*which];
+  if (h.compared.size() == h.plan.size()) return add_second_looks(h, places);
+  ADIT_CHECK(h.compared.size() + places.size() <= h.plan.size(), "only what was asked for is added");
+  for (const ComparedPlace& place : places) {
+    h.offsets.add(place.offsets);
+    h.compared.push_back({place.difference, place.is_distinctive});
+  }
+}
+
+void MergeChecker::add_second_looks(Hypothesis& h, const std::vector<ComparedPlace>& places) {
+  const std::vector<std::size_t> again = h.to_look_at_again();
+  ADIT_CHECK(places.size() <= again.size(), "only what was asked for is added");
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    h.second_looks[again[i]].reset();
+    if (places[i].differs()) continue;
+    h.offsets.add(places[i].offsets);
+    h.compared[again[i]] = {places[i].difference, places[i].is_distinctive};
+  }
+}
+
+double MergeChecker::apart_m(std::size_t one, std::size_t other) const {
+  return one == other ? 0.0 : hypotheses_[std::max(one, other)].apart_m[std::min(one, other)];
+}
+
+std::vector<std::size_t> MergeChecker::best_first() const {
+  std::vector<std::size_t> order(hypotheses_.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, [&](std::size_t one, std::size_t other) {
+    const Hypothesis& a = hypotheses_[one];
+    const Hypothesis& b = hypotheses_[other];
+    if (is_refuted(a) || is_refuted(b)) return is_refuted(a) < is_refuted(b);
+    return evidence(a) > evidence(b);
+  });
+  return order;
+}
+
+MergeHypothesis MergeChecker::described(std::size_t which, std::size_t best) const {
+  const Hypothesis& h = hypotheses_[which];
+  MergeHypothesis out;
+  out.num_checked = static_cast<std::uint32_t>(h.compared.size());
+  out.num_passed = static_cast<std::uint32_t>(h.compared.size() - h.num_differing());
+  out.from_best_m = apart_m(which, best);
+  for (const std::size_t l : h.loops)
+    out.loops.emplace_back(static_cast<std::uint32_t>(loops_[l].a), static_cast<std::uint32_t>(loops_[l].b));
+  if (is_refuted(h)) return out;
+  out.evidence = evidence(h);
+  out.places = h.places(config_.distinctive_only);
+  out.walls = evidence_of_walls(h);
+  out.outcome = which == best                      ? HypothesisOutcome::unsure
+                : are_rivals(hypotheses_[best], h) ? HypothesisOutcome::rival
+                                                   : HypothesisOutcome::behind;
+  return out;
+}
+
+MergeCheck MergeChecker::verdict(RobotId a, RobotId b) const {
+  const std::vector<std::size_t> order = best_first();
+  const MergeDecision decision = decide(order);
+  MergeCheck out;
+  out.a = a;
+  out.b = b;
+  out.needed = needed();
+  out.accepted = decision == MergeDecision::accepted;
+  out.reason = reason(decision, order);
+  if (order.empty()) return out;
+  for (const std::size_t h : std::span(order).first(std::min(order.size(), kHypothesesPerCheck)))
+    out.hypotheses.push_back(described(h, order.front()));
+  MergeHypothesis& best = out.hypotheses.front();
+  if (best.outcome != HypothesisOutcome::refuted) {
+    const bool has_rival = out.hypotheses.size() > 1 && out.hypotheses[1].outcome == HypothesisOutcome::rival;
+    if (out.accepted) best.outcome = HypothesisOutcome::accepted;
+    if (has_rival && best.evidence >= out.needed) best.outcome = HypothesisOutcome::rival;
+    out.goes_on = chances();
+  }
+  out.evidence = best.evidence;
+  out.num_checked = best.num_checked;
+  out.num_passed = best.num_passed;
+  out.loops = best.loops;
+  return out;
+}
+
+}  // namespace adit

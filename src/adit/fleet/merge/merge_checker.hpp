@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The merge check: whether the loops between two robots may join their maps. A test with a stated error
+/// rate, measured against what the robot has seen itself, so that nothing is tuned to a site.
+///
+/// Loops that agree with one another align the maps: a hypothesis. Where it is true, the scans of both robots
+/// agree all along the stretch that both drove; where one tunnel only looks like another, they agree for a
+/// while and then one has a niche, a bend or a side passage that the other has not. How long look-alikes
+/// agree differs from site to site, and each robot measures it on its own map (Discernment).
+///
+/// The decision is Wald's sequential probability ratio test ("Sequential tests of statistical hypotheses",
+/// 1945): log likelihood ratios add up over the distinctive places and have to reach log(1 / error_rate),
+/// together with those of the relief of walls (StandingOffsets) and the prior, the share of all loops that
+/// speak for this alignment. It is one-sided against copies: scans that differ may not be more than true
+/// places would leave, nor walls stand apart more often than one wall does from itself. And every other
+/// hypothesis has to stay behind by as much. `MergeChecker::decide` reads in that order; docs/decisions/0010
+/// tells why.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adit/fleet/merge/adaptive_config.hpp"
+#include "adit/fleet/merge/hypothesis.hpp"
+#include "adit/fleet/merge/look_alikes.hpp"
+#include "adit/fleet/sync/protocol.hpp"
+
+namespace adit {
+
+/// What a robot has measured on its own map, for a merge check.
+struct OwnMeasurements {
+  double reach_m = 0.0;        ///< Discernment::reach_m.
+  MeasuredWhenAsked measured;  ///< Called only where scans leave a hypothesis to be weighed.
+};
+
+/// Why maps are joined or not.
+enum class MergeDecision : std::uint8_t {
+  no_loops,
+  other_walls,          ///< The relief of the walls is another one.
+  scans_differ,         ///< At more places than a true alignment leaves.
+  nothing_distinctive,  ///< All places that agree would agree if displaced along the tunnel, too.
+  too_little_evidence,
+  too_few_loops,
+  rival,       ///< Another hypothesis has nearly as much evidence.
+  unfinished,  ///< Not all places were compared.
+  accepted,
+};
+
+/// Asks for comparisons until it knows.
+class MergeChecker {
+ public:
+  MergeChecker(LoopsBetween between, OwnMeasurements own, const AdaptiveConfig& config);
+
+  /// The next comparisons, at most `num`, each with another keyframe of theirs; none when the check is over.
+  /// Asked again without `add` in between it answers the same.
+  [[nodiscard]] std::vector<PlannedComparison> next(std::size_t num) const;
+  /// What came of the comparisons that `next` asked for, in that order.
+  void add(const std::vector<ComparedPlace>& places);
+  /// What has been found, about the robots `a` (own) and `b`.
+  [[nodiscard]] MergeCheck verdict(RobotId a, RobotId b) const;
+
+ private:
+  [[nodiscard]] MergeDecision decide(const std::vector<std::size_t>& best_first) const;
+  [[nodiscard]] bool has_other_walls(const Hypothesis& hypothesis) const;
+  [[nodiscard]] bool differs_too_often(const Hypothesis& hypothesis) const;
+  [[nodiscard]] bool is_refuted(const Hypothesis& hypothesis) const;
+  [[nodiscard]] bool are_rivals(const Hypothesis& best, const Hypothesis& other) const;
+
+  [[nodiscard]] double needed() const;
+  [[nodiscard]] double evidence(const Hypothesis& hypothesis) const;
+  [[nodiscard]] double evidence_of_scans(const Hypothesis& hypothesis) const;
+  [[nodiscard]] double evidence_of_walls(const Hypothesis& hypothesis) const;
+  [[nodiscard]] ChancesToGoOn chances() const { return own_.measured().look_alikes.chances(); }
+
+  [[nodiscard]] std::optional<std::size_t> to_go_on_with() const;
+  static void add_second_looks(Hypothesis& hypothesis, const std::vector<ComparedPlace>& places);
+  [[nodiscard]] std::vector<std::size_t> best_first() const;
+  [[nodiscard]] double apart_m(std::size_t one, std::size_t other) const;
+  [[nodiscard]] MergeHypothesis described(std::size_t hypothesis, std::size_t best) const;
+  [[nodiscard]] std::string reason(MergeDecision decision, const std::vector<std::size_t>& best_first) const;
+  [[nodiscard]] std::string what_is_missing(const Hypothesis& hypothesis) const;
+
+  std::vector<PcmLoop> loops_;
+  std::vector<Hypothesis> hypotheses_;
+  OwnMeasurements own_;
+  MergeCheckConfig config_;
+};
+
+}  // namespace adit

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Compares the scans of both robots at the places that a merge check asks for.
+#pragma once
+
+#include <vector>
+
+#include "adit/fleet/merge/comparison_plan.hpp"
+#include "adit/fleet/merge/discernment.hpp"
+#include "adit/fleet/merge/hypothesis.hpp"
+#include "adit/fleet/sync/protocol.hpp"
+#include "adit/robot/robot_map.hpp"
+
+namespace adit {
+
+class PlaceComparer {
+ public:
+  /// `discernment`: of `map`. All must outlive it.
+  PlaceComparer(const RobotMap& map, Discernment& discernment, const RegistrationConfig& registration)
+      : map_(map), discernment_(discernment), registration_(registration) {}
+
+  /// Own keyframes with clouds of a peer, one for each place.
+  [[nodiscard]] std::vector<ComparedPlace> with_clouds(const std::vector<PlannedComparison>& asked,
+                                                       const Clouds& clouds);
+  /// Keyframes of the own map with later ones of it.
+  [[nodiscard]] std::vector<ComparedPlace> within_own_map(const std::vector<PlannedComparison>& asked);
+
+ private:
+  /// With the surface of the peer's keyframe; the own one has been prepared.
+  [[nodiscard]] ComparedPlace compared(const PlannedComparison& place, const SeenSurface& theirs,
+                                       bool is_distinctive) const;
+
+  const RobotMap& map_;
+  Discernment& discernment_;
+  const RegistrationConfig& registration_;
+};
+
+}  // namespace adit

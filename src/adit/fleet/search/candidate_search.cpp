@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/search/candidate_search.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <utility>
+
+#include "adit/core/parallel.hpp"
+#include "adit/fleet/search/path.hpp"
+
+namespace adit {
+namespace {
+
+using Ends = std::pair<KeyframeId, KeyframeId>;
+
+Ends ends_of(const LoopCandidate& candidate) { return {candidate.query, candidate.match}; }
+
+}  // namespace
+
+Fields fields_of(SearchConfig& c) {
+  Fields fields = {
+      {"candidates", &c.candidates, "", 1, 1e6, "candidates that are registered with each peer"},
+      {"further_candidates", &c.further_candidates, "", 0, 1e6,
+       "and so many more where these led to many loops, all of which are refuted"},
+      {"segments", &c.segments, "", 0, 1e6,
+       "stretches along which candidates agree, whose best ones are registered first"},
+      {"segments_that_stand_out", &c.segments_that_stand_out, "", 0, 1e6,
+       "the same, weighed by how much a candidate stands out from look-alikes in the robot's own map; taken "
+       "in turns"},
+      {"of_a_segment", &c.of_a_segment, "", 1, 1e6, "candidates that are registered of each of them"},
+      {"stand_out", &c.stand_out, "", 0, 0,
+       "rank other candidates by their distance over that to the most similar other place of the own map; "
+       "otherwise by their distance"},
+      {"of_a_place", &c.of_a_place, "", 1, 1e6, "of those, candidates of one place at most"},
+      {"place_keyframes", &c.place_keyframes, "", 1, 1e6,
+       "keyframes nearer than this in index are of one place"},
+      {"lane_m", &c.lane_m, "m", 0.0, 100.0,
+       "between the lanes from which a keyframe is described for the search"},
+      {"lanes", &c.lanes, "", 0, 100, "such lanes on each side of the one that was driven"},
+      {"revisits", &c.revisits, "", 0, 0, "look for loops within the robot's own map"},
+      {"revisit_candidates", &c.revisit_candidates, "", 1, 1e6, "candidates that are registered within it"}};
+  append(fields, "segment", fields_of(c.segment));
+  append(fields, "self_similarity", fields_of(c.self_similarity));
+  append(fields, "revisit", fields_of(c.revisit));
+  return fields;
+}
+
+std::vector<LoopCandidate> most_similar_places(const RobotMap& map, const std::vector<std::uint32_t>& queries,
+                                               const PeerPlaces& peer, const PlaceIndexConfig& place,
+                                               const Lanes& lanes) {
+  PlaceIndex index(place);
+  std::set<std::uint32_t> added;  // a confused peer may name a keyframe twice
+  for (const Places::Place& theirs : peer.places)
+    if (added.insert(theirs.index).second) index.add({peer.peer, theirs.index}, theirs.context);
+  std::vector<std::vector<LoopCandidate>> best(queries.size());
+  parallel_for_each(
+      queries.size(),
+      [&](std::size_t i) {
+        best[i] = most_similar_from(lanes, map, queries[i], [&](const ScanContext& context) {
+          return index.best_match({map.id, queries[i]}, context, peer.peer);
+        });
+      },
+      16);
+  std::vector<LoopCandidate> found;
+  for (const std::vector<LoopCandidate>& of_query : best)
+    found.insert(found.end(), of_query.begin(), of_query.end());
+  std::ranges::sort(found, {},
+                    [](const LoopCandidate& c) { return std::tuple(c.distance, c.query, c.match); });
+  return found;
+}
+
+CandidateSearch::CandidateSearch(std::shared_ptr<const RobotMap> map, OdometryChain chain,
+                                 const PlaceIndexConfig& place, const SearchConfig& config)
+    : map_(std::move(map)), chain_(std::move(chain)), place_(place), config_(config) {}
+
+const SelfSimilarity& CandidateSearch::self_similarity() {
+  if (!self_similarity_)
+    self_similarity_ = std::make_unique<SelfSimilarity>(map_, chain_, place_, config_.self_similarity);
+  return *self_similarity_;
+}
+
+const std::vector<double>& CandidateSearch::self_distances() {
+  if (self_distances_.empty()) self_distances_ = self_similarity().distances();
+  return self_distances_;
+}
+
+std::vector<CandidateSearch::Ranking> CandidateSearch::rankings_of(const std::vector<LoopCandidate>& found,
+                                                                   const OdometryChain& theirs) {
+  const auto num_further =  // of either ranking
+      static_cast<std::size_t>(config_.further_candidates / (2 * config_.of_a_segment));
+  std::vector<Ranking> rankings;
+  const auto rank_by = [&](int num, const std::vector<double>& self_distances) {
+    const auto num_first = static_cast<std::size_t>(num);
+    rankings.push_back(
+        {num_first, agreeing_segments(chain_, theirs, found,
+                                      {num_first + num_further, self_distances, config_.segment})});
+  };
+  if (config_.segments > 0) rank_by(config_.segments, {});
+  if (config_.segments_that_stand_out > 0) rank_by(config_.segments_that_stand_out, self_distances());
+  return rankings;
+}
+
+RankedCandidates CandidateSearch::of_segments(const std::vector<LoopCandidate>& found,
+                                              const OdometryChain& theirs) {
+  if (found.empty()) return {};
+  const std::vector<Ranking> rankings = rankings_of(found, theirs);
+  std::size_t num_ranks = 0;
+  for (const Ranking& ranking : rankings) num_ranks = std::max(num_ranks, ranking.segments.size());
+  RankedCandidates ranked;
+  std::set<Ends> taken;
+  for (std::size_t rank = 0; rank < num_ranks; ++rank)
+    for (const auto& [num_first, segments] : rankings) {
+      if (rank >= segments.size()) continue;
+      const std::vector<LoopCandidate>& candidates = segments[rank].candidates;
+      const std::size_t num = std::min(static_cast<std::size_t>(config_.of_a_segment), candidates.size());
+      for (const LoopCandidate& candidate : std::span(candidates).first(num))
+        if (taken.insert(ends_of(candidate)).second)
+          (rank < num_first ? ranked.first : ranked.further).push_back(candidate);
+    }
+  return ranked;
+}
+
+RankedCandidates CandidateSearch::rank(std::vector<LoopCandidate> found, const OdometryChain& theirs) {
+  const auto num_first = static_cast<std::size_t>(config_.candidates);
+  const auto num_further = static_cast<std::size_t>(config_.further_candidates);
+  RankedCandidates ranked = of_segments(found, theirs);
+  ranked.first.resize(std::min(ranked.first.size(), num_first));
+  ranked.further.resize(std::min(ranked.further.size(), num_further));
+  std::set<Ends> taken;
+  for (const std::vector<LoopCandidate>* some : {&ranked.first, &ranked.further})
+    for (const LoopCandidate& candidate : *some) taken.insert(ends_of(candidate));
+  std::erase_if(found, [&](const LoopCandidate& c) { return taken.contains(ends_of(c)); });
+  const std::size_t num_left = num_first + num_further - taken.size();
+  for (const LoopCandidate& candidate : standing_out(std::move(found), num_left))
+    (ranked.first.size() < num_first ? ranked.first : ranked.further).push_back(candidate);
+  return ranked;
+}
+
+std::vector<LoopCandidate> CandidateSearch::standing_out(std::vector<LoopCandidate> found, std::size_t num) {
+  const std::vector<double>& self = self_distances();
+  const auto ratio = [&](const LoopCandidate& c) {
+    return config_.stand_out ? c.distance / std::max(self[c.query.index], 1e-6) : c.distance;
+  };
+  std::ranges::sort(found, {},
+                    [&](const LoopCandidate& c) { return std::tuple(ratio(c), c.query, c.match); });
+  const auto are_of_one_place = [&](std::uint32_t i, std::uint32_t k) {
+    return (i < k ? k - i : i - k) < static_cast<std::uint32_t>(config_.place_keyframes);
+  };
+  std::vector<LoopCandidate> chosen;
+  std::set<KeyframeId> queries;
+  for (const LoopCandidate& candidate : found) {
+    if (chosen.size() == num) break;
+    if (!queries.insert(candidate.query).second) continue;  // from another lane
+    const auto of_this_place = std::ranges::count_if(chosen, [&](const LoopCandidate& c) {
+      return are_of_one_place(c.query.index, candidate.query.index);
+    });
+    if (of_this_place < config_.of_a_place) chosen.push_back(candidate);
+  }
+  return chosen;
+}
+
+std::vector<LoopCandidate> CandidateSearch::revisits() {
+  const std::vector<double> path_m = path_lengths(chain_);
+  std::vector<std::optional<LoopCandidate>> best(chain_.size());
+  parallel_for_each(best.size(), [&](std::size_t i) {
+    const auto k = static_cast<std::uint32_t>(i);
+    std::vector<std::uint32_t> later = possible_revisits(chain_, path_m, k, config_.revisit);
+    std::erase_if(later, [&](std::uint32_t other) { return !map_->searchable[other]; });
+    if (later.empty() || !map_->searchable[k]) return;
+    const std::vector<ScanContext> contexts = contexts_from(lanes(), *map_, k);
+    for (const std::uint32_t other : later)
+      for (const ScanContext& context : contexts) {
+        const ContextMatch match = compare(context, map_->places[other]);
+        if (!best[i] || match.distance < best[i]->distance)
+          best[i] = LoopCandidate{{map_->id, k}, {map_->id, other}, match.yaw, match.distance};
+      }
+  });
+  std::vector<LoopCandidate> found;
+  for (const std::optional<LoopCandidate>& candidate : best)
+    if (candidate) found.push_back(*candidate);
+  if (found.empty()) return found;
+  return standing_out(std::move(found), static_cast<std::size_t>(config_.revisit_candidates));
+}
+
+}  // namespace adit

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Which pairs of keyframes are worth registering, most promising first.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "adit/core/config.hpp"
+#include "adit/fleet/search/lanes.hpp"
+#include "adit/fleet/search/revisits.hpp"
+#include "adit/fleet/search/segments.hpp"
+#include "adit/fleet/search/self_similarity.hpp"
+#include "adit/fleet/sync/protocol.hpp"
+
+namespace adit {
+
+struct SearchConfig {
+  int candidates = 64;
+  int further_candidates = 40;
+  int segments = 7;
+  int segments_that_stand_out = 7;
+  int of_a_segment = 4;
+  bool stand_out = true;
+  int of_a_place = 3;
+  int place_keyframes = 6;
+  double lane_m = 1.0;
+  int lanes = 2;
+  bool revisits = true;
+  int revisit_candidates = 32;
+  SegmentConfig segment;
+  SelfSimilarityConfig self_similarity;
+  RevisitConfig revisit;
+};
+Fields fields_of(SearchConfig& config);
+
+/// A peer and its descriptors.
+struct PeerPlaces {
+  RobotId peer;
+  std::vector<Places::Place> places;
+};
+
+/// The most similar place of the peer to each of the keyframes `queries` of `map`, as seen from each lane
+/// (another one only if it names another place); most similar first.
+[[nodiscard]] std::vector<LoopCandidate> most_similar_places(const RobotMap& map,
+                                                             const std::vector<std::uint32_t>& queries,
+                                                             const PeerPlaces& peer,
+                                                             const PlaceIndexConfig& place,
+                                                             const Lanes& lanes = {});
+
+struct RankedCandidates {
+  std::vector<LoopCandidate> first;
+  std::vector<LoopCandidate> further;  ///< For a second search, where the loops among the first lead nowhere.
+};
+
+/// Ranks candidates by what the own map says about them. What it needs of the map is computed when first
+/// needed.
+class CandidateSearch {
+ public:
+  /// `chain`: the odometry of `map`.
+  CandidateSearch(std::shared_ptr<const RobotMap> map, OdometryChain chain, const PlaceIndexConfig& place,
+                  const SearchConfig& config);
+
+  [[nodiscard]] Lanes lanes() const { return {config_.lanes, config_.lane_m}; }
+  [[nodiscard]] const SelfSimilarity& self_similarity();
+
+  /// Of what `most_similar_places` found with a peer whose odometry is `theirs`: first those of segments that
+  /// agree along both paths, then those that stand out from look-alikes in the own map.
+  [[nodiscard]] RankedCandidates rank(std::vector<LoopCandidate> found, const OdometryChain& theirs);
+
+  /// Candidates within the own map.
+  [[nodiscard]] std::vector<LoopCandidate> revisits();
+
+ private:
+  struct Ranking {
+    std::size_t num_first = 0;  ///< Segments whose candidates belong to the first search.
+    std::vector<Segment> segments;
+  };
+  [[nodiscard]] const std::vector<double>& self_distances();
+  [[nodiscard]] std::vector<Ranking> rankings_of(const std::vector<LoopCandidate>& found,
+                                                 const OdometryChain& theirs);
+  [[nodiscard]] RankedCandidates of_segments(const std::vector<LoopCandidate>& found,
+                                             const OdometryChain& theirs);
+  [[nodiscard]] std::vector<LoopCandidate> standing_out(std::vector<LoopCandidate> found, std::size_t num);
+
+  std::shared_ptr<const RobotMap> map_;
+  OdometryChain chain_;
+  PlaceIndexConfig place_;
+  SearchConfig config_;
+  std::unique_ptr<SelfSimilarity> self_similarity_;
+  std::vector<double> self_distances_;
+};
+
+}  // namespace adit

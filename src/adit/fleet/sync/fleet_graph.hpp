@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "adit/fleet/sync/merge_policy.hpp"
+#include "adit/fleet/sync/protocol.hpp"
+#include "adit/posegraph/pcm.hpp"
+#include "adit/robot/robot_map.hpp"
+
+namespace adit {
+
+/// The odometry graph of one robot, as its owner and others know it.
+struct RobotGraph {
+  std::string name;
+  std::vector<GraphNode> nodes;  ///< Index = keyframe index.
+};
+
+using RobotPair = std::pair<RobotId, RobotId>;
+using KeyframePair = std::pair<KeyframeId, KeyframeId>;
+
+/// All that one agent knows: its own graph, and the graphs, loops and merge checks that messages brought.
+/// Ordered containers throughout, so that two agents that know the same compute the same, to the last bit.
+struct FleetGraph {
+  MergePolicy policy = MergePolicy::adaptive;
+  std::map<RobotId, RobotGraph> robots;
+  std::map<KeyframePair, LoopClosure> loops;  ///< Registered candidates, accepted or not; from < to.
+  std::map<RobotPair, MergeCheck> checks;     ///< The latest of each pair; {a, a}: revisits of robot a.
+
+  /// Messages about a keyframe may come before the graph that it belongs to.
+  [[nodiscard]] bool knows(KeyframeId id) const {
+    const auto robot = robots.find(id.robot);
+    return robot != robots.end() && id.index < robot->second.nodes.size();
+  }
+};
+
+/// What others learn of a robot's own map: stamps, poses and odometry steps of its keyframes.
+[[nodiscard]] RobotGraph graph_of(const RobotMap& map);
+
+/// Sigmas of a loop in the graph: fixed, as in Swarm-SLAM's back-end.
+struct LoopNoise {
+  double translation = 0.1;  ///< Metres.
+  double rotation_deg = 0.6;
+};
+[[nodiscard]] Matrix6 loop_information(const LoopNoise& noise = {});
+/// The loop as odometry chains see it, with that information.
+[[nodiscard]] PcmLoop pcm_loop_of(const LoopClosure& loop, const LoopNoise& noise = {});
+
+/// The odometry of a robot, with `slack` times the sigmas of its steps.
+[[nodiscard]] OdometryChain chain_of(const RobotGraph& graph, double slack = 1.0);
+
+}  // namespace adit

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Who has what: everything an agent knows, with the order in which each robot found it. Two agents that meet
+/// tell one another how much of each robot they know, and send the rest.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <vector>
+
+#include "adit/fleet/sync/fleet_graph.hpp"
+
+namespace adit {
+
+class FleetLedger {
+ public:
+  FleetLedger(RobotId self, RobotGraph own, MergePolicy policy);
+
+  [[nodiscard]] const FleetGraph& known() const { return known_; }
+  [[nodiscard]] std::size_t num_nodes_of(RobotId robot) const;
+  /// Loops that this robot registered, accepted or not.
+  [[nodiscard]] std::size_t num_own_loops() const;
+  [[nodiscard]] std::size_t num_own_checks() const;
+
+  /// What this robot registered or decided itself. A loop that is known already is left as it is.
+  void add_own(LoopClosure loop);
+  void add_own(MergeCheck check);
+
+  /// What a message brought. Nothing changes, and false is returned, where a part before it was lost (the
+  /// next Hello asks for it) and where it makes no sense: news about this robot itself, covariances that are
+  /// not positive definite, loops or checks that are not their author's.
+  bool take(const GraphPart& part);
+  bool take(const Loops& part);
+  bool take(const MergeChecks& part);
+
+  /// How much is known of each robot.
+  [[nodiscard]] std::map<RobotId, Hello::Known> summary() const;
+  /// What `peer`, who said `theirs`, does not know yet.
+  [[nodiscard]] std::vector<MessageBody> news_for(RobotId peer, const Hello& theirs) const;
+  /// What `author` registered or decided, from number `first` on.
+  [[nodiscard]] std::vector<MessageBody> loops_since(RobotId author, std::size_t first) const;
+  [[nodiscard]] std::vector<MessageBody> checks_since(RobotId author, std::size_t first) const;
+
+ private:
+  RobotId self_;
+  FleetGraph known_;
+  std::map<RobotId, std::vector<KeyframePair>> loops_by_;  ///< By author, in the order of registration.
+  std::map<RobotId, std::vector<MergeCheck>> checks_by_;   ///< By author, in the order of decision.
+};
+
+}  // namespace adit

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/sync/fleet_ledger.hpp"
+
+#include <gtest/gtest.h>
+
+#include <variant>
+
+namespace adit {
+namespace {
+
+constexpr RobotId kSelf{1};
+constexpr RobotId kOther{0};
+
+RobotGraph graph_with(std::size_t num_nodes) {
+  GraphNode node;
+  node.step_covariance = Matrix6::Identity() * 0.01;
+  return {"robot", std::vector<GraphNode>(num_nodes, node)};
+}
+
+LoopClosure loop(KeyframeId from, KeyframeId to) {
+  LoopClosure out;
+  out.from = from;
+  out.to = to;
+  return out;
+}
+
+MergeCheck check(RobotId a, RobotId b) {
+  MergeCheck out;
+  out.a = a;
+  out.b = b;
+  return out;
+}
+
+Hello hello_of(const FleetLedger& ledger) {
+  Hello hello;
+  for (const auto& [robot, known] : ledger.summary()) hello.known.push_back(known);
+  return hello;
+}
+
+void tell(FleetLedger& to, const std::vector<MessageBody>& news) {
+  for (const MessageBody& body : news)
+    std::visit(
+        [&](const auto& part) {
+          if constexpr (requires { to.take(part); }) EXPECT_TRUE(to.take(part));
+        },
+        body);
+}
+
+TEST(FleetLedger, NewsTellAllThatIsNotKnownAndNothingTwice) {
+  FleetLedger one(kSelf, graph_with(kNodesPerMessage + 3), MergePolicy::adaptive);
+  one.add_own(loop({kSelf, 2}, {{2}, 5}));
+  one.add_own(loop({kSelf, 2}, {{2}, 5}));  // known already
+  for (int i = 0; i < 20; ++i) one.add_own(check(kSelf, {2}));
+  EXPECT_EQ(one.num_own_loops(), 1U);
+
+  FleetLedger other(kOther, graph_with(2), MergePolicy::adaptive);
+  const std::vector<MessageBody> news = one.news_for(kOther, hello_of(other));
+  EXPECT_EQ(news.size(), 2U + 1U + 2U) << "graph in two parts, loops, checks in two parts";
+  tell(other, news);
+  EXPECT_EQ(other.num_nodes_of(kSelf), kNodesPerMessage + 3);
+  EXPECT_EQ(other.known().loops.size(), 1U);
+  EXPECT_EQ(other.known().checks.size(), 1U);
+  EXPECT_TRUE(one.news_for(kOther, hello_of(other)).empty());
+}
+
+TEST(FleetLedger, PartsAfterALostOneWaitForIt) {
+  FleetLedger ledger(kSelf, graph_with(1), MergePolicy::adaptive);
+  EXPECT_FALSE(ledger.take(GraphPart{kOther, "late", 2, graph_with(2).nodes}));
+  EXPECT_FALSE(ledger.take(Loops{kOther, 1, {loop({kOther, 1}, {kSelf, 0})}}));
+  EXPECT_FALSE(ledger.take(MergeChecks{kOther, 1, {check(kOther, kSelf)}}));
+  EXPECT_TRUE(ledger.known().loops.empty());
+  EXPECT_TRUE(ledger.known().checks.empty());
+  EXPECT_FALSE(ledger.known().robots.contains(kOther));
+}
+
+TEST(FleetLedger, RefusesWhatIsNotTheAuthorsAndWhatIsAboutItself) {
+  FleetLedger ledger(kSelf, graph_with(1), MergePolicy::adaptive);
+  EXPECT_FALSE(ledger.take(GraphPart{kSelf, "me", 0, graph_with(5).nodes}));
+  EXPECT_FALSE(ledger.take(Loops{kSelf, 0, {loop({kSelf, 1}, {{2}, 0})}}));
+  EXPECT_FALSE(ledger.take(Loops{kOther, 0, {loop({kSelf, 1}, {{2}, 0})}}));
+  EXPECT_FALSE(ledger.take(Loops{kOther, 0, {loop({kOther, 1}, {kOther, 1})}})) << "a loop to itself";
+  EXPECT_FALSE(ledger.take(MergeChecks{kOther, 0, {check(kSelf, {2})}}));
+  EXPECT_EQ(ledger.num_nodes_of(kSelf), 1U);
+  EXPECT_EQ(ledger.num_own_loops(), 0U);
+}
+
+}  // namespace
+}  // namespace adit

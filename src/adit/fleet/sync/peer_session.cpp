@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/sync/peer_session.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace adit {
+
+PeerState PeerSession::state() const {
+  if (!waiting_.empty()) return PeerState::awaiting_clouds;
+  if (!to_compare_.empty()) return PeerState::comparing;
+  if (has_all_places_) return PeerState::awaiting_path;
+  if (!places_.empty()) return PeerState::receiving_places;
+  return is_searched_ ? PeerState::decided : PeerState::greeting;
+}
+
+void PeerSession::hear(const Hello& hello, RobotId peer) {
+  const auto own = std::ranges::find(hello.known, peer, &Hello::Known::robot);
+  if (own == hello.known.end()) return;
+  num_keyframes_ = own->num_nodes;
+  std::erase_if(waiting_, [&](const auto& entry) { return !exists(entry.first); });
+}
+
+bool PeerSession::take(const Places& part) {
+  if (part.first > num_places_) return false;
+  for (std::size_t i = num_places_ - part.first; i < part.places.size(); ++i) {
+    places_.push_back(part.places[i]);
+    ++num_places_;
+  }
+  has_all_places_ |= part.last && !places_.empty();  // what was searched is not searched again
+  return true;
+}
+
+void PeerSession::forget_places() {
+  num_places_ -= static_cast<std::uint32_t>(places_.size());
+  places_ = {};
+  has_all_places_ = false;
+}
+
+bool PeerSession::lie_within(std::size_t num_nodes) const {
+  return std::ranges::all_of(
+      places_, [&](const Places::Place& place) { return place.index < num_nodes || !exists(place.index); });
+}
+
+std::vector<Places::Place> PeerSession::take_places() {
+  has_all_places_ = false;
+  is_searched_ = true;
+  std::vector<Places::Place> places = std::exchange(places_, {});
+  std::erase_if(places, [&](const Places::Place& place) { return !exists(place.index); });
+  return places;
+}
+
+void PeerSession::await_clouds_of(const std::vector<LoopCandidate>& candidates) {
+  for (const LoopCandidate& candidate : candidates) waiting_[candidate.match.index].push_back(candidate);
+}
+
+std::size_t PeerSession::num_waiting() const {
+  std::size_t num = 0;
+  for (const auto& [index, candidates] : waiting_) num += candidates.size();
+  return num;
+}
+
+std::optional<CloudRequest> PeerSession::request() const {
+  CloudRequest request;
+  for (const auto& [index, candidates] : waiting_) {
+    if (request.indices.size() == kCloudsPerMessage) break;
+    request.indices.push_back(index);
+  }
+  if (request.indices.empty()) request.indices = to_compare_;
+  if (request.indices.empty()) return std::nullopt;
+  return request;
+}
+
+bool PeerSession::has_comparison(const Clouds& clouds) const {
+  return std::ranges::all_of(to_compare_, [&](std::uint32_t keyframe) {
+    return std::ranges::find(clouds.clouds, keyframe, &Clouds::Cloud::index) != clouds.clouds.end();
+  });
+}
+
+std::vector<PeerSession::Arrived> PeerSession::take_arrived(const Clouds& clouds) {
+  std::vector<Arrived> arrived;
+  for (std::size_t c = 0; c < clouds.clouds.size(); ++c) {
+    const auto waiting = waiting_.extract(clouds.clouds[c].index);
+    if (waiting.empty()) continue;
+    for (const LoopCandidate& candidate : waiting.mapped()) arrived.push_back({candidate, c});
+  }
+  return arrived;
+}
+
+}  // namespace adit

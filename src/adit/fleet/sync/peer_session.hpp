@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What the robot that searches knows about one peer, and what it waits for.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "adit/fleet/sync/protocol.hpp"
+
+namespace adit {
+
+/// Where the conversation with a peer stands. It follows from what has come and what is asked for, so that a
+/// lost or repeated message cannot leave it somewhere else.
+enum class PeerState : std::uint8_t {
+  greeting,          ///< Nothing but a Hello has come.
+  receiving_places,  ///< Some descriptors have come, not all.
+  awaiting_path,     ///< All descriptors have come; part of the odometry that they lie on has not.
+  awaiting_clouds,   ///< Candidates wait for clouds of the peer, to be registered.
+  comparing,         ///< The merge check waits for clouds of the peer.
+  decided,           ///< Searched, and checked where loops were found: nothing is awaited.
+};
+
+class PeerSession {
+ public:
+  [[nodiscard]] PeerState state() const;
+
+  /// The peer says how many keyframes it has. What waits for others is given up: it would wait for ever.
+  void hear(const Hello& hello, RobotId peer);
+
+  /// Descriptors received so far, over all meetings.
+  [[nodiscard]] std::uint32_t num_places() const { return num_places_; }
+  /// False where a part before it was lost; the next Hello asks for it.
+  bool take(const Places& part);
+  /// Forgets descriptors that no search has used; a later meeting sends them again.
+  void forget_places();
+  [[nodiscard]] bool has_all_places() const { return has_all_places_; }
+  /// Whether all places lie on the first `num_nodes` nodes of the peer's graph.
+  [[nodiscard]] bool lie_within(std::size_t num_nodes) const;
+  /// Hands the descriptors over to the search.
+  [[nodiscard]] std::vector<Places::Place> take_places();
+
+  /// Candidates to register now, and those of a second search, should the first lead nowhere.
+  void await_clouds_of(const std::vector<LoopCandidate>& candidates);
+  void keep_for_second_search(std::vector<LoopCandidate> candidates) {
+    second_search_ = std::move(candidates);
+  }
+  [[nodiscard]] std::vector<LoopCandidate> take_second_search() { return std::exchange(second_search_, {}); }
+  [[nodiscard]] std::size_t num_waiting() const;
+  /// The peer's keyframes whose clouds the merge check needs, in its order; none ends the comparison.
+  void await_comparison_of(std::vector<std::uint32_t> keyframes) { to_compare_ = std::move(keyframes); }
+
+  /// The clouds to ask for next.
+  [[nodiscard]] std::optional<CloudRequest> request() const;
+  /// Candidates that the peer's keyframe `cloud` lets one register.
+  struct Arrived {
+    LoopCandidate candidate;
+    std::size_t cloud = 0;  ///< Index into Clouds::clouds.
+  };
+  /// Candidates whose clouds have come, which then wait no longer.
+  [[nodiscard]] std::vector<Arrived> take_arrived(const Clouds& clouds);
+  /// Whether all clouds that the merge check waits for have come.
+  [[nodiscard]] bool has_comparison(const Clouds& clouds) const;
+
+ private:
+  [[nodiscard]] bool exists(std::uint32_t keyframe) const { return keyframe < num_keyframes_; }
+
+  std::uint32_t num_keyframes_ = std::numeric_limits<std::uint32_t>::max();  ///< As the peer last said.
+  std::uint32_t num_places_ = 0;
+  std::vector<Places::Place> places_;  ///< Not searched yet.
+  bool has_all_places_ = false;        ///< None of them is still to come.
+  bool is_searched_ = false;
+  std::map<std::uint32_t, std::vector<LoopCandidate>> waiting_;  ///< By the peer's keyframe.
+  std::vector<LoopCandidate> second_search_;
+  std::vector<std::uint32_t> to_compare_;
+};
+
+}  // namespace adit

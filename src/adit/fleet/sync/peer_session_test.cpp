@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/sync/peer_session.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit {
+namespace {
+
+constexpr RobotId kPeer{1};
+
+Places part_of(std::uint32_t first, const std::vector<std::uint32_t>& keyframes, bool last) {
+  Places part;
+  part.first = first;
+  for (const std::uint32_t k : keyframes) part.places.push_back({k, {}});
+  part.last = last;
+  return part;
+}
+
+Clouds clouds_of(const std::vector<std::uint32_t>& keyframes) {
+  Clouds clouds;
+  for (const std::uint32_t k : keyframes) clouds.clouds.push_back({k, Eigen::Vector3f::Zero(), {}});
+  return clouds;
+}
+
+LoopCandidate candidate(std::uint32_t own, std::uint32_t theirs) {
+  return {{{0}, own}, {kPeer, theirs}, 0.0, 0.1};
+}
+
+Hello hello_with(std::uint32_t num_nodes) {
+  Hello hello;
+  hello.known.push_back({kPeer, num_nodes, 0, 0, 0});
+  return hello;
+}
+
+TEST(PeerSession, GoesFromGreetingToDecided) {
+  PeerSession session;
+  EXPECT_EQ(session.state(), PeerState::greeting);
+  ASSERT_TRUE(session.take(part_of(0, {3, 4}, false)));
+  EXPECT_EQ(session.state(), PeerState::receiving_places);
+  ASSERT_TRUE(session.take(part_of(2, {5}, true)));
+  EXPECT_EQ(session.state(), PeerState::awaiting_path);
+  EXPECT_FALSE(session.lie_within(5));
+  EXPECT_TRUE(session.lie_within(6));
+  EXPECT_EQ(session.take_places().size(), 3U);
+  EXPECT_EQ(session.state(), PeerState::decided) << "searched, and nothing was found";
+  session.await_clouds_of({candidate(7, 4), candidate(8, 4), candidate(9, 5)});
+  EXPECT_EQ(session.state(), PeerState::awaiting_clouds);
+  EXPECT_EQ(session.num_waiting(), 3U);
+  EXPECT_EQ(session.request()->indices, (std::vector<std::uint32_t>{4, 5}));
+  EXPECT_EQ(session.take_arrived(clouds_of({4, 5})).size(), 3U);
+  session.await_comparison_of({10, 20});
+  EXPECT_EQ(session.state(), PeerState::comparing);
+  EXPECT_EQ(session.request()->indices, (std::vector<std::uint32_t>{10, 20}));
+  EXPECT_FALSE(session.has_comparison(clouds_of({10})));
+  EXPECT_TRUE(session.has_comparison(clouds_of({20, 10})));
+  session.await_comparison_of({});
+  EXPECT_EQ(session.state(), PeerState::decided);
+  EXPECT_FALSE(session.request());
+}
+
+TEST(PeerSession, RepeatedAndLostPlacesAreNoticed) {
+  PeerSession session;
+  EXPECT_FALSE(session.take(part_of(2, {5}, true))) << "a part before it was lost";
+  EXPECT_EQ(session.num_places(), 0U);
+  ASSERT_TRUE(session.take(part_of(0, {3, 4}, true)));
+  ASSERT_TRUE(session.take(part_of(0, {3, 4}, true)));
+  EXPECT_EQ(session.num_places(), 2U);
+  EXPECT_EQ(session.take_places().size(), 2U);
+  ASSERT_TRUE(session.take(part_of(0, {3, 4}, true)));
+  EXPECT_FALSE(session.has_all_places()) << "what was searched is not searched again";
+}
+
+TEST(PeerSession, ForgottenPlacesAreAskedForAgain) {
+  PeerSession session;
+  ASSERT_TRUE(session.take(part_of(0, {3, 4}, true)));
+  session.forget_places();
+  EXPECT_EQ(session.num_places(), 0U);
+  EXPECT_EQ(session.state(), PeerState::greeting);
+}
+
+TEST(PeerSession, WhatThePeerDoesNotHaveBlocksNothing) {
+  PeerSession session;
+  session.hear(hello_with(10), kPeer);
+  ASSERT_TRUE(session.take(part_of(0, {3, 4'000'000'000U}, true)));
+  EXPECT_TRUE(session.lie_within(10)) << "no graph will ever have the second one";
+  EXPECT_EQ(session.take_places().size(), 1U);
+
+  session.await_clouds_of({candidate(1, 3), candidate(2, 11)});
+  session.hear(hello_with(10), kPeer);
+  EXPECT_EQ(session.request()->indices, std::vector<std::uint32_t>{3});
+}
+
+TEST(PeerSession, AsksForABoundedNumberOfCloudsAtATime) {
+  PeerSession session;
+  std::vector<LoopCandidate> candidates;
+  for (std::uint32_t k = 0; k < 40; ++k) candidates.push_back(candidate(k, k));
+  session.await_clouds_of(candidates);
+  EXPECT_EQ(session.request()->indices.size(), kCloudsPerMessage);
+}
+
+}  // namespace
+}  // namespace adit
