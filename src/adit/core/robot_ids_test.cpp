@@ -17,7 +17,8 @@ TEST(RobotIds, AreDistinctUpToTheLargestFleetAndRefusedBeyond) {
   for (const RobotId id : *ids) EXPECT_EQ(keyframe_id(graph_key({id, 7})).robot, id);
   const Result<std::vector<RobotId>> too_many = robot_ids(kMaxRobots + 1);
   ASSERT_FALSE(too_many.has_value());
-  EXPECT_NE(too_many.error().message.find("257 recordings, and one fleet has at most 256 robots"), std::string::npos)
+  EXPECT_NE(too_many.error().message.find("257 recordings, and one fleet has at most 256 robots"),
+            std::string::npos)
       << too_many.error().message;
 }
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adit authors
 # SPDX-License-Identifier: MIT
-# cmake -D BUILD_DIR=... -D SOURCE_DIR=... -D WORK_DIR=... -D VERSION=... [-D SANITIZE=...] -P run.cmake
+# cmake -D BUILD_DIR=... -D SOURCE_DIR=... -D WORK_DIR=... -D VERSION=... [-D SANITIZE=...] -D COMPILER=... -P run.cmake
 # Installs adit, then configures, builds and runs the program beside this file against what was installed.
 function(run)
   execute_process(COMMAND ${ARGV} OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE result)
@@ -27,6 +27,7 @@ if(SANITIZE)
   set(flags -D CMAKE_CXX_FLAGS=-fsanitize=${SANITIZE})
 endif()
 run(${CMAKE_COMMAND} -G Ninja -S ${SOURCE_DIR} -B ${WORK_DIR}/build -D CMAKE_BUILD_TYPE=Release
+    -D CMAKE_CXX_COMPILER=${COMPILER}
     -D CMAKE_PREFIX_PATH=${prefix} ${flags})
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run(${WORK_DIR}/build/consumer)
