@@ -42,7 +42,9 @@ void tell(FleetLedger& to, const std::vector<MessageBody>& news) {
   for (const MessageBody& body : news)
     std::visit(
         [&](const auto& part) {
-          if constexpr (requires { to.take(part); }) EXPECT_TRUE(to.take(part));
+          if constexpr (requires { to.take(part); }) {
+            EXPECT_TRUE(to.take(part));
+          }
         },
         body);
 }
