@@ -12,8 +12,9 @@ namespace {
 using Cells = std::vector<std::string>;
 
 std::vector<Cells> cells_of(std::string_view text) {
+  const std::vector<CsvRow> rows = parse_csv(text).value();
   std::vector<Cells> cells;
-  for (CsvRow& row : parse_csv(text).value()) cells.push_back(std::move(row.cells));
+  for (const CsvRow& row : rows) cells.push_back(row.cells);
   return cells;
 }
 
