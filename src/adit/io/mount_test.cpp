@@ -52,7 +52,7 @@ TEST(Mount, AnythingElseIsRefusedWithTheFormThatIsNeeded) {
   EXPECT_ERROR(parse_mount("1 2 3 4"), "4 numbers");
   EXPECT_ERROR(parse_mount("1 2 up"), "'up' is not a finite number");
   EXPECT_ERROR(parse_mount("1 2 nan"), "'nan' is not a finite number");
-  EXPECT_ERROR(mount_of({"1"}), "1 numbers");
+  EXPECT_ERROR(mount_of({"1", ""}), "1 numbers");
   EXPECT_FALSE(mount_of({}).value().has_value());
 }
 
