@@ -123,7 +123,9 @@ TEST_P(CloudFormats, DamagedBytesAreAnErrorOrACloudOfFinitePoints) {
     EXPECT_LE(read->cloud.size() + read->num_skipped_nan, bytes.size() / 3);
   }
   // KITTI has nothing but coordinates.
-  if (std::string_view(GetParam().name) != "kitti") EXPECT_GT(num_changed, 10);
+  if (std::string_view(GetParam().name) != "kitti") {
+    EXPECT_GT(num_changed, 10);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(
