@@ -2,11 +2,6 @@
 // SPDX-License-Identifier: MIT
 /// `adit convert`, `adit info` and `adit simulate` on files, as a user runs them.
 #include <gtest/gtest.h>
-#include <sys/types.h>
-
-#include <csignal>
-#include <cstdio>
-#include <vector>
 
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/ply.hpp"
@@ -179,61 +174,6 @@ TEST(Info, OfSharedFiles) {
   const test::ProgramRun graph =
       test::run_adit("info " + test::shared_data("g2o/single/sphere2500.g2o").string());
   EXPECT_NE(graph.out.find("nodes: 2500\nedges: 4949\n"), std::string::npos) << graph.out;
-}
-
-bool holds_partial_output(const std::filesystem::path& folder) {
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-    if (entry.path().filename().string().find(".partial-") != std::string::npos) return true;
-  return false;
-}
-
-/// Starts the program and sends one SIGINT as soon as partial output shows in `folder`; returns the exit
-/// code.
-int interrupt_while_writing(std::vector<std::string> arguments, const std::filesystem::path& folder) {
-  const pid_t child = fork();
-  if (child == 0) {
-    std::vector<char*> argv;
-    arguments.insert(arguments.begin(), "adit");
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    if (std::freopen("/dev/null", "w", stderr) != nullptr) execv(ADIT_PROGRAM, argv.data());
-    _exit(127);
-  }
-  int status = 0;
-  for (bool is_sent = false; waitpid(child, &status, WNOHANG) == 0; usleep(2000)) {
-    if (is_sent || !holds_partial_output(folder)) continue;
-    kill(child, SIGINT);
-    is_sent = true;
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-TEST(Interrupt, SimulateLeavesNothingBehind) {
-  const test::TemporaryFolder folder;
-  test::put_hall(folder.path());
-  test::put_route(folder / "routes.yaml", 3, 37);
-  const std::filesystem::path out = folder / "out";
-  const std::string routes = (folder / "routes.yaml").string();
-  EXPECT_EQ(interrupt_while_writing({"simulate", "--routes", routes, "--out", out.string()}, out), 1);
-  EXPECT_FALSE(std::filesystem::exists(out));
-}
-
-TEST(Interrupt, ConvertWritesAllOrNothing) {
-  const test::TemporaryFolder folder;
-  test::put_hall(folder.path());
-  test::put_route(folder / "routes.yaml", 3, 37);
-  expect_done("simulate --routes " + (folder / "routes.yaml").string() + " --lidar os2-32 --out " +
-              (folder / "recordings").string());
-  const std::string recording = (folder / "recordings/alpha.mcap").string();
-  for (const char* name : {"copy.mcap", "scans"}) {
-    const int exit_code =
-        interrupt_while_writing({"convert", recording, (folder / name).string()}, folder.path());
-    // It may have been faster than the signal.
-    EXPECT_TRUE(exit_code == 0 || exit_code == 1) << exit_code;
-    EXPECT_EQ(std::filesystem::exists(folder / name), exit_code == 0) << name;
-    EXPECT_FALSE(holds_partial_output(folder.path())) << name;
-  }
 }
 
 }  // namespace
