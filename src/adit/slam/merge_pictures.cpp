@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "adit/fleet/joint/frames.hpp"
+
 namespace adit {
 namespace {
 
