@@ -92,61 +92,42 @@ class Inputs {
   std::filesystem::path folder_;
 };
 
-/// A command that writes. `words` are its arguments but for the output, which is named last.
+/// A command that writes. Of its arguments, words in capitals name inputs, and the output follows last.
 struct Writer {
   const char* name;
   const char* output;  ///< File or folder.
   const char* kind;    ///< Of the output folder: ".adit-KIND" marks it as adit's own. Empty for a file.
-  Words (*words)(const Inputs&);
+  const char* arguments;
 };
 
 std::ostream& operator<<(std::ostream& stream, const Writer& writer) { return stream << writer.name; }
 
-const std::array kWriters{
-    Writer{"world", "out", "world",
-           [](const Inputs&) {
-             return Words{"world", "--preset", "tiles", "--out"};
-           }},
-    Writer{"simulate", "out", "",
-           [](const Inputs& in) {
-             return Words{"simulate", "--lidar",  "os2-32",    "--robot",
-                          "alpha",    "--routes", in.routes(), "--out"};
-           }},
-    Writer{"odometry", "out.tum", "",
-           [](const Inputs& in) {
-             return Words{"odometry", in.recording(), "--method", "kiss-icp", "--out"};
-           }},
-    Writer{"slam", "out", "session",
-           [](const Inputs& in) {
-             return Words{"slam", in.routes(), "--lidar", "vlp-16", "--out"};
-           }},
-    Writer{"study", "out", "study",
-           [](const Inputs& in) {
-             return Words{"study",  "--routes",    in.routes(), "--lidar",
-                          "vlp-16", "--keyframes", "all",       "--out"};
-           }},
-    Writer{"merge_study", "out", "",
-           [](const Inputs& in) {
-             return Words{"merge-study", "--worlds", in.list_of_worlds(), "--keyframes", "all", "--lidar",
-                          "vlp-16",      "--out"};
-           }},
-    Writer{"loop_study", "out", "",
-           [](const Inputs& in) {
-             return Words{"loop-study", "--graphs", in.list_of_graphs(), "--shares", "50", "--out"};
-           }},
-    Writer{"convert_to_scans", "out", "scans",
-           [](const Inputs& in) {
-             return Words{"convert", in.recording()};
-           }},
-    Writer{"convert_to_mcap", "out.mcap", "",
-           [](const Inputs& in) {
-             return Words{"convert", in.recording()};
-           }},
-    Writer{"solve", "out.g2o", "",
-           [](const Inputs& in) {
-             return Words{"solve", in.graph(4000), "--gnc", "--out"};
-           }},
+constexpr std::array kWriters{
+    Writer{"world", "out", "world", "world --preset tiles --out"},
+    Writer{"simulate", "out", "", "simulate --lidar os2-32 --robot alpha --routes ROUTES --out"},
+    Writer{"odometry", "out.tum", "", "odometry RECORDING --method kiss-icp --out"},
+    Writer{"slam", "out", "session", "slam ROUTES --lidar vlp-16 --out"},
+    Writer{"study", "out", "study", "study --routes ROUTES --lidar vlp-16 --keyframes all --out"},
+    Writer{"merge_study", "out", "", "merge-study --worlds WORLDS --keyframes all --lidar vlp-16 --out"},
+    Writer{"loop_study", "out", "", "loop-study --graphs GRAPHS --shares 50 --out"},
+    Writer{"convert_to_scans", "out", "scans", "convert RECORDING"},
+    Writer{"convert_to_mcap", "out.mcap", "", "convert RECORDING"},
+    Writer{"solve", "out.g2o", "", "solve GRAPH --gnc --out"},
 };
+
+/// The arguments with their inputs made.
+Words arguments_of(const Writer& writer, const Inputs& inputs) {
+  Words words;
+  std::istringstream text(writer.arguments);
+  for (std::string word; text >> word; words.push_back(word)) {
+    if (word == "ROUTES") word = inputs.routes();
+    if (word == "RECORDING") word = inputs.recording();
+    if (word == "WORLDS") word = inputs.list_of_worlds();
+    if (word == "GRAPHS") word = inputs.list_of_graphs();
+    if (word == "GRAPH") word = inputs.graph(4000);
+  }
+  return words;
+}
 
 class Writing : public ::testing::TestWithParam<Writer> {
  protected:
@@ -155,7 +136,7 @@ class Writing : public ::testing::TestWithParam<Writer> {
   /// Inputs are made before the output can be spoilt.
   [[nodiscard]] Words command(const std::filesystem::path& target) const {
     std::filesystem::create_directories(folder_ / "in");
-    Words words = GetParam().words(Inputs(folder_ / "in"));
+    Words words = arguments_of(GetParam(), Inputs(folder_ / "in"));
     words.push_back(target.string());
     words.insert(words.begin(), {"--threads", "1"});
     return words;

@@ -14,12 +14,49 @@
 #include "adit/core/check.hpp"
 #include "adit/core/progress.hpp"
 
+#if defined(__SANITIZE_THREAD__)
+#include <exception>
+#include <thread>
+#include <vector>
+#endif
+
 namespace adit {
 namespace {
 
 // The limit is a property of the process and of TBB's worker pool, not of any robot; no result depends on it.
 std::mutex limit_mutex;
 std::unique_ptr<tbb::global_control> limit;
+
+#if defined(__SANITIZE_THREAD__)
+// Distributions build TBB without the thread sanitizer, which then takes every part that TBB hands over for a
+// race. Threads that the sanitizer knows take the parts instead, so that what it reports are races of the
+// parts.
+template <typename RunPart>
+void run_concurrently(std::size_t num_parts, const RunPart& run_part) {
+  std::atomic<std::size_t> next{0};
+  std::mutex failure_mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    try {
+      for (std::size_t part = next++; part < num_parts; part = next++) run_part(part);
+    } catch (...) {
+      next = num_parts;
+      const std::lock_guard lock(failure_mutex);
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int i = 1; i < num_threads(); ++i) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  if (failure) std::rethrow_exception(failure);
+}
+#else
+template <typename RunPart>
+void run_concurrently(std::size_t num_parts, const RunPart& run_part) {
+  tbb::parallel_for(std::size_t{0}, num_parts, run_part, tbb::simple_partitioner{});
+}
+#endif
 
 }  // namespace
 
@@ -49,13 +86,10 @@ void parallel_for(std::size_t n, std::size_t grain,
     for (std::size_t part = 0; part < num_parts; ++part) run_part(part);
     return;
   }
-  tbb::parallel_for(
-      std::size_t{0}, num_parts,
-      [&, context = progress_context()](std::size_t part) {
-        const ProgressScope scope(context);
-        run_part(part);
-      },
-      tbb::simple_partitioner{});
+  run_concurrently(num_parts, [&, context = progress_context()](std::size_t part) {
+    const ProgressScope scope(context);
+    run_part(part);
+  });
 }
 
 }  // namespace adit

@@ -85,8 +85,12 @@ class CsvScanner {
 
 std::string csv_row(const std::vector<std::string>& cells) {
   std::string row;
-  for (const std::string& cell : cells) row += (&cell == &cells.front() ? "" : ",") + quoted(cell);
-  return row + "\n";
+  for (const std::string& cell : cells) {
+    if (&cell != &cells.front()) row.push_back(',');
+    row.append(quoted(cell));
+  }
+  row.push_back('\n');
+  return row;
 }
 
 Result<std::vector<CsvRow>> parse_csv(std::string_view text) {
