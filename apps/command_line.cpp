@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "command_line.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -14,33 +15,68 @@
 
 namespace adit::app {
 
-Program::Program() : cli_("Multi-robot LiDAR SLAM for tunnels, mines and caves", "adit") {
-  cli_.require_subcommand(1);
-  cli_.failure_message([](const CLI::App*, const CLI::Error& error) {
+Option Option::required() const { return Option(*option_->required()); }
+Option Option::one_of(const std::vector<std::string>& values) const {
+  return Option(*option_->check(CLI::IsMember(values)));
+}
+Option Option::in_range(int least, int most) const {
+  return Option(*option_->check(CLI::Range(least, most)));
+}
+Option Option::separated_by_commas() const { return Option(*option_->delimiter(',')); }
+Option Option::default_shown() const { return Option(*option_->capture_default_str()); }
+Option Option::check(const std::function<std::string(const std::string&)>& fault) const {
+  return Option(*option_->check(fault));
+}
+
+Option Command::add_option(const std::string& name, std::string& value, const std::string& help) const {
+  return Option(*app_->add_option(name, value, help));
+}
+Option Command::add_option(const std::string& name, std::vector<std::string>& values,
+                           const std::string& help) const {
+  return Option(*app_->add_option(name, values, help));
+}
+Option Command::add_option(const std::string& name, std::vector<int>& values, const std::string& help) const {
+  return Option(*app_->add_option(name, values, help));
+}
+Option Command::add_option(const std::string& name, std::optional<std::uint64_t>& value,
+                           const std::string& help) const {
+  return Option(*app_->add_option(name, value, help));
+}
+Option Command::add_flag(const std::string& name, bool& value, const std::string& help) const {
+  return Option(*app_->add_flag(name, value, help));
+}
+void Command::footer(const std::string& text) const { app_->footer(text); }
+
+Program::Program()
+    : cli_(std::make_unique<CLI::App>("Multi-robot LiDAR SLAM for tunnels, mines and caves", "adit")) {
+  cli_->require_subcommand(1);
+  cli_->failure_message([](const CLI::App*, const CLI::Error& error) {
     return std::string("adit: ") + error.what() +
            " ('adit --help' lists the commands, 'adit COMMAND --help' its options)\n";
   });
-  cli_.set_version_flag("--version", std::string(version()));
-  cli_.add_flag("--json", common_.json, "Print the result as JSON on stdout, alone");
-  cli_.add_option("--threads", common_.threads, "Threads to use (default: all cores)")
+  cli_->set_version_flag("--version", std::string(version()));
+  cli_->add_flag("--json", common_.json, "Print the result as JSON on stdout, alone");
+  cli_->add_option("--threads", common_.threads, "Threads to use (default: all cores)")
       ->check(CLI::PositiveNumber);
   std::vector<std::string> profiles;
   for (const Profile profile : kProfiles) profiles.emplace_back(to_string(profile));
-  cli_.add_option("--profile", profile_,
-                  "Configuration to start from: default, paper (its pipeline and odometry), lidar-only "
-                  "(KISS-ICP, for robots without wheel odometry)")
+  cli_->add_option("--profile", profile_,
+                   "Configuration to start from: default, paper (its pipeline and odometry), lidar-only "
+                   "(KISS-ICP, for robots without wheel odometry)")
       ->check(CLI::IsMember(profiles))
       ->capture_default_str();
-  cli_.add_option("--config", common_.config_file,
-                  "TOML file with configuration fields, as 'adit config' prints them")
+  cli_->add_option("--config", common_.config_file,
+                   "TOML file with configuration fields, as 'adit config' prints them")
       ->check(CLI::ExistingFile);
-  cli_.add_option("--set", common_.sets, "Set one configuration field: key=value (repeatable)")
+  cli_->add_option("--set", common_.sets, "Set one configuration field: key=value (repeatable)")
       ->allow_extra_args(false);
-  cli_.fallthrough();
+  cli_->fallthrough();
 }
 
-CLI::App* Program::add_command(const std::string& name, const std::string& description, Body body) {
-  CLI::App* command = cli_.add_subcommand(name, description);
+Program::~Program() = default;
+
+Command Program::add_command(const std::string& name, const std::string& description, Body body) {
+  CLI::App* command = cli_->add_subcommand(name, description);
   command->fallthrough();
   command->callback([this, name, command, body = std::move(body)] {
     common_.command = command_of(*command);
@@ -53,7 +89,7 @@ CLI::App* Program::add_command(const std::string& name, const std::string& descr
       return body(common_);
     });
   });
-  return command;
+  return Command(*command);
 }
 
 namespace {
@@ -94,7 +130,7 @@ std::string text_of(const CLI::Option& option) {
 std::string Program::command_of(const CLI::App& command) const {
   std::string text = "adit " + command.get_name();
   for (const CLI::Option* option : command.get_options()) text += text_of(*option);
-  for (const CLI::Option* option : cli_.get_options()) text += text_of(*option);
+  for (const CLI::Option* option : cli_->get_options()) text += text_of(*option);
   return text;
 }
 
@@ -102,7 +138,7 @@ std::string Program::command_of(const CLI::App& command) const {
 void Program::check_command(const std::string& name) const {
   if (name.starts_with('-')) return;
   std::vector<std::string> known;
-  for (const CLI::App* command : cli_.get_subcommands({})) known.push_back(command->get_name());
+  for (const CLI::App* command : cli_->get_subcommands({})) known.push_back(command->get_name());
   if (std::find(known.begin(), known.end(), name) != known.end()) return;
   const std::string nearest = nearest_key(known, name);
   usage_error("unknown command '" + name + "'" +
@@ -112,9 +148,9 @@ void Program::check_command(const std::string& name) const {
 int Program::run(int argc, char** argv) {
   try {
     if (argc > 1) check_command(argv[1]);
-    cli_.parse(argc, argv);
+    cli_->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return cli_.exit(error) == 0 ? 0 : 2;
+    return cli_->exit(error) == 0 ? 0 : 2;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "adit: internal error: %s\n", error.what());
     return 1;

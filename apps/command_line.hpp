@@ -1,17 +1,58 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// What all commands of `adit` share. The one place that includes CLI11.
+/// What all commands of `adit` share. CLI11 stays behind this header: it takes seconds to compile.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "adit/core/result.hpp"
 #include "adit/slam/run_config.hpp"
 
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
 namespace adit::app {
+
+/// An option of a command. Each member returns the option, for the next one.
+class Option {
+ public:
+  explicit Option(CLI::Option& option) : option_(&option) {}
+  Option required() const;
+  Option one_of(const std::vector<std::string>& values) const;
+  Option in_range(int least, int most) const;
+  Option separated_by_commas() const;
+  /// The help shows the value that the variable has now.
+  Option default_shown() const;
+  /// `fault` returns what is wrong with a value, "" for nothing.
+  Option check(const std::function<std::string(const std::string&)>& fault) const;
+
+ private:
+  CLI::Option* option_;
+};
+
+/// A command under construction. Names as in CLI11: "--name" of an option, "name" of a positional argument.
+/// Values go to variables that live until the command has run.
+class Command {
+ public:
+  explicit Command(CLI::App& app) : app_(&app) {}
+  Option add_option(const std::string& name, std::string& value, const std::string& help) const;
+  Option add_option(const std::string& name, std::vector<std::string>& values, const std::string& help) const;
+  Option add_option(const std::string& name, std::vector<int>& values, const std::string& help) const;
+  Option add_option(const std::string& name, std::optional<std::uint64_t>& value,
+                    const std::string& help) const;
+  Option add_flag(const std::string& name, bool& value, const std::string& help) const;
+  void footer(const std::string& text) const;
+
+ private:
+  CLI::App* app_;
+};
 
 /// Options that every command takes.
 struct Common {
@@ -26,19 +67,23 @@ struct Common {
 /// The body of a command: returns 0, or an error that main prints in one line (exit code 1).
 using Body = std::function<Result<>(const Common&)>;
 
-/// Collects the commands; `main` owns it. Wrong usage (exit code 2) is CLI11's business, and `usage_error`'s.
+/// Collects the commands; `main` owns it. Wrong usage (exit code 2) is found by CLI11, or told by
+/// `usage_error`.
 class Program {
  public:
   Program();
-  /// Adds `adit NAME`; options go on the returned subcommand, `body` runs once they are parsed.
-  CLI::App* add_command(const std::string& name, const std::string& description, Body body);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+  /// Adds `adit NAME`; options go on the returned command, `body` runs once they are parsed.
+  Command add_command(const std::string& name, const std::string& description, Body body);
   int run(int argc, char** argv);
 
  private:
   void check_command(const std::string& name) const;
   [[nodiscard]] std::string command_of(const CLI::App& command) const;
 
-  CLI::App cli_;
+  std::unique_ptr<CLI::App> cli_;
   Common common_;
   std::string profile_ = "default";
   int exit_code_ = 0;

@@ -14,7 +14,7 @@ void add_config(Program& program) {
     std::string lidar;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_command(
+  const Command command = program.add_command(
       "config", "Print every configuration field as TOML; every command takes it with --config",
       [options](const Common& common) -> Result<> {
         Result<RunConfig> config = configured(common, options->lidar);
@@ -23,9 +23,8 @@ void add_config(Program& program) {
         std::printf("%s", (options->markdown ? to_markdown(fields) : to_toml(fields)).c_str());
         return {};
       });
-  command->add_flag("--markdown", options->markdown, "As the tables of docs/configuration.md");
-  command->add_option("--lidar", options->lidar,
-                      "With the fields of this simulated LiDAR (default: os2-128)");
+  command.add_flag("--markdown", options->markdown, "As the tables of docs/configuration.md");
+  command.add_option("--lidar", options->lidar, "With the fields of this simulated LiDAR (default: os2-128)");
 }
 
 }  // namespace adit::app

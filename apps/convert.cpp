@@ -10,13 +10,13 @@
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/g2o.hpp"
-#include "adit/io/kitti.hpp"
+#include "adit/io/mcap.hpp"
 #include "adit/io/mesh_files.hpp"
+#include "adit/io/scan_folder.hpp"
 #include "adit/io/text.hpp"
-#include "adit/io/tum.hpp"
+#include "adit/io/trajectory_files.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
-#include "recording_output.hpp"
 
 namespace adit::app {
 namespace {
@@ -41,36 +41,9 @@ Kind kind_of(const std::string& name) {
   return is_folder || extension == ".mcap" ? Kind::recording : Kind::unknown;
 }
 
-std::string csv_text(const Trajectory& trajectory) {
-  std::string text = "stamp_s,x,y,z,qx,qy,qz,qw\n" + tum_text(trajectory);
-  for (char& c : text) c = c == ' ' ? ',' : c;
-  return text;
-}
-
-Result<Trajectory> read_csv(const fs::path& path) {
-  return read_bytes(path).and_then([&](std::string text) -> Result<Trajectory> {
-    // The heading becomes a comment, the rest is TUM with commas.
-    if (!text.empty() && (text[0] < '0' || text[0] > '9') && text[0] != '-') text[0] = '#';
-    for (char& c : text) c = c == ',' ? ' ' : c;
-    Result<Trajectory> trajectory = parse_tum(text);
-    if (!trajectory) return fail(path.string(), trajectory.error());
-    return trajectory;
-  });
-}
-
-Result<> write_trajectory(const fs::path& out, const Trajectory& trajectory) {
-  const std::string extension = extension_of(out);
-  if (extension == ".csv") return write_bytes(out, csv_text(trajectory));
-  if (extension == ".kitti") return write_bytes(out, write_kitti_poses(trajectory));
-  return write_tum(out, trajectory);
-}
-
 Result<> convert_trajectory(const fs::path& in, const fs::path& out) {
-  if (extension_of(in) == ".kitti")
-    return fail(in.string() + ": KITTI poses have no stamps, so they can be written but not read");
-  const Result<Trajectory> trajectory = extension_of(in) == ".csv" ? read_csv(in) : read_tum(in);
-  if (!trajectory) return tl::unexpected(trajectory.error());
-  return write_trajectory(out, *trajectory);
+  return read_trajectory(in).and_then(
+      [&](const Trajectory& trajectory) { return write_trajectory(out, trajectory); });
 }
 
 Result<> convert_mesh(const fs::path& in, const fs::path& out) {
@@ -114,8 +87,8 @@ Result<> convert_recording(const Options& options, const RecordingConfig& config
   const fs::path out = options.out;
   return open_input(options.in, config).and_then([&](const Recording& recording) -> Result<> {
     if (kind_of(options.out) == Kind::trajectory) return convert_poses(recording, options.in, out);
-    Progress progress("scans", recording.num_scans());
-    return write_recording_to(out, recording, progress, kCloudFormats.at(options.clouds));
+    return extension_of(out) == ".mcap" ? write_recording(out, recording)
+                                        : write_scan_folder(out, recording, kCloudFormats.at(options.clouds));
   });
 }
 
@@ -124,7 +97,6 @@ Result<> convert(const Options& options, const Common& common) {
   const std::string& out = options.out;
   const Kind from = kind_of(in);
   const Kind to = kind_of(out);
-  catch_interrupts();
   if (from == Kind::recording && (to == Kind::recording || to == Kind::trajectory)) {
     const Result<RunConfig> config = configured(common);
     if (!config) return tl::unexpected(config.error());
@@ -141,17 +113,16 @@ Result<> convert(const Options& options, const Common& common) {
 
 void add_convert(Program& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  const Command command =
       program.add_command("convert", "Convert between recording, cloud, mesh, trajectory and graph formats",
                           [options](const Common& common) { return convert(*options, common); });
-  command->add_option("IN", options->in, "What to read")->required();
-  command->add_option("OUT", options->out, "What to write; its extension says the format")->required();
-  command
-      ->add_option("--clouds", options->clouds, "Format of the clouds in a folder: pcd, ply or bin (KITTI)")
-      ->check(CLI::IsMember({"pcd", "ply", "bin"}))
-      ->capture_default_str();
-  add_recording_options(*command, options->recording);
-  command->footer(
+  command.add_option("IN", options->in, "What to read").required();
+  command.add_option("OUT", options->out, "What to write; its extension says the format").required();
+  command.add_option("--clouds", options->clouds, "Format of the clouds in a folder: pcd, ply or bin (KITTI)")
+      .one_of({"pcd", "ply", "bin"})
+      .default_shown();
+  add_recording_options(command, options->recording);
+  command.footer(
       "recording (.mcap, folder of clouds, FOLDER@even) -> .mcap, folder, or its poses (.tum .csv .kitti)\n"
       "cloud (.pcd .ply .bin) -> cloud; mesh (.obj .stl .dae .glb .ply) -> .ply, and of a .ply the vertices "
       "-> cloud\n"

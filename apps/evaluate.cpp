@@ -53,16 +53,16 @@ Result<> evaluate_command(const Options& options, const Common& common) {
 
 void add_evaluate(Program& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  const Command command =
       program.add_command("evaluate", "ATE, RPE and loop precision of a session, given the true trajectories",
                           [options](const Common& common) { return evaluate_command(*options, common); });
-  command->add_option("session", options->session, "Session directory of adit slam")->required();
+  command.add_option("session", options->session, "Session directory of adit slam").required();
   command
-      ->add_option("--truth", options->truths,
-                   "True trajectories (TUM) in any order, each called after its robot (robot_0.tum, "
-                   "robot_0_truth.tum, robot_0/truth.tum) or given as NAME=FILE")
-      ->required();
-  command->footer(
+      .add_option("--truth", options->truths,
+                  "True trajectories (TUM) in any order, each called after its robot (robot_0.tum, "
+                  "robot_0_truth.tum, robot_0/truth.tum) or given as NAME=FILE")
+      .required();
+  command.footer(
       "Writes the class of each loop into loops.csv of the session, and the errors into its metrics.json.");
 }
 

@@ -1,197 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
+#include "adit/io/file_info.hpp"
+
 #include <cstdio>
-#include <filesystem>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <variant>
 
-#include "adit/io/cloud_files.hpp"
-#include "adit/io/g2o.hpp"
-#include "adit/io/mcap_reader.hpp"
-#include "adit/io/mesh_files.hpp"
-#include "adit/io/recording_files.hpp"
-#include "adit/io/routes_yaml.hpp"
-#include "adit/io/session_dir.hpp"
-#include "adit/io/text.hpp"
-#include "adit/io/tum.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
 
 namespace adit::app {
 namespace {
 
-namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
-template <class Box>
-Json box_json(const Box& box) {
-  return {{"min", {box.min().x(), box.min().y(), box.min().z()}},
-          {"max", {box.max().x(), box.max().y(), box.max().z()}}};
-}
-
-Json trajectory_json(const Trajectory& poses) {
-  return {{"poses", poses.size()},
-          {"first_stamp_s", stamp_text(poses.front().stamp)},
-          {"last_stamp_s", stamp_text(poses.back().stamp)},
-          {"path_length_m", path_length(poses)}};
-}
-
-Result<Json> cloud_info(const fs::path& path) {
-  return read_cloud_file(path).map([](const CloudFile& file) {
-    Eigen::AlignedBox3f box;
-    for (const Eigen::Vector3f& point : file.cloud.points) box.extend(point);
-    return Json{{"kind", "cloud"},
-                {"points", file.cloud.size()},
-                {"skipped_nan", file.num_skipped_nan},
-                {"intensities", !file.cloud.intensities.empty()},
-                {"times", file.cloud.has_times()},
-                {"viewpoint", file.viewpoint ? mount_text(*file.viewpoint) : ""},
-                {"bounding_box_m", box_json(box)}};
-  });
-}
-
-Result<Json> mesh_info(const fs::path& path) {
-  return read_mesh(path).map([](const TriangleMesh& mesh) {
-    return Json{{"kind", "mesh"},
-                {"vertices", mesh.vertices.size()},
-                {"triangles", mesh.triangles.size()},
-                {"bounding_box_m", box_json(bounding_box(mesh))}};
-  });
-}
-
-/// A PLY with faces is a mesh, one without a cloud.
-Result<Json> ply_info(const fs::path& path) { return is_ply_mesh(path) ? mesh_info(path) : cloud_info(path); }
-
-Result<Json> trajectory_info(const fs::path& path) {
-  return read_tum(path).map([](const Trajectory& poses) {
-    Json info{{"kind", "trajectory"}};
-    info.update(trajectory_json(poses));
-    return info;
-  });
-}
-
-Result<Json> graph_info(const fs::path& path) {
-  return read_g2o(path).map([](const G2oFile& file) {
-    return std::visit(
-        [&](const auto& graph) {
-          return Json{{"kind", "graph"},
-                      {"dimension", std::is_same_v<std::decay_t<decltype(graph)>, PoseGraph> ? 3 : 2},
-                      {"nodes", graph.nodes.size()},
-                      {"edges", graph.edges.size()},
-                      {"notes", file.notes}};
-        },
-        file.graph);
-  });
-}
-
-Result<Json> routes_info(const fs::path& path) {
-  return read_routes(path).map([](const RoutesFile& file) {
-    Json robots = Json::array();
-    for (const Route& route : file.routes) {
-      robots.push_back({{"name", route.name},
-                        {"speed_mps", route.speed_mps},
-                        {"waypoints", route.waypoints.size()},
-                        {"length_m", length_of(route)}});
-    }
-    return Json{{"kind", "routes"}, {"world", file.world.string()}, {"robots", robots}};
-  });
-}
-
-Json recording_json(const Recording& recording) {
-  Json info{{"kind", "recording"},
-            {"name", recording.name},
-            {"lidar", recording.lidar},
-            {"mount", mount_text(recording.T_base_lidar)},
-            {"mount_from", recording.mount_source},
-            {"assumed", recording.assumptions},
-            {"scans", recording.num_scans()},
-            {"first_stamp_s", stamp_text(recording.scan_stamps.front())},
-            {"last_stamp_s", stamp_text(recording.scan_stamps.back())}};
-  if (const Result<Scan> scan = recording.read_scan(0)) info["points_first_scan"] = scan->cloud.size();
-  if (!recording.wheel.empty()) info["wheel_odometry"] = trajectory_json(recording.wheel);
-  if (!recording.truth.empty()) info["ground_truth"] = trajectory_json(recording.truth);
-  return info;
-}
-
-/// What any MCAP file holds, whether or not it is a recording that adit can use.
-Result<Json> topics_info(const fs::path& path) {
-  const Result<ByteSource> source = open_source(path);
-  if (!source) return tl::unexpected(source.error());
-  const Result<mcap::Reader> reader = mcap::Reader::open(*source);
-  if (!reader) return fail(path.string(), reader.error());
-  const mcap::Contents& contents = reader->contents();
-  std::map<std::uint16_t, std::size_t> counts;
-  for (const mcap::MessageRef& message : contents.messages) ++counts[message.channel_id];
-  Json topics = Json::array();
-  for (const auto& [id, channel] : contents.channels) {
-    const auto schema = contents.schemas.find(channel.schema_id);
-    topics.push_back({{"topic", channel.topic},
-                      {"type", schema == contents.schemas.end() ? "" : schema->second.name},
-                      {"encoding", channel.message_encoding},
-                      {"messages", counts[id]}});
-  }
-  return Json{{"kind", "mcap"},
-              {"profile", contents.header.profile},
-              {"chunks", contents.chunks.size()},
-              {"messages", contents.messages.size()},
-              {"topics", topics}};
-}
-
-Result<Json> mcap_info(const fs::path& path, const RecordingConfig& config) {
-  return topics_info(path).map([&](Json info) {
-    const Result<Recording> recording = open_recording(path.string(), config);
-    if (recording) {
-      info.update(recording_json(*recording));
-    } else {
-      info["not_a_recording"] = recording.error().message;
-    }
-    return info;
-  });
-}
-
-Result<Json> session_info(const fs::path& path) {
-  return read_session(path).map([](const SavedSession& session) {
-    Json robots = Json::array();
-    for (std::size_t i = 0; i < session.robots.size(); ++i) {
-      Json robot{{"name", session.robots[i]}};
-      if (!session.optimized[i].empty()) robot.update(trajectory_json(session.optimized[i]));
-      robots.push_back(robot);
-    }
-    return Json{{"kind", "session"}, {"version", session.version},       {"seed", session.provenance.seed},
-                {"robots", robots},  {"components", session.components}, {"loops", session.loops.size()}};
-  });
-}
-
-Result<Json> folder_info(const fs::path& path, const RecordingConfig& config) {
-  if (fs::exists(path / "session.toml")) return session_info(path);
-  return open_recording(path.string(), config).map(recording_json);
-}
-
-Result<Json> info_of(const std::string& input, const RecordingConfig& config) {
-  const fs::path path = input;
-  if (fs::is_directory(path)) return folder_info(path, config);
-  const std::string extension = lower_case(path.extension().string());
-  if (extension == ".mcap") return mcap_info(path, config);
-  if (extension == ".pcd" || extension == ".bin") return cloud_info(path);
-  if (extension == ".ply") return ply_info(path);
-  if (extension == ".obj" || extension == ".stl" || extension == ".dae" || extension == ".glb")
-    return mesh_info(path);
-  if (extension == ".tum" || extension == ".txt") return trajectory_info(path);
-  if (extension == ".g2o") return graph_info(path);
-  if (extension == ".yaml" || extension == ".yml") return routes_info(path);
-  if (fs::is_regular_file(path)) {
-    return fail(
-        input +
-        ": not a kind of file that adit knows; it knows .mcap, clouds and meshes (.pcd .ply .bin .obj .stl "
-        ".dae .glb), .tum, .g2o, routes (.yaml) and folders of scans or of a session");
-  }
-  return open_recording(input, config).map(recording_json);
-}
-
 /// One "key: value" per line, nested values as JSON.
-void print_text(const Json& info) {
+void print_text(const nlohmann::ordered_json& info) {
   for (const auto& [key, value] : info.items()) {
     const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
     if (!value.is_array() || value.empty() || !value.front().is_object()) {
@@ -199,7 +21,7 @@ void print_text(const Json& info) {
       continue;
     }
     std::printf("%s:\n", key.c_str());
-    for (const Json& entry : value) std::printf("  %s\n", entry.dump().c_str());
+    for (const nlohmann::ordered_json& entry : value) std::printf("  %s\n", entry.dump().c_str());
   }
 }
 
@@ -211,20 +33,20 @@ void add_info(Program& program) {
     RecordingConfig recording;
   };
   const auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_command(
+  const Command command = program.add_command(
       "info", "What a recording, cloud, mesh, trajectory, graph, routes file or session holds",
       [options](const Common& common) {
-        return info_of(options->input, recording_config(configured(common)->recording, options->recording))
-            .map([&](const Json& info) {
+        return file_info(options->input, recording_config(configured(common)->recording, options->recording))
+            .map([&](const std::string& info) {
               if (common.json) {
-                std::printf("%s\n", info.dump(2).c_str());
+                std::printf("%s\n", info.c_str());
               } else {
-                print_text(info);
+                print_text(nlohmann::ordered_json::parse(info));
               }
             });
       });
-  command->add_option("FILE", options->input, "File or folder")->required();
-  add_recording_options(*command, options->recording);
+  command.add_option("FILE", options->input, "File or folder").required();
+  add_recording_options(command, options->recording);
 }
 
 }  // namespace adit::app

@@ -29,13 +29,13 @@ Result<Inputs> simulated(const std::string& routes_file, const ScenarioConfig& s
 
 }  // namespace
 
-void add_recording_options(CLI::App& command, RecordingConfig& config) {
+void add_recording_options(const Command& command, RecordingConfig& config) {
   command
       .add_option(
           "--mount", config.mount,
           "Pose of the LiDAR on the robot, X,Y,Z[,ROLL,PITCH,YAW] in metres and degrees; overrides what "
           "recordings say")
-      ->check([](const std::string& text) {
+      .check([](const std::string& text) {
         const Result<Pose> mount = parse_mount(text);
         return mount ? std::string() : mount.error().message;
       });

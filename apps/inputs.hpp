@@ -16,7 +16,7 @@
 namespace adit::app {
 
 /// The options --mount and --points of a command that opens recordings.
-void add_recording_options(CLI::App& command, RecordingConfig& config);
+void add_recording_options(const Command& command, RecordingConfig& config);
 
 /// A recording (see open_recording). What had to be assumed to read it goes to stderr, one line per
 /// assumption.

@@ -66,21 +66,20 @@ Result<> loop_study(const Options& options, const Common& common) {
 
 void add_loop_study(Program& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_command(
+  const Command command = program.add_command(
       "loop-study", "Which false loops plain GNC, PCM and adit's own search find, over a list of pose graphs",
       [options](const Common& common) { return loop_study(*options, common); });
-  command->add_option("--graphs", options->graphs, "The list (TOML, as bench/merge/graphs.toml)")->required();
-  command->add_option("--data", options->data,
-                      "Folder that the paths of the list are relative to (default: the list's own)");
-  command->add_option("--out", options->out, "Folder that takes the results (false_loops.json)")->required();
-  command
-      ->add_option("--shares", options->shares, "Per cent of all loops that are false, separated by commas")
-      ->delimiter(',')
-      ->check(CLI::Range(0, 99))
-      ->capture_default_str();
-  command->add_option("--only", options->only, "Only the graphs of these names")->delimiter(',');
-  command->add_option("--page", options->page,
-                      "Markdown file whose section between 'false loops' marks takes the tables");
+  command.add_option("--graphs", options->graphs, "The list (TOML, as bench/merge/graphs.toml)").required();
+  command.add_option("--data", options->data,
+                     "Folder that the paths of the list are relative to (default: the list's own)");
+  command.add_option("--out", options->out, "Folder that takes the results (false_loops.json)").required();
+  command.add_option("--shares", options->shares, "Per cent of all loops that are false, separated by commas")
+      .separated_by_commas()
+      .in_range(0, 99)
+      .default_shown();
+  command.add_option("--only", options->only, "Only the graphs of these names").separated_by_commas();
+  command.add_option("--page", options->page,
+                     "Markdown file whose section between 'false loops' marks takes the tables");
 }
 
 }  // namespace adit::app

@@ -75,29 +75,29 @@ Result<> merge_study(const Options& options, const Common& common) {
 
 void add_merge_study(Program& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_command(
+  const Command command = program.add_command(
       "merge-study", "Which robots' maps are merged, refused or merged wrongly, over a list of worlds",
       [options](const Common& common) { return merge_study(*options, common); });
-  command->add_option("--worlds", options->worlds, "The list (TOML, as bench/merge/worlds.toml)")->required();
-  command->add_option("--out", options->out, "Folder that keeps the robots' maps and the results of all runs")
-      ->required();
+  command.add_option("--worlds", options->worlds, "The list (TOML, as bench/merge/worlds.toml)").required();
+  command.add_option("--out", options->out, "Folder that keeps the robots' maps and the results of all runs")
+      .required();
   command
-      ->add_option("--keyframes", options->keyframes,
-                   "Keyframe policies, separated by commas; all but adaptive run on `paper_odometry`")
-      ->delimiter(',')
-      ->capture_default_str();
-  command->add_option("--groups", options->choice.groups, "Worlds of these groups: tuning, check, limit")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"tuning", "check", "limit"}))
-      ->capture_default_str();
-  command->add_option("--only", options->choice.only, "Only the worlds of these names, whatever their group")
-      ->delimiter(',');
-  command->add_option("--variant", options->variant,
-                      "Added to the policies' names, so that a run with other settings (--set) stands beside "
-                      "the usual one instead of replacing it");
-  command->add_option("--lidar", options->lidar, "Simulated LiDAR")->capture_default_str();
-  command->add_option("--page", options->page,
-                      "Markdown file whose section between 'merging' marks takes the tables of all runs");
+      .add_option("--keyframes", options->keyframes,
+                  "Keyframe policies, separated by commas; all but adaptive run on `paper_odometry`")
+      .separated_by_commas()
+      .default_shown();
+  command.add_option("--groups", options->choice.groups, "Worlds of these groups: tuning, check, limit")
+      .separated_by_commas()
+      .one_of({"tuning", "check", "limit"})
+      .default_shown();
+  command.add_option("--only", options->choice.only, "Only the worlds of these names, whatever their group")
+      .separated_by_commas();
+  command.add_option("--variant", options->variant,
+                     "Added to the policies' names, so that a run with other settings (--set) stands beside "
+                     "the usual one instead of replacing it");
+  command.add_option("--lidar", options->lidar, "Simulated LiDAR").default_shown();
+  command.add_option("--page", options->page,
+                     "Markdown file whose section between 'merging' marks takes the tables of all runs");
 }
 
 }  // namespace adit::app

@@ -97,18 +97,18 @@ Result<> odometry(const Options& options, const Common& common) {
 
 void add_odometry(Program& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  const Command command =
       program.add_command("odometry", "Odometry of one robot",
                           [options](const Common& common) { return odometry(*options, common); });
-  command->add_option("input", options->input, "Recording (.mcap) or folder of scans")->required();
+  command.add_option("input", options->input, "Recording (.mcap) or folder of scans").required();
   command
-      ->add_option("--method", options->method,
-                   "plane-icp (default) or kinematic-icp: with wheels; kiss-icp: LiDAR alone")
-      ->check(CLI::IsMember({"plane-icp", "kinematic-icp", "kiss-icp"}));
-  command->add_option("--out", options->out, "Trajectory to write (TUM)")->required();
-  command->add_option("--truth", options->truth,
-                      "True trajectory (TUM), for the error; default: the recording's own");
-  add_recording_options(*command, options->recording);
+      .add_option("--method", options->method,
+                  "plane-icp (default) or kinematic-icp: with wheels; kiss-icp: LiDAR alone")
+      .one_of({"plane-icp", "kinematic-icp", "kiss-icp"});
+  command.add_option("--out", options->out, "Trajectory to write (TUM)").required();
+  command.add_option("--truth", options->truth,
+                     "True trajectory (TUM), for the error; default: the recording's own");
+  add_recording_options(command, options->recording);
 }
 
 }  // namespace adit::app

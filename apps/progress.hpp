@@ -47,11 +47,4 @@ class TerminalProgress : public ProgressObserver {
   std::jthread painter_;  ///< None where stderr is no terminal.
 };
 
-using Progress = Phase;
-inline void catch_interrupts() {}
-[[nodiscard]] inline bool interrupted() {
-  throw_if_cancelled();
-  return false;
-}
-
 }  // namespace adit::app

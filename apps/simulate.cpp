@@ -2,19 +2,20 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
+#include "adit/core/progress.hpp"
+#include "adit/io/mcap.hpp"
 #include "adit/io/tum.hpp"
 #include "adit/io/world_files.hpp"
 #include "adit/slam/naming.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
-#include "progress.hpp"
-#include "recording_output.hpp"
 
 namespace adit::app {
 namespace {
@@ -47,27 +48,45 @@ Result<std::vector<Recording>> chosen(std::vector<Recording> recordings, const s
   return fail("no robot is called '" + robot + "'; the routes have " + names);
 }
 
-Result<> write(const Options& options, const Recording& recording, Progress& progress) {
-  return write_recording_to(recording_file(options, recording), recording, progress).and_then([&] {
+/// Removes a folder at the end of its scope, however that is reached, if nothing is in it.
+class RemoveIfEmpty {
+ public:
+  explicit RemoveIfEmpty(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  ~RemoveIfEmpty() {
+    std::error_code error;
+    std::filesystem::remove(folder_, error);
+  }
+  RemoveIfEmpty(const RemoveIfEmpty&) = delete;
+  RemoveIfEmpty& operator=(const RemoveIfEmpty&) = delete;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// Each scan that is read is a step of `phase`.
+Result<> write(const Options& options, Recording recording, const Phase& phase) {
+  recording.read_scan = [&, read = std::move(recording.read_scan)](std::size_t i) {
+    phase.advance();
+    return read(i);
+  };
+  return write_recording(recording_file(options, recording), recording).and_then([&] {
     return write_tum(truth_file(options, recording), recording.truth);
   });
 }
 
 Result<> write_all(const Options& options, const std::vector<Recording>& recordings) {
   std::error_code error;
-  const bool is_new = std::filesystem::create_directories(options.out, error);
+  std::filesystem::create_directories(options.out, error);
   if (error) return fail(options.out + ": cannot make this folder: " + error.message());
+  const RemoveIfEmpty guard(options.out);  // recordings that are complete stay, a folder without any goes
   std::size_t num_scans = 0;
   for (const Recording& recording : recordings) num_scans += recording.num_scans();
-  Progress progress("scans", num_scans);
+  const Phase phase("simulating", num_scans);
   std::vector<Result<>> written(recordings.size());
   parallel_for_each(recordings.size(),
-                    [&](std::size_t i) { written[i] = write(options, recordings[i], progress); });
+                    [&](std::size_t i) { written[i] = write(options, recordings[i], phase); });
   const auto failed = std::ranges::find_if(written, [](const Result<>& done) { return !done; });
-  if (failed == written.end()) return {};
-  // Recordings that were complete stay; a new folder without any goes.
-  if (is_new) std::filesystem::remove(options.out, error);
-  return *failed;
+  return failed == written.end() ? Result<>() : *failed;
 }
 
 void print(const Options& options, const std::vector<Recording>& recordings, const Common& common) {
@@ -98,7 +117,6 @@ Result<> simulate_command(const Options& options, const Common& common) {
           .and_then([&](const std::vector<Recording>& all) { return chosen(all, options.robot); });
   if (!recordings) return tl::unexpected(recordings.error());
   print_notes("simulate", name_robots(*recordings));
-  catch_interrupts();
   if (Result<> written = write_all(options, *recordings); !written) return written;
   print(options, *recordings, common);
   return {};
@@ -108,16 +126,16 @@ Result<> simulate_command(const Options& options, const Common& common) {
 
 void add_simulate(Program& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command = program.add_command(
+  const Command command = program.add_command(
       "simulate", "Drive robots through a mesh: one recording per robot, with ground truth",
       [options](const Common& common) { return simulate_command(*options, common); });
-  command->add_option("--world", options->world,
-                      "Mesh: PLY, OBJ, STL, DAE, GLB (default: the one the routes name)");
-  command->add_option("--routes", options->routes, "routes.yaml")->required();
-  command->add_option("--out", options->out, "Folder for ROBOT.mcap and ROBOT_truth.tum")->required();
-  command->add_option("--lidar", options->lidar, "Simulated LiDAR (default: os2-128)");
-  command->add_option("--robot", options->robot, "Only the robot of this name");
-  command->add_option("--seed", options->seed, "Noise seed; overrides --set and --config");
+  command.add_option("--world", options->world,
+                     "Mesh: PLY, OBJ, STL, DAE, GLB (default: the one the routes name)");
+  command.add_option("--routes", options->routes, "routes.yaml").required();
+  command.add_option("--out", options->out, "Folder for ROBOT.mcap and ROBOT_truth.tum").required();
+  command.add_option("--lidar", options->lidar, "Simulated LiDAR (default: os2-128)");
+  command.add_option("--robot", options->robot, "Only the robot of this name");
+  command.add_option("--seed", options->seed, "Noise seed; overrides --set and --config");
 }
 
 }  // namespace adit::app

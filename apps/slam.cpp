@@ -138,20 +138,20 @@ Result<> slam_command(const Options& options, const Common& common) {
 
 void add_slam(Program& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  const Command command =
       program.add_command("slam", "Map each robot, merge the maps decentrally, write one session",
                           [options](const Common& common) { return slam_command(*options, common); });
-  command->add_option("inputs", options->inputs,
-                      "Recordings or folders of scans, NAME=FILE to name the robot; or one routes.yaml, "
-                      "simulated on the fly");
-  command->add_option("--out", options->out, "Session directory to write")->required();
-  command->add_option("--lidar", options->lidar, "Simulated LiDAR, for routes.yaml (default: os2-128)");
-  command->add_option("--keyframes", options->keyframes,
-                      "Keyframe policy: adaptive (default), all, tunnel_filter or tunnel_filter_keep");
-  command->add_option("--rerun", options->rerun,
-                      "session.toml of a session to make again, byte for byte, from the same inputs");
-  add_recording_options(*command, options->recording);
-  command->footer(
+  command.add_option("inputs", options->inputs,
+                     "Recordings or folders of scans, NAME=FILE to name the robot; or one routes.yaml, "
+                     "simulated on the fly");
+  command.add_option("--out", options->out, "Session directory to write").required();
+  command.add_option("--lidar", options->lidar, "Simulated LiDAR, for routes.yaml (default: os2-128)");
+  command.add_option("--keyframes", options->keyframes,
+                     "Keyframe policy: adaptive (default), all, tunnel_filter or tunnel_filter_keep");
+  command.add_option("--rerun", options->rerun,
+                     "session.toml of a session to make again, byte for byte, from the same inputs");
+  add_recording_options(command, options->recording);
+  command.footer(
       "A recording that cannot be mapped is named with its reason; the others go on, and the exit code is "
       "1.");
 }

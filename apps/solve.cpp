@@ -124,15 +124,15 @@ Result<> run(const SolveOptions& options, const Common& common) {
 
 void add_solve(Program& program) {
   auto options = std::make_shared<SolveOptions>();
-  CLI::App* command =
+  const Command command =
       program.add_command("solve", "Optimize 2-D or 3-D pose graphs in g2o files (fields back_end.gnc.*)",
                           [options](const Common& common) { return run(*options, common); });
-  command->add_option("GRAPH", options->graphs, "g2o files")->required();
-  command->add_flag("--gnc", options->gnc, "Find and reject false loops (graduated non-convexity)");
-  command->add_flag("--chordal", options->chordal, "Start from chordal relaxation whatever the file's poses");
-  command->add_option("--out", options->out, "Write the optimized graph here");
-  command->add_option("--repair", options->repair, "Repair indefinite information matrices")
-      ->check(CLI::IsMember({"zero-cross-blocks"}));
+  command.add_option("GRAPH", options->graphs, "g2o files").required();
+  command.add_flag("--gnc", options->gnc, "Find and reject false loops (graduated non-convexity)");
+  command.add_flag("--chordal", options->chordal, "Start from chordal relaxation whatever the file's poses");
+  command.add_option("--out", options->out, "Write the optimized graph here");
+  command.add_option("--repair", options->repair, "Repair indefinite information matrices")
+      .one_of({"zero-cross-blocks"});
 }
 
 }  // namespace adit::app

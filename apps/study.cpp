@@ -3,7 +3,6 @@
 #include "adit/study/study.hpp"
 
 #include <sys/resource.h>
-
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -86,20 +85,20 @@ Result<> study(const Options& options, const Common& common) {
 
 void add_study(Program& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  const Command command =
       program.add_command("study", "The paper's whole experiment on one world",
                           [options](const Common& common) { return study(*options, common); });
-  command->add_option(
+  command.add_option(
       "--world", options->world,
       "Mesh (PLY, OBJ, STL, DAE, GLB); default: the generated world of the configuration, zab");
-  command->add_option("--routes", options->routes, "routes.yaml of that world");
-  command->add_option("--out", options->out, "Directory to write")->required();
-  command->add_option("--lidar", options->lidar, "Simulated LiDAR (default: os2-128)");
+  command.add_option("--routes", options->routes, "routes.yaml of that world");
+  command.add_option("--out", options->out, "Directory to write").required();
+  command.add_option("--lidar", options->lidar, "Simulated LiDAR (default: os2-128)");
   command
-      ->add_option("--keyframes", options->keyframes,
-                   "Keyframe policies, separated by commas; all but adaptive run on `paper_odometry`")
-      ->delimiter(',')
-      ->capture_default_str();
+      .add_option("--keyframes", options->keyframes,
+                  "Keyframe policies, separated by commas; all but adaptive run on `paper_odometry`")
+      .separated_by_commas()
+      .default_shown();
 }
 
 }  // namespace adit::app

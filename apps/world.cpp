@@ -90,19 +90,19 @@ Result<> run(const Options& options, const Common& common) {
 
 void add_world(Program& program) {
   const auto options = std::make_shared<Options>();
-  CLI::App* command =
+  const Command command =
       program.add_command("world", "Make a procedural tunnel network with the routes of four robots",
                           [options](const Common& common) { return run(*options, common); });
-  command->add_option("--preset", options->preset,
-                      format("{} (default zab)", fmt::join(world_presets(), ", ")));
-  command->add_option("--seed", options->seed, "Another seed, another network of the same kind (default 1)");
-  command->add_option("--arrangement", options->arrangement,
-                      "single (default), or two networks with two robots each: different, mirrored (one is "
-                      "the other's mirror image), copies (the same tunnels with other furniture), twins");
-  command->add_option(
+  command.add_option("--preset", options->preset,
+                     format("{} (default zab)", fmt::join(world_presets(), ", ")));
+  command.add_option("--seed", options->seed, "Another seed, another network of the same kind (default 1)");
+  command.add_option("--arrangement", options->arrangement,
+                     "single (default), or two networks with two robots each: different, mirrored (one is "
+                     "the other's mirror image), copies (the same tunnels with other furniture), twins");
+  command.add_option(
       "--routes", options->routes,
       "meeting (default: every pair shares a stretch) or apart (robots keep to their tunnels)");
-  command->add_option("--out", options->out, "Folder for world.ply and routes.yaml")->required();
+  command.add_option("--out", options->out, "Folder for world.ply and routes.yaml").required();
 }
 
 }  // namespace adit::app

@@ -4,7 +4,6 @@
 /// every phase, a full disk, a folder that is read-only or cannot be made. And what a terminal shows
 /// meanwhile.
 #include <gtest/gtest.h>
-
 #include <array>
 #include <numbers>
 #include <regex>
@@ -230,6 +229,17 @@ TEST_P(Writing, AFolderThatCannotBeMadeIsAnError) {
 
 INSTANTIATE_TEST_SUITE_P(EveryCommand, Writing, ::testing::ValuesIn(kWriters),
                          [](const auto& tested) { return std::string(tested.param.name); });
+
+TEST(Simulate, InterruptedLeavesNoFolderBehind) {
+  const test::TemporaryFolder folder;
+  const std::string out = (folder / "out").string();
+  const Words words{
+      "simulate", "--threads", "1", "--lidar", "os2-128", "--routes", Inputs(folder.path()).routes(),
+      "--out",    out};
+  const double soon_s = 0.3;  // of several seconds of work
+  EXPECT_EQ(test::Process(words, folder / "log").signal_after(soon_s, SIGINT).exit_code, 130);
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
 
 /// The lines that overwrite one another on a terminal.
 std::vector<std::string> drawn_lines(const std::string& output) {

@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "adit/core/pose.hpp"
 
-#include <Eigen/SVD>
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 
 #include "adit/core/check.hpp"
+#include "adit/core/decompositions.hpp"
 
 namespace adit {
 namespace {
@@ -116,8 +117,8 @@ Pose::Pose(const Matrix3& rotation, const Vector3& translation) : t_(translation
              "a pose's rotation is orthonormal and right-handed");
   // Most matrices come from products of exact rotations; only those read from text need the nearest rotation.
   if ((gram - Matrix3::Identity()).norm() > 1e-9) {
-    const Eigen::JacobiSVD<Matrix3> svd(rotation, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    q_ = Eigen::Quaterniond(Matrix3(svd.matrixU() * svd.matrixV().transpose()));
+    const auto [u, singular_values, v] = svd(rotation);
+    q_ = Eigen::Quaterniond(Matrix3(u * v.transpose()));
   } else {
     q_ = Eigen::Quaterniond(rotation);
   }

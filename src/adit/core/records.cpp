@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "adit/core/angles.hpp"
 #include "adit/core/format.hpp"
 
 namespace adit {
@@ -42,10 +42,9 @@ Result<WheelDelta> wheel_delta(const Trajectory& wheel, Stamp from, Stamp to) {
   delta.duration = to - from;
   delta.T_base0_base1 = T_odom_0->inverse() * *T_odom_1;
   const double distance = delta.T_base0_base1.translation().norm();
-  const double degree = std::numbers::pi / 180.0;
   const double along = std::max(0.001, 0.02 * distance);
   const double across = std::max(0.001, 0.01 * distance);
-  const double turn = std::max(0.02 * degree, 0.5 * degree * distance + 0.02 * delta.T_base0_base1.angle());
+  const double turn = std::max(0.02 * kDegree, 0.5 * kDegree * distance + 0.02 * delta.T_base0_base1.angle());
   Vector6 sigma;
   sigma << along, across, across, turn, turn, turn;
   delta.covariance = sigma.cwiseAbs2().asDiagonal();

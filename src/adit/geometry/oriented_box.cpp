@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "adit/geometry/oriented_box.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 
+#include "adit/core/decompositions.hpp"
 #include "adit/geometry/convex_hull.hpp"
 
 namespace adit {
@@ -14,8 +14,7 @@ namespace {
 Matrix3 principal_axes(const std::vector<Vector3>& corners, const Vector3& mean) {
   Matrix3 covariance = Matrix3::Zero();
   for (const Vector3& corner : corners) covariance += (corner - mean) * (corner - mean).transpose();
-  return Eigen::SelfAdjointEigenSolver<Matrix3>(covariance / static_cast<double>(corners.size()))
-      .eigenvectors();
+  return symmetric_eigen(Matrix3(covariance / static_cast<double>(corners.size()))).vectors;
 }
 
 /// By extent, descending, right-handed; of the two directions of an axis the one whose greatest component is

@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "adit/geometry/umeyama.hpp"
 
-#include <Eigen/SVD>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "adit/core/check.hpp"
+#include "adit/core/decompositions.hpp"
 
 namespace adit {
 namespace {
@@ -56,11 +57,9 @@ CrossCovariance cross_covariance(std::span<const Vector3> source, std::span<cons
 
 /// Umeyama's equation 40 (R = U S V^T), with the degenerate ranks taken apart.
 Matrix3 best_rotation(const CrossCovariance& covariance) {
-  const Eigen::JacobiSVD<Matrix3> svd(covariance.matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Matrix3& u = svd.matrixU();
-  const Matrix3& v = svd.matrixV();
-  if (svd.singularValues()(0) <= covariance.rounding) return Matrix3::Identity();
-  if (svd.singularValues()(1) <= covariance.rounding) {
+  const auto [u, singular_values, v] = svd(covariance.matrix);
+  if (singular_values(0) <= covariance.rounding) return Matrix3::Identity();
+  if (singular_values(1) <= covariance.rounding) {
     return Eigen::Quaterniond::FromTwoVectors(v.col(0), u.col(0)).toRotationMatrix();
   }
   const double handedness = (u * v.transpose()).determinant() < 0.0 ? -1.0 : 1.0;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adit/core/format.hpp"
+#include "adit/core/progress.hpp"
 #include "adit/core/version.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/mcap_writer.hpp"
@@ -111,11 +112,11 @@ mcap::Metadata metadata_of(const Recording& recording) {
   return metadata;
 }
 
-Result<> write_scans(RecordingWriter& writer, const Recording& recording, std::ostream& out,
-                     const std::function<void(std::size_t)>& progress) {
+Result<> write_scans(RecordingWriter& writer, const Recording& recording, std::ostream& out) {
   const std::uint16_t schema = writer.file.add_schema(std::string(ros::kPointCloud2), "ros2msg",
                                                       ros::definition_of(ros::kPointCloud2));
   const std::uint16_t channel = writer.file.add_channel("/" + recording.name + "/points", "cdr", schema);
+  const Phase phase("writing scans", recording.num_scans());
   for (std::size_t i = 0; i < recording.num_scans(); ++i) {
     const Result<Scan> scan = recording.read_scan(i);
     if (!scan) return fail(format("scan {}", i), scan.error());
@@ -124,7 +125,7 @@ Result<> write_scans(RecordingWriter& writer, const Recording& recording, std::o
     writer.file.write_chunk(
         {message_of(channel, i, stamp, ros::encode_cloud(*scan, lidar_frame(recording)))});
     if (!out) return fail(format("scan {}: writing failed; is the disk full?", i));
-    if (progress) progress(i + 1);
+    phase.advance();
   }
   return {};
 }
@@ -140,14 +141,13 @@ Result<> check_fits_mcap(const Recording& recording) {
       .and_then([&] { return check_stamps(stamps_of(recording.truth), "ground truth"); });
 }
 
-Result<> write_recording(std::ostream& out, const Recording& recording,
-                         const std::function<void(std::size_t)>& progress) {
+Result<> write_recording(std::ostream& out, const Recording& recording) {
   if (Result<> checked = check_fits_mcap(recording); !checked) return checked;
   RecordingWriter writer{{out, {"ros2", "adit " + std::string(version())}}, base_frame(recording), {}, {}};
   writer.file.write_metadata(metadata_of(recording));
   add_pose_topics(writer, recording);
   write_lidar_pose(writer, recording);
-  if (Result<> written = write_scans(writer, recording, out, progress); !written) return written;
+  if (Result<> written = write_scans(writer, recording, out); !written) return written;
   write_poses_until(writer, {std::numeric_limits<std::int64_t>::max()});
   flush_poses(writer);
   writer.file.finish();
@@ -155,11 +155,10 @@ Result<> write_recording(std::ostream& out, const Recording& recording,
   return {};
 }
 
-Result<> write_recording(const std::filesystem::path& path, const Recording& recording,
-                         const std::function<void(std::size_t)>& progress) {
+Result<> write_recording(const std::filesystem::path& path, const Recording& recording) {
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
-  const Result<> written = write_recording(file->stream(), recording, progress);
+  const Result<> written = write_recording(file->stream(), recording);
   if (!written) return fail(path.string(), written.error());
   return file->commit();
 }

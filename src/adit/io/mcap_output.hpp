@@ -3,9 +3,7 @@
 /// Writing recordings as MCAP files; mcap.hpp describes them.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <ostream>
 
 #include "adit/core/records.hpp"
@@ -16,12 +14,9 @@ namespace adit {
 /// Whether an MCAP file can hold the recording: two scans or more, stamps ascending and within ROS's range.
 Result<> check_fits_mcap(const Recording& recording);
 
-/// Writes all of a recording; scans are read one after the other. `progress` is called with the number
-/// of scans written so far. The file appears whole or not at all. Fails when a scan cannot be read or there
-/// is no scan.
-Result<> write_recording(const std::filesystem::path& path, const Recording& recording,
-                         const std::function<void(std::size_t)>& progress = {});
-Result<> write_recording(std::ostream& out, const Recording& recording,
-                         const std::function<void(std::size_t)>& progress = {});
+/// Writes all of a recording; scans are read one after the other, a step of a phase each. The file appears
+/// whole or not at all. Fails when a scan cannot be read or there is no scan.
+Result<> write_recording(const std::filesystem::path& path, const Recording& recording);
+Result<> write_recording(std::ostream& out, const Recording& recording);
 
 }  // namespace adit

@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "adit/core/angles.hpp"
 #include "adit/core/format.hpp"
 #include "adit/io/text.hpp"
 
 namespace adit {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// R = Rz(yaw) Ry(pitch) Rx(roll), degrees.
 Eigen::Quaterniond rotation_of(double roll, double pitch, double yaw) {

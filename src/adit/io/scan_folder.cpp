@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adit/core/format.hpp"
+#include "adit/core/progress.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/folder_mount.hpp"
 #include "adit/io/mount.hpp"
@@ -280,15 +281,15 @@ Result<Recording> read_scan_folder(const fs::path& folder, ScanSelection selecti
   return recording;
 }
 
-Result<> write_scan_folder(const fs::path& folder, const Recording& recording, CloudFormat clouds,
-                           const std::function<void(std::size_t)>& progress) {
+Result<> write_scan_folder(const fs::path& folder, const Recording& recording, CloudFormat clouds) {
   if (recording.num_scans() == 0)
     return fail(folder.string() + ": the recording has no scans; nothing is written");
   Result<OutputDir> output = OutputDir::create(folder, "scans");
   if (!output) return tl::unexpected(output.error());
+  const Phase phase("writing scans", recording.num_scans());
   for (std::size_t i = 0; i < recording.num_scans(); ++i) {
     if (Result<> written = write_scan(output->path(), recording, clouds, i); !written) return written;
-    if (progress) progress(i + 1);
+    phase.advance();
   }
   return write_tracks(output->path(), recording).and_then([&] { return output->commit(); });
 }

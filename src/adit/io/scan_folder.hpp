@@ -46,9 +46,8 @@ Result<Recording> read_scan_folder(const std::filesystem::path& folder, ScanSele
 
 /// Writes NNNNNN.pcd (.ply, .bin) in the LiDAR's frame, stamps.txt, recording.toml, and odometry.tum and
 /// groundtruth.tum where the recording has them: all that `read_scan_folder` takes, so that nothing is lost.
-/// The folder appears whole or not at all; `progress` gets the number of scans written.
+/// The folder appears whole or not at all.
 Result<> write_scan_folder(const std::filesystem::path& folder, const Recording& recording,
-                           CloudFormat clouds = CloudFormat::pcd,
-                           const std::function<void(std::size_t)>& progress = {});
+                           CloudFormat clouds = CloudFormat::pcd);
 
 }  // namespace adit

@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "adit/core/progress.hpp"
 #include "adit/geometry/voxel_grid.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/cloud_files.hpp"
@@ -72,9 +73,11 @@ PointCloud merged_cloud(const RobotMap& map, const std::vector<Pose>& T_world_ke
 }
 
 Result<> write_session(const std::filesystem::path& dir, const Session& session, MapFiles map_files) {
+  const Phase phase("writing", session.maps.size() + 1);
   Result<> done = write_bytes(dir / "session.toml", session_toml(session));
   for (const auto& map : session.maps) {
     if (done) done = write_robot(dir, *map, session.solution, map_files);
+    phase.advance();
   }
   if (done) done = write_graphs(dir, session.solution);
   if (done) done = write_bytes(dir / "loops.csv", loops_csv(session));

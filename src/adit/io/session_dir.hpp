@@ -46,6 +46,9 @@ struct Session {
   FleetGraph fleet;  ///< With every registered candidate, accepted or not.
   FleetSolution solution;
   std::vector<LoopClass> loop_classes;  ///< One per entry of solution.loops, or empty without ground truth.
+
+  /// Of a robot in `fleet`.
+  [[nodiscard]] const std::string& name_of(RobotId robot) const { return fleet.robots.at(robot).name; }
 };
 
 enum class MapFiles { write, leave_out };

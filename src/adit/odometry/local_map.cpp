@@ -11,7 +11,7 @@
 namespace adit {
 namespace {
 
-constexpr float kNowhere = std::numeric_limits<float>::infinity();
+constexpr float kInfinitelyFar = std::numeric_limits<float>::infinity();
 
 // Error of distances near a voxel's face, as a share of the coordinate: some roundings of a float.
 constexpr float kRounding = 5e-7F;
@@ -38,7 +38,7 @@ struct Offsets {
 
 // Smallest of the squared distances from `q` to the points of a block.
 float nearest_in_block(const float* block, std::size_t num_points, const Eigen::Vector3f& q) {
-  Float4 first = all4(kNowhere);
+  Float4 first = all4(kInfinitelyFar);
   for (const float* group = block; group < block + num_points * kGroup / 4; group += kGroup)
     first = simd::min(first, Offsets(group, q).squared_norms());
   return simd::least(first);
@@ -46,9 +46,9 @@ float nearest_in_block(const float* block, std::size_t num_points, const Eigen::
 
 // In each of four lanes the two smallest squared distances seen, where their points are, and the third.
 struct NearestOfLanes {
-  Float4 first = all4(kNowhere);
-  Float4 second = all4(kNowhere);
-  Float4 third = all4(kNowhere);
+  Float4 first = all4(kInfinitelyFar);
+  Float4 second = all4(kInfinitelyFar);
+  Float4 third = all4(kInfinitelyFar);
   Int4 first_at = {};
   Int4 second_at = {};
 
@@ -107,7 +107,7 @@ using Neighbourhood = std::array<Slabs, 3>;
 template <class Visit>
 [[gnu::always_inline]] inline float visit_voxels_within(const Neighbourhood& slabs, float limit2,
                                                         const Visit& visit) {
-  float skipped2 = kNowhere;
+  float skipped2 = kInfinitelyFar;
   for (std::size_t z = 0; z < 3; ++z) {
     const float gap2_z = slabs[2].gap2[z];
     if (gap2_z >= limit2) {
@@ -139,7 +139,7 @@ std::array<Eigen::Vector3f, LocalMap::Candidates::kNumber> points_of(const Neare
   std::array<Eigen::Vector3f, LocalMap::Candidates::kNumber> points;
   for (std::size_t lane = 0; lane < 4; ++lane) {
     const auto point = [&](float d2, std::int32_t group) -> Eigen::Vector3f {
-      if (d2 == kNowhere) return Eigen::Vector3f::Constant(LocalMap::Candidates::kNowhere);
+      if (d2 == kInfinitelyFar) return Eigen::Vector3f::Constant(LocalMap::Candidates::kNowhere);
       const float* x = coordinates + static_cast<std::size_t>(group) * kGroup + lane;
       return {x[0], x[4], x[8]};
     };
@@ -213,7 +213,7 @@ std::uint32_t LocalMap::new_block(VoxelKey key, const Eigen::Vector3f& first) {
     ADIT_CHECK(keys_.size() < std::size_t{1} << (32U - kCountBits), "the map has no room for more voxels");
     keys_.push_back(key);
     first_.push_back(first);
-    coordinates_.resize(coordinates_.size() + block_size_, kNowhere);
+    coordinates_.resize(coordinates_.size() + block_size_, kInfinitelyFar);
     return static_cast<std::uint32_t>(keys_.size() - 1);
   }
   const std::uint32_t number = free_.back();
@@ -229,7 +229,7 @@ void LocalMap::remove_beyond(const Eigen::Vector3f& centre, double max_distance)
     if (!((first_[i] - centre).squaredNorm() > max2)) continue;
     voxels_.clear(keys_[i]);
     first_[i].setConstant(std::numeric_limits<float>::quiet_NaN());
-    std::fill_n(block(i), block_size_, kNowhere);
+    std::fill_n(block(i), block_size_, kInfinitelyFar);
     free_.push_back(i);
   }
 }
@@ -281,7 +281,7 @@ LocalMap::Candidates LocalMap::search(const Eigen::Vector3f& query, float max_di
   const float rounding = kRounding * query.cwiseAbs().maxCoeff();
   const float to_face = std::min({slabs[0].near, slabs[1].near, slabs[2].near});
   out.clearance = std::sqrt(std::min(skipped2, simd::least(near.third))) - rounding;
-  out.room = kNowhere;
+  out.room = kInfinitelyFar;
   if (out.clearance > size + to_face - rounding) {
     if (best2 < size * size)
       out.clearance = size + to_face - rounding;

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "adit/core/decompositions.hpp"
 #include "adit/core/parallel.hpp"
 
 namespace adit {
@@ -13,7 +14,7 @@ namespace {
 // Correspondences: some hundreds of normals judge a direction as well as thousands.
 constexpr std::size_t kMaxSamples = 512;
 // Samples per part of the parallel loop.
-constexpr std::size_t kGrain = 32;
+constexpr std::size_t kSamplesPerPart = 32;
 // Points of a patch: a plane fits any five or fewer too well.
 constexpr std::size_t kMinPlanePoints = 6;
 // Variance along the second axis of a patch over that along the first. With less than a fifth of the extent
@@ -39,7 +40,7 @@ std::vector<PlaneResidual> sampled_residuals(std::span<const Eigen::Vector3f> so
         const auto plane = plane_at(map, neighbour->point, {});
         if (plane) residuals[i] = plane_residual(R, t, {neighbour->point.cast<double>(), plane->normal}, p);
       },
-      kGrain);
+      kSamplesPerPart);
   std::vector<PlaneResidual> found;
   for (const std::optional<PlaneResidual>& residual : residuals)
     if (residual) found.push_back(*residual);
@@ -94,13 +95,12 @@ Observability observability(const std::vector<PlaneResidual>& residuals,
   mean /= count;
   variance = std::max(variance / count, kMinVariance);
 
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(mean);
-  out.weakest = std::max(0.0, eigen.eigenvalues()[0]);
+  const auto [values, vectors] = symmetric_eigen(mean);
+  out.weakest = std::max(0.0, values[0]);
   out.degenerate = out.weakest < degeneracy_threshold;
   const double scaled_weight = weight * count / variance;
-  const Vector6 kept =
-      (eigen.eigenvalues().array() < degeneracy_threshold).select(0.0, scaled_weight * eigen.eigenvalues());
-  const Matrix6 V = scale.asDiagonal() * eigen.eigenvectors();
+  const Vector6 kept = (values.array() < degeneracy_threshold).select(0.0, scaled_weight * values);
+  const Matrix6 V = scale.asDiagonal() * vectors;
   out.information = V * kept.asDiagonal() * V.transpose();
   return out;
 }

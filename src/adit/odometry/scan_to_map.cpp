@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "adit/core/decompositions.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/simd.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 
 // Number of point blocks per part of the parallel sums; fixed, so that no result depends on the number of
 // threads.
-constexpr std::size_t kGrain = 2;
+constexpr std::size_t kBlocksPerPart = 2;
 // Square metres: the floor (1 um)^2 of the mean squared residual keeps the weight of the wheels finite.
 constexpr double kMinSquaredResidual = 1e-12;
 
@@ -131,15 +132,16 @@ NormalEquations<2> unicycle_equations(const Correspondences::Block& block) {
 // The sum of `equations(block)` over all blocks of the source.
 template <class Equations, class Each>
 Equations sum_of_blocks(Correspondences& pairs, const Pose& T_map_base, const Each& equations) {
-  return parallel_sum(pairs.num_blocks(), kGrain, Equations{}, [&](std::size_t begin, std::size_t end) {
-    Equations sum;
-    Correspondences::Block block;
-    for (std::size_t i = begin; i < end; ++i) {
-      pairs.residuals(i, T_map_base, block);
-      sum += equations(block);
-    }
-    return sum;
-  });
+  return parallel_sum(pairs.num_blocks(), kBlocksPerPart, Equations{},
+                      [&](std::size_t begin, std::size_t end) {
+                        Equations sum;
+                        Correspondences::Block block;
+                        for (std::size_t i = begin; i < end; ++i) {
+                          pairs.residuals(i, T_map_base, block);
+                          sum += equations(block);
+                        }
+                        return sum;
+                      });
 }
 
 // Iterates T <- T exp(solve(linearize(T))) from the prediction until the step is small.
@@ -198,7 +200,9 @@ Alignment align_point_to_point(std::span<const Eigen::Vector3f> source, const Lo
   Correspondences pairs(source, map, 3.0 * sigma);
   return gauss_newton(
       T_prediction, config, [&](const Pose& T_map_base) { return linearize_rigid(pairs, T_map_base, sigma); },
-      [](const NormalEquations<6>& equations) -> Vector6 { return equations.H.ldlt().solve(-equations.g); });
+      [](const NormalEquations<6>& equations) -> Vector6 {
+        return solve_symmetric(equations.H, -equations.g);
+      });
 }
 
 Alignment align_unicycle(std::span<const Eigen::Vector3f> source, const LocalMap& map,

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "adit/odometry/scan_to_planes.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
-#include <numbers>
 
+#include "adit/core/angles.hpp"
+#include "adit/core/decompositions.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/robust_kernel.hpp"
 
@@ -13,7 +13,7 @@ namespace adit {
 namespace {
 
 // Points per part of the parallel loop.
-constexpr std::size_t kGrain = 32;
+constexpr std::size_t kPointsPerPart = 32;
 // Patches of 0.7 voxels follow rough walls better than whole ones; a tenth of thickness is the unevenness of
 // blasted rock.
 constexpr PlaneLimits kPatch{.radius = 0.7, .thickness = 0.1};
@@ -41,7 +41,8 @@ Planes planes_around(std::span<const Eigen::Vector3f> source, const LocalMap& ma
   const Eigen::Matrix3f R = T_map_base.rotation_matrix().cast<float>();
   const Eigen::Vector3f t = T_map_base.translation().cast<float>();
   parallel_for_each(
-      source.size(), [&](std::size_t i) { planes[i] = plane_at(map, R * source[i] + t, kPatch); }, kGrain);
+      source.size(), [&](std::size_t i) { planes[i] = plane_at(map, R * source[i] + t, kPatch); },
+      kPointsPerPart);
   return planes;
 }
 
@@ -85,7 +86,7 @@ PlaneAlignment refined(const Problem& problem, const Planes& planes, PlaneAlignm
         linearize_planes(residuals_at(problem.source, planes, so_far.T_map_base), problem.sigma);
     const Vector6 off = (prior.T_map_base.inverse() * so_far.T_map_base).log();
     const Vector6 step =
-        (equations.H + prior.information).ldlt().solve(-(equations.g + prior.information * off));
+        solve_symmetric(equations.H + prior.information, -(equations.g + prior.information * off));
     ++so_far.iterations;
     if (!step.allFinite()) {
       so_far.status = StepStatus::diverged;
@@ -135,12 +136,11 @@ Matrix6 wheel_information(const WheelNoise& noise, const Pose& T_last_now) {
   constexpr double kTurnFloor = 0.0002;  // radians
   constexpr double kSlipFloor = 2 * kFloor;
   const double distance = T_last_now.translation().norm();
-  const double deg = std::numbers::pi / 180.0;
-  const double tilt = noise.tilt_deg * deg * distance + 2 * kTurnFloor;
+  const double tilt = noise.tilt_deg * kDegree * distance + 2 * kTurnFloor;
   Vector6 sigma;
   sigma << noise.slip * distance + kSlipFloor, noise.sideways * distance + kFloor,
       noise.climb * distance + kFloor, tilt, tilt,
-      noise.heading_deg * deg * distance + noise.turn * T_last_now.angle() + kTurnFloor;
+      noise.heading_deg * kDegree * distance + noise.turn * T_last_now.angle() + kTurnFloor;
   return sigma.array().square().inverse().matrix().asDiagonal();
 }
 

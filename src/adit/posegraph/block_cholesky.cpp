@@ -14,7 +14,7 @@ namespace adit {
 namespace {
 
 using Index = std::size_t;
-constexpr Index kNone = Supernode::kNone;
+constexpr Index kNoColumn = Supernode::kNone;
 
 constexpr double kMinPivot = 1e-13;  // relative to the diagonal element that the pivot started from
 
@@ -34,21 +34,21 @@ class Front {
         updates_(updates.data()),
         update_(updates_ + node.update_offset * d * d) {}
 
-  // Column of the front that is not positive definite, or kNone.
+  // Column of the front that is not positive definite, or kNoColumn.
   [[nodiscard]] Index run(const std::vector<double>& values) const {
     std::fill(factor_, factor_ + rows_ * columns_, 0.0);
     for (const Supernode::Scatter& s : node_.scatter) place(values.data() + s.block * d_ * d_, s);
     for (const Index child : node_.children) add_square(symbolic_.nodes[child]);
     const Index done = dense::factorize_panel(factor_, rows_, rows_, columns_, least_pivots(values).data());
     if (done < columns_) return done;
-    if (below_ == 0) return kNone;
+    if (below_ == 0) return kNoColumn;
     dense::PackedPanel packed;
     packed.pack(factor_ + columns_, rows_, below_, columns_);
     parallel_for(below_, dense::kStripe, [&](Index begin, Index end) {
       dense::subtract_outer_product(update_, below_, packed, begin, end, dense::Into::replace);
     });
     for (const Index child : node_.children) add_rest(symbolic_.nodes[child]);
-    return kNone;
+    return kNoColumn;
   }
 
  private:
@@ -125,20 +125,20 @@ std::optional<std::size_t> BlockCholesky::factorize(const std::vector<double>& v
   const auto eliminate = [&](Index s) -> Index {
     const Supernode& node = sym.nodes[s];
     const Index column = Front(sym, node, d, factor_, updates_).run(values);
-    return column == kNone ? kNone : sym.old_of_new[node.first + column / d];
+    return column == kNoColumn ? kNoColumn : sym.old_of_new[node.first + column / d];
   };
   const auto eliminate_all = [&](const std::vector<Index>& list) {
     for (const Index s : list) {
-      if (const Index variable = eliminate(s); variable != kNone) return variable;
+      if (const Index variable = eliminate(s); variable != kNoColumn) return variable;
     }
-    return kNone;
+    return kNoColumn;
   };
-  std::vector<Index> failed(sym.subtrees.size(), kNone);
+  std::vector<Index> failed(sym.subtrees.size(), kNoColumn);
   parallel_for_each(sym.subtrees.size(), [&](Index t) { failed[t] = eliminate_all(sym.subtrees[t]); });
-  Index first = kNone;
+  Index first = kNoColumn;
   for (const Index variable : failed) first = std::min(first, variable);
-  if (first == kNone) first = eliminate_all(sym.top);
-  return first == kNone ? std::nullopt : std::optional(first);
+  if (first == kNoColumn) first = eliminate_all(sym.top);
+  return first == kNoColumn ? std::nullopt : std::optional(first);
 }
 
 Eigen::MatrixXd BlockCholesky::solve(const Eigen::Ref<const Eigen::MatrixXd>& right_sides) const {

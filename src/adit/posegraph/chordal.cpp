@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "adit/posegraph/chordal.hpp"
 
-#include <Eigen/SVD>
+#include <Eigen/LU>
 #include <cmath>
 #include <string>
 
+#include "adit/core/decompositions.hpp"
 #include "adit/core/parallel.hpp"
 
 namespace adit {
@@ -33,17 +34,16 @@ Matrix3 nearest_rotation(const Matrix3& m) {
     X = next;
     if (change < 1e-26) return X;
   }
-  const Eigen::JacobiSVD<Matrix3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix3 U = svd.matrixU();
-  if ((U * svd.matrixV().transpose()).determinant() < 0.0) U.col(2) *= -1.0;
-  return U * svd.matrixV().transpose();
+  auto [u, singular_values, v] = svd(m);
+  if ((u * v.transpose()).determinant() < 0.0) u.col(2) *= -1.0;
+  return u * v.transpose();
 }
 Eigen::Matrix2d nearest_rotation(const Eigen::Matrix2d& m) {
   const double angle = std::atan2(m(1, 0) - m(0, 1), m(0, 0) + m(1, 1));
   return Eigen::Rotation2Dd(angle).toRotationMatrix();
 }
 
-constexpr std::size_t kGrain = 256;  // nodes that one thread takes at a time
+constexpr std::size_t kNodesPerPart = 256;  // nodes that one thread takes at a time
 
 Pose pose_of(const Matrix3& R, const Vector3& t) { return {R, t}; }
 Pose2 pose_of(const Eigen::Matrix2d& R, const Eigen::Vector2d& t) {
@@ -142,7 +142,8 @@ Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph, const std::
   std::vector<Rotation<P>>& rotations = *transposed;
   parallel_for_each(
       rotations.size(),
-      [&](std::size_t i) { rotations[i] = nearest_rotation(Rotation<P>(rotations[i].transpose())); }, kGrain);
+      [&](std::size_t i) { rotations[i] = nearest_rotation(Rotation<P>(rotations[i].transpose())); },
+      kNodesPerPart);
 
   // t_to = t_from + R_from t_Z, with the mean weight of all directions: then all coordinates share one matrix
   // of numbers.

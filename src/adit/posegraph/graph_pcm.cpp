@@ -2,19 +2,19 @@
 // SPDX-License-Identifier: MIT
 #include "adit/posegraph/graph_pcm.hpp"
 
-#include <Eigen/Cholesky>
 #include <map>
 #include <utility>
 
 #include "adit/core/check.hpp"
+#include "adit/core/decompositions.hpp"
 
 namespace adit {
 namespace {
 
 Matrix6 step_covariance(const Matrix6& information) {
-  const Eigen::LLT<Matrix6> llt(information);
-  ADIT_CHECK(llt.info() == Eigen::Success, "an odometry edge's information matrix is positive definite");
-  return llt.solve(Matrix6::Identity());
+  const std::optional<Matrix6> covariance = inverse_of_positive_definite(information);
+  ADIT_CHECK(covariance, "an odometry edge's information matrix is positive definite");
+  return *covariance;
 }
 
 // Seen from the other end: T_b_a with the information of its own right perturbation.

@@ -16,7 +16,7 @@
 namespace adit {
 namespace {
 
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kItemsPerPart = 256;
 constexpr double kSlow = 0.5;  // a step after which more than this share of the gain is left is slow
 constexpr double kNoise =
     1e-12;  // gain per edge, in standard deviations squared, below which nothing is left
@@ -74,7 +74,7 @@ struct IncrementalOptimizer<P>::Impl {
     };
     std::vector<Parts> parts(graph.edges.size());
     Gradient out;
-    out.cost = parallel_sum(graph.edges.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+    out.cost = parallel_sum(graph.edges.size(), kItemsPerPart, 0.0, [&](std::size_t begin, std::size_t end) {
       double sum = 0.0;
       for (std::size_t e = begin; e < end; ++e) {
         const Edge& edge = graph.edges[e];
@@ -95,7 +95,7 @@ struct IncrementalOptimizer<P>::Impl {
             sum += starts_here ? parts[e].from : parts[e].to;
           out.g.template segment<D>(static_cast<Eigen::Index>(v) * D) = sum;
         },
-        kGrain);
+        kItemsPerPart);
     return out;
   }
 
@@ -107,7 +107,7 @@ struct IncrementalOptimizer<P>::Impl {
           out[v + 1] =
               retract(out[v + 1], Tangent(step.template segment<D>(static_cast<Eigen::Index>(v) * D)));
         },
-        kGrain);
+        kItemsPerPart);
     return out;
   }
 

@@ -18,8 +18,7 @@
 namespace adit {
 namespace {
 
-constexpr std::size_t kGrain = 32;  // loops that one thread takes at a time
-constexpr std::size_t kNone = LoopClusters::kNone;
+constexpr std::size_t kLoopsPerPart = 32;  // loops that one thread takes at a time
 
 // An open direction of the information becomes one of very large variance.
 template <class Matrix>
@@ -163,16 +162,18 @@ LoopClusters loop_clusters(const BasicPoseGraph<P>& graph, const LoopClusterConf
   const std::vector<Loop<P>> loops = sorted_loops(graph, places_on(paths, graph.nodes.size()));
   Neighbours neighbours(loops.size());
   parallel_for_each(
-      loops.size(), [&](std::size_t i) { neighbours[i] = neighbours_of(i, loops, chains, config); }, kGrain);
+      loops.size(), [&](std::size_t i) { neighbours[i] = neighbours_of(i, loops, chains, config); },
+      kLoopsPerPart);
   const double bound =
       agreement_bound(best_agreements(neighbours), chi2_quantile(config.probability, P::kDof));
   DisjointSets sets = joined_below(bound, neighbours);
 
-  LoopClusters clusters{std::vector<std::size_t>(graph.edges.size(), kNone), {}};
-  std::vector<std::size_t> number(loops.size(), kNone);  // of the cluster that a loop represents
+  LoopClusters clusters{std::vector<std::size_t>(graph.edges.size(), LoopClusters::kNone), {}};
+  std::vector<std::size_t> number(loops.size(),
+                                  LoopClusters::kNone);  // of the cluster that a loop represents
   for (std::size_t i = 0; i < loops.size(); ++i) {
     std::size_t& cluster = number[sets.find(i)];
-    if (cluster == kNone) {
+    if (cluster == LoopClusters::kNone) {
       cluster = clusters.sizes.size();
       clusters.sizes.push_back(0);
     }

@@ -20,9 +20,9 @@
 namespace adit {
 namespace {
 
-constexpr std::size_t kGrain = 256;
+constexpr std::size_t kEdgesPerPart = 256;
 // A residual this small, in standard deviations squared per edge, is rounding: nothing is left to gain.
-constexpr double kNoise = 1e-16;
+constexpr double kRoundingCost = 1e-16;
 
 // Lambda of LM. It is 0, plain Gauss-Newton, until a step fails: damping slows the long waves of a chain
 // most, and these are what loops correct.
@@ -46,7 +46,7 @@ double edge_cost(const typename BasicPoseGraph<P>::Edge& edge, const std::vector
 template <class P>
 double total_cost(const BasicPoseGraph<P>& graph, const std::vector<P>& poses,
                   const std::vector<double>& weights) {
-  return parallel_sum(graph.edges.size(), kGrain, 0.0, [&](std::size_t begin, std::size_t end) {
+  return parallel_sum(graph.edges.size(), kEdgesPerPart, 0.0, [&](std::size_t begin, std::size_t end) {
     double sum = 0.0;
     for (std::size_t e = begin; e < end; ++e) {
       if (weights.empty())
@@ -118,7 +118,7 @@ class Minimizer {
         return give_up(s, graph_.nodes[structure_.node_of_variable[*free]].key);
       step = cholesky_.solve(-equations_.gradient);
     }
-    if (s.cost_final <= kNoise * static_cast<double>(graph_.edges.size()))
+    if (s.cost_final <= kRoundingCost * static_cast<double>(graph_.edges.size()))
       return converge(s, "the cost is zero");
     const double predicted = predicted_decrease(*step);
     if (!step->allFinite()) return worsen(s);
@@ -272,7 +272,7 @@ std::vector<double> edge_costs(const BasicPoseGraph<P>& graph, const std::vector
   ADIT_CHECK(poses.size() == graph.nodes.size(), "one pose per node");
   std::vector<double> costs(graph.edges.size());
   parallel_for_each(
-      costs.size(), [&](std::size_t e) { costs[e] = edge_cost<P>(graph.edges[e], poses); }, kGrain);
+      costs.size(), [&](std::size_t e) { costs[e] = edge_cost<P>(graph.edges[e], poses); }, kEdgesPerPart);
   return costs;
 }
 

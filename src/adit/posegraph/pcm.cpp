@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "adit/posegraph/pcm.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <utility>
 
 #include "adit/core/check.hpp"
+#include "adit/core/decompositions.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/posegraph/gnc.hpp"
 
@@ -43,7 +43,7 @@ double distance2(const OdometryChain& chain_a, const OdometryChain& chain_b, con
                     carry_covariance(X_lk.inverse().adjoint(), covariances.second) +
                     legs_covariance(chain_a, chain_b, first, second, a_to_end, b_to_end);
   const Vector6 error = E.log();
-  return error.dot(S.ldlt().solve(error));
+  return error.dot(solve_symmetric(S, error));
 }
 
 std::vector<std::size_t> without(std::size_t n, const std::vector<std::uint32_t>& taken) {
@@ -55,9 +55,9 @@ std::vector<std::size_t> without(std::size_t n, const std::vector<std::uint32_t>
 }
 
 Matrix6 covariance_of(const PcmLoop& loop) {
-  const Eigen::LLT<Matrix6> llt(loop.information);
-  ADIT_CHECK(llt.info() == Eigen::Success, "a loop's information matrix is positive definite");
-  return llt.solve(Matrix6::Identity());
+  const std::optional<Matrix6> covariance = inverse_of_positive_definite(loop.information);
+  ADIT_CHECK(covariance, "a loop's information matrix is positive definite");
+  return *covariance;
 }
 
 }  // namespace

@@ -3,12 +3,12 @@
 #include "adit/registration/gnc_registration.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "adit/core/check.hpp"
+#include "adit/core/decompositions.hpp"
 #include "adit/core/robust_kernel.hpp"
 
 namespace adit {
@@ -25,10 +25,9 @@ WeightedRotation weighted_rotation(std::span<const Vector3> a, std::span<const V
   constexpr double kMinRelativeSingularValue = 1e-9;
   Matrix3 moment = Matrix3::Zero();
   for (std::size_t k = 0; k < a.size(); ++k) moment += weights[k] * a[k] * b[k].transpose();
-  const Eigen::JacobiSVD<Matrix3> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0 ? -1.0 : 1.0;
-  const Vector3& s = svd.singularValues();
-  return {svd.matrixU() * Vector3(1.0, 1.0, sign).asDiagonal() * svd.matrixV().transpose(),
+  const auto [u, s, v] = svd(moment);
+  const double sign = u.determinant() * v.determinant() < 0.0 ? -1.0 : 1.0;
+  return {u * Vector3(1.0, 1.0, sign).asDiagonal() * v.transpose(),
           s[1] > kMinRelativeSingularValue * s[0] && s[0] > 0.0};
 }
 

@@ -2,17 +2,17 @@
 // SPDX-License-Identifier: MIT
 #include "adit/registration/icp_refine.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <limits>
 
+#include "adit/core/decompositions.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/registration/plane_aligner.hpp"
 
 namespace adit {
 namespace {
 
-constexpr std::size_t kGrain = 512;  ///< Points per part of the parallel loop.
+constexpr std::size_t kPointsPerPart = 512;  ///< Points per part of the parallel loop.
 /// Points: more do not improve the answer.
 constexpr std::size_t kSample = 2500;
 /// Points: enough to find which minimum a start leads to.
@@ -26,7 +26,7 @@ Vector6 gauss_newton_step(const PlaneEquations& sum) {
   Matrix6 H = sum.H;
   H.diagonal().head<3>().array() += kDamping * sum.H.diagonal().head<3>().mean() + 1e-12;
   H.diagonal().tail<3>().array() += kDamping * sum.H.diagonal().tail<3>().mean() + 1e-12;
-  return -H.ldlt().solve(sum.g);
+  return -solve_symmetric(H, sum.g);
 }
 
 std::size_t stride_for(std::size_t num_points, std::size_t sample) { return num_points / sample + 1; }
@@ -80,7 +80,7 @@ std::vector<PointPair> associate(const KdTree& tree_a, const OrientedPoints& b, 
         const auto nearest = tree_a.nearest(R * b.points[j] + t, static_cast<float>(max_distance));
         pairs[j] = {nearest ? nearest->index : kNone, static_cast<std::uint32_t>(j)};
       },
-      kGrain);
+      kPointsPerPart);
   std::erase_if(pairs, [](const PointPair& pair) { return pair.a == kNone; });
   return pairs;
 }

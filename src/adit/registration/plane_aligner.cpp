@@ -15,8 +15,8 @@ constexpr float kAgreeingNormals = 0.8F;  ///< Least cosine between the normals 
 /// A search looks this many times farther than pairs may be apart, so that a point without a partner need not
 /// be searched again at once.
 constexpr float kReach = 1.25F;
-constexpr std::size_t kGrain = 64;     ///< Blocks per part of the parallel sum.
-constexpr std::size_t kTriangle = 21;  ///< Entries of the upper triangle of H, row by row.
+constexpr std::size_t kBlocksPerPart = 64;  ///< Blocks per part of the parallel sum.
+constexpr std::size_t kTriangle = 21;       ///< Entries of the upper triangle of H, row by row.
 
 }  // namespace
 
@@ -202,18 +202,19 @@ void PlaneAligner::Sums::add(const Terms& terms) {
 PlaneEquations PlaneAligner::linearize(const Pose& T_a_b, double kernel) {
   const Motion motion(T_a_b);
   const auto squared_kernel = static_cast<float>(kernel) * static_cast<float>(kernel);
-  return parallel_sum(blocks_.size(), kGrain, PlaneEquations{}, [&](std::size_t begin, std::size_t end) {
-    Sums sums;
-    Row q[3];
-    Terms terms;
-    for (std::size_t i = begin; i < end; ++i) {
-      motion.apply(blocks_[i].p, q);
-      search_stale(blocks_[i], q);
-      evaluate(blocks_[i], motion, q, squared_kernel, terms);
-      sums.add(terms);
-    }
-    return sums.total();
-  });
+  return parallel_sum(blocks_.size(), kBlocksPerPart, PlaneEquations{},
+                      [&](std::size_t begin, std::size_t end) {
+                        Sums sums;
+                        Row q[3];
+                        Terms terms;
+                        for (std::size_t i = begin; i < end; ++i) {
+                          motion.apply(blocks_[i].p, q);
+                          search_stale(blocks_[i], q);
+                          evaluate(blocks_[i], motion, q, squared_kernel, terms);
+                          sums.add(terms);
+                        }
+                        return sums.total();
+                      });
 }
 
 }  // namespace adit

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "adit/registration/verification.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numbers>
 #include <utility>
 #include <vector>
 
+#include "adit/core/decompositions.hpp"
 #include "adit/core/format.hpp"
 #include "adit/geometry/point_to_plane.hpp"
 #include "adit/registration/icp_refine.hpp"
@@ -49,9 +49,9 @@ Matrix6 without_negative_part(const Matrix6& H) {
                                  std::max(H.diagonal().head<3>().mean(), 1e-12));
   Vector6 scale = Vector6::Ones();
   scale.tail<3>().setConstant(1.0 / lever);
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scale.asDiagonal() * H * scale.asDiagonal());
-  const Matrix6 root = scale.cwiseInverse().asDiagonal() * solver.eigenvectors() *
-                       solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const auto [values, vectors] = symmetric_eigen(Matrix6(scale.asDiagonal() * H * scale.asDiagonal()));
+  const Matrix6 root =
+      scale.cwiseInverse().asDiagonal() * vectors * values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
   return root * root.transpose();
 }
 
@@ -80,10 +80,10 @@ Evidence gather_evidence(const Features& a, const KdTree& tree_a, const Features
   const double num_sharing = std::numbers::pi * config.normal_radius_voxels * config.normal_radius_voxels;
   const double variance = std::max(sums.squared_residuals / sums.num_pairs, min_sigma * min_sigma);
   out.information = without_negative_part(sums.cross_hessian) / (variance * num_sharing);
-  const Eigen::SelfAdjointEigenSolver<Matrix3> solver(sums.cross_hessian.topLeftCorner<3, 3>());
-  const double trace = solver.eigenvalues().cwiseMax(0.0).sum();
-  if (trace > 0.0) out.weak_axis = std::max(solver.eigenvalues()[0], 0.0) / trace;
-  out.weak_direction = T_a_b.rotation() * solver.eigenvectors().col(0);
+  const auto [values, directions] = symmetric_eigen(Matrix3(sums.cross_hessian.topLeftCorner<3, 3>()));
+  const double trace = values.cwiseMax(0.0).sum();
+  if (trace > 0.0) out.weak_axis = std::max(values[0], 0.0) / trace;
+  out.weak_direction = T_a_b.rotation() * directions.col(0);
   return out;
 }
 

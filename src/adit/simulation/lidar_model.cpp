@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "adit/core/angles.hpp"
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
@@ -16,7 +17,6 @@
 namespace adit {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::size_t kColumnsPerPart = 64;  ///< Of a parallel loop.
 
 LidarConfig ouster(const std::string& name, int beams, double half_field_deg) {

@@ -3,7 +3,6 @@
 #include "adit/simulation/raycaster.hpp"
 
 #include <embree3/rtcore.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -27,13 +26,13 @@ using Device = std::unique_ptr<RTCDeviceTy, ReleaseDevice>;
 using EmbreeScene = std::unique_ptr<RTCSceneTy, ReleaseScene>;
 
 // What is needed to compute a hit exactly: a corner and the unit normal.
-struct Plane {
+struct FacePlane {
   Eigen::Vector3f corner;
   Eigen::Vector3f normal;
 };
 
-std::vector<Plane> planes_of(const TriangleMesh& mesh) {
-  std::vector<Plane> planes;
+std::vector<FacePlane> planes_of(const TriangleMesh& mesh) {
+  std::vector<FacePlane> planes;
   planes.reserve(mesh.triangles.size());
   for (const Eigen::Vector3i& t : mesh.triangles) {
     const auto corner = [&](int i) { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
@@ -176,13 +175,13 @@ ADIT_WIDE_VECTORS void measure(const PlaneBlock& planes, const RayBlock::Vectors
 struct Raycaster::Scene {
   Device device;
   EmbreeScene embree;
-  std::vector<Plane> planes;
+  std::vector<FacePlane> planes;
 
   // Embree's own distance counts only where the ray runs along the triangle and the plane equation has no
   // grip.
   [[nodiscard]] RayHit hit_of(const RTCRayHit& answer, const Ray& ray) const {
     if (answer.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    const Plane& plane = planes[answer.hit.primID];
+    const FacePlane& plane = planes[answer.hit.primID];
     const Vector3 normal = plane.normal.cast<double>();
     const Vector3 to_corner = plane.corner.cast<double>() - ray.origin.cast<double>();
     const auto exact = static_cast<float>(normal.dot(to_corner) / normal.dot(ray.direction.cast<double>()));
@@ -220,7 +219,7 @@ void Raycaster::cast(RayBlock& block, float max_distance) const {
   PlaneBlock planes;
   for (std::size_t i = 0; i < block.size; ++i) {
     const bool hit = query.geometries[i] != RTC_INVALID_GEOMETRY_ID;
-    const Plane& plane = scene_->planes[hit ? query.triangles[i] : 0];
+    const FacePlane& plane = scene_->planes[hit ? query.triangles[i] : 0];
     planes.corners.x[i] = plane.corner.x();
     planes.corners.y[i] = plane.corner.y();
     planes.corners.z[i] = plane.corner.z();

@@ -3,15 +3,13 @@
 #include "adit/simulation/wheel_model.hpp"
 
 #include <cmath>
-#include <numbers>
 
+#include "adit/core/angles.hpp"
 #include "adit/core/check.hpp"
 #include "adit/core/rng.hpp"
 
 namespace adit {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::vector<Stamp> odometry_stamps(const Trajectory& truth, double rate_hz) {
   std::vector<Stamp> stamps;

@@ -3,16 +3,13 @@
 #include "adit/simulation/wheel_model.hpp"
 
 #include <gtest/gtest.h>
-
 #include <cmath>
-#include <numbers>
 
+#include "adit/core/angles.hpp"
 #include "adit/core/check.hpp"
 
 namespace adit {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 WheelConfig perfect() {
   WheelConfig c;

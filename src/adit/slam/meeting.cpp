@@ -40,6 +40,7 @@ Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps, 
     if (const Result<> met = all_meet(meeting.agents, bus, phase); !met) return tl::unexpected(met.error());
   }
   for (const Agent& agent : meeting.agents) meeting.bytes_sent.push_back(bus.bytes_sent(agent.id()));
+  meeting.failures = bus.failures();
   return meeting;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "adit/slam/slam_config.hpp"
@@ -16,6 +17,7 @@ struct Meeting {
   std::vector<std::shared_ptr<const RobotMap>> maps;
   std::vector<Agent> agents;              ///< One per map.
   std::vector<std::uint64_t> bytes_sent;  ///< One per agent.
+  std::vector<std::string> failures;      ///< Messages that an agent could not take, one line each.
 };
 
 /// No maps, no agents: an empty meeting. One phase of progress; may throw `Cancelled` (core/progress.hpp).

@@ -8,6 +8,9 @@
 #include <set>
 
 #include "adit/io/config_toml.hpp"
+#include "adit/odometry/scan_to_map.hpp"
+#include "adit/place/scan_context.hpp"
+#include "adit/simulation/lidar_model.hpp"
 
 namespace adit {
 namespace {
@@ -32,6 +35,23 @@ TEST(RunConfig, WhatIsPrintedIsReadBackAndChangesNothing) {
     ASSERT_TRUE(read.has_value()) << read.error().message;
     EXPECT_EQ(toml_of(config), printed) << to_string(profile);
   }
+}
+
+// What headers say of the defaults of their types, from the sources that they name.
+TEST(RunConfig, DefaultsAreThoseThatHeadersNameASourceFor) {
+  const ScanContextConfig place;  // Kim and Kim, IROS 2018: 20 rings of 4 m, 60 sectors
+  EXPECT_EQ(place.num_rings, 20);
+  EXPECT_EQ(place.num_sectors, 60);
+  EXPECT_EQ(place.max_radius_m, 20 * 4.0);
+  const ScanToMapConfig kiss_icp;  // KISS-ICP 1.2, default.yaml
+  EXPECT_EQ(kiss_icp.voxel_size, kiss_icp.max_range / 100.0);
+  EXPECT_EQ(kiss_icp.max_points_per_voxel, 20);
+  EXPECT_EQ(kiss_icp.max_iterations, 500);
+  EXPECT_EQ(kiss_icp.convergence, 1e-4);
+  const LidarConfig lidar;  // data sheet of the Ouster OS2-128: 22.5 degrees
+  EXPECT_EQ(lidar.name, "os2-128");
+  EXPECT_EQ(lidar.beams, 128);
+  EXPECT_EQ(lidar.elevation_max_deg - lidar.elevation_min_deg, 22.5);
 }
 
 TEST(RunConfig, TheDefaultIsTheSafePolicy) {

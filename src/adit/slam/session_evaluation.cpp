@@ -36,7 +36,7 @@ Result<std::size_t> robot_of(const SavedSession& session, const GivenTruth& trut
   for (const std::string& name : possible_names(truth))
     if (const std::size_t robot = index_of(session, name); robot < session.robots.size()) return robot;
   return fail(format("{}: {} of the robots {}; give it as NAME={}", truth.source,
-                     truth.robot.empty() ? "named after none" : "'" + truth.robot + "' is none",
+                     truth.robot.empty() ? "it names none" : "'" + truth.robot + "' is not one",
                      fmt::join(session.robots, ", "), truth.source));
 }
 

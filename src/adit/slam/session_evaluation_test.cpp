@@ -3,7 +3,6 @@
 #include "adit/slam/session_evaluation.hpp"
 
 #include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
 
 #include "adit/io/loops_csv.hpp"
@@ -72,7 +71,8 @@ TEST(MatchTruths, WhatCannotBelongIsRefused) {
   const SavedSession session = two_robots();
   EXPECT_ERROR(match_truths(session, {{"x/cy_truth.tum", "", straight(0.0)}}),
                "x/cy_truth.tum: named after none of the robots ada, bo; give it as NAME=x/cy_truth.tum");
-  EXPECT_ERROR(match_truths(session, {{"1.tum", "cy", straight(0.0)}}), "'cy' is none of the robots ada, bo");
+  EXPECT_ERROR(match_truths(session, {{"1.tum", "cy", straight(0.0)}}),
+               "'cy' is not one of the robots ada, bo");
   EXPECT_ERROR(match_truths(session, {{"ada.tum", "", straight(0.0)}, {"ada_gt.tum", "", straight(0.0)}}),
                "ada.tum and ada_gt.tum are both the truth of ada");
   EXPECT_ERROR(match_truths(session, {{"ada.tum", "", straight(0.0, 0.0, 1000)}}),

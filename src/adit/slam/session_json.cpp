@@ -15,8 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string name_of(const Session& session, RobotId id) { return session.fleet.robots.at(id).name; }
-
 Json robots_json(const SlamRun& run) {
   Json robots = Json::array();
   for (std::size_t i = 0; i < run.session.maps.size(); ++i) {
@@ -34,7 +32,7 @@ Json robots_json(const SlamRun& run) {
 Json pairs_json(const Session& session) {
   Json pairs = Json::array();
   for (const PairOutcome& pair : session.solution.pairs)
-    pairs.push_back({{"robots", {name_of(session, pair.a), name_of(session, pair.b)}},
+    pairs.push_back({{"robots", {session.name_of(pair.a), session.name_of(pair.b)}},
                      {"loops", pair.num_loops},
                      {"clique", pair.num_selected},
                      {"second_clique", pair.second_clique},
@@ -47,7 +45,7 @@ Json components_json(const Session& session) {
   Json components = Json::array();
   for (const Component& component : session.solution.components) {
     Json& names = components.emplace_back(Json::array());
-    for (const RobotId id : component.robots) names.push_back(name_of(session, id));
+    for (const RobotId id : component.robots) names.push_back(session.name_of(id));
   }
   return components;
 }

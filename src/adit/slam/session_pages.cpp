@@ -9,12 +9,6 @@
 #include "adit/slam/robot_facts.hpp"
 
 namespace adit {
-namespace {
-
-std::string name_of(const Session& session, RobotId id) { return session.fleet.robots.at(id).name; }
-
-}  // namespace
-
 std::vector<std::string> what_ran(const Provenance& provenance) {
   std::vector<std::string> lines;
   for (const RobotProvenance& robot : provenance.robots)
@@ -40,7 +34,7 @@ std::string session_page(const Session& session) {
   for (const PairOutcome& pair : session.solution.pairs) {
     if (pair.merged) continue;
     joint.refusals.push_back(
-        format("{} and {}: {}", name_of(session, pair.a), name_of(session, pair.b), pair.refused_reason));
+        format("{} and {}: {}", session.name_of(pair.a), session.name_of(pair.b), pair.refused_reason));
   }
   joint.loop_map = loop_map(session.fleet, session.solution);
   joint.merges = merge_pictures(session.fleet, session.solution);

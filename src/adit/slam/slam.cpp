@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "adit/slam/slam.hpp"
 
+#include "adit/core/progress.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/config_toml.hpp"
 #include "adit/slam/meeting.hpp"
@@ -36,12 +37,17 @@ Result<SlamRun> slam(std::vector<Recording> recordings, const SlamConfig& config
   SlamRun run;
   run.session.provenance = provenance_of(*mapping, config);
   run.session.fleet = meeting->agents.front().known();
-  run.session.solution = meeting->agents.front().solve(config.back_end);
+  {
+    const Phase phase("solving");
+    run.session.solution = meeting->agents.front().solve(config.back_end);
+  }
   run.session.maps = std::move(meeting->maps);
   run.bytes_sent = std::move(meeting->bytes_sent);
   run.failed = std::move(mapping->failed);
   run.notes = std::move(notes);
   run.notes.insert(run.notes.end(), mapping->notes.begin(), mapping->notes.end());
+  for (const std::string& failure : meeting->failures)
+    run.notes.push_back("a message was left out: " + failure);
   return run;
 }
 

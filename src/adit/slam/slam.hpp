@@ -23,7 +23,7 @@ struct SlamRun {
   Session session;  ///< Its provenance says what ran; command and inputs are the caller's to fill in.
   std::vector<std::uint64_t> bytes_sent;  ///< Per robot of the session.
   std::vector<FailedRobot> failed;        ///< Recordings that could not be mapped; the others went on.
-  std::vector<std::string> notes;         ///< Fallbacks and changed names, one line each.
+  std::vector<std::string> notes;         ///< Fallbacks, changed names, messages left out, one line each.
 };
 
 /// Maps every robot, lets each meet every other, and solves what all of them then know. With the default

@@ -15,7 +15,7 @@ namespace {
 
 Fields fields_of(ListedGraph& c) {
   return {{"name", &c.name, "", 0, 0, "what tables call the graph"},
-          {"path", &c.path, "", 0, 0, "a g2o file, or a folder of them, one a robot"},
+          {"path", &c.path, "", 0, 0, "a g2o file, or a folder of them, one per robot"},
           {"injection",
            &c.injection,
            "",

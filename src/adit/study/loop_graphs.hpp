@@ -16,7 +16,7 @@ namespace adit {
 /// One entry [[graph]] of the list.
 struct ListedGraph {
   std::string name;
-  std::string path;  ///< A g2o file, or a folder of them, one a robot.
+  std::string path;  ///< A g2o file, or a folder of them, one per robot.
   std::string injection =
       "random";                  ///< "random", "clustered", or "as found": the file has its own false loops.
   std::uint64_t seed = 1;        ///< Of the injection.

@@ -43,7 +43,7 @@ Result<MergePair> run_pair(const std::vector<RobotRun>& runs, const Meeting& mee
   const auto [a, b] = robots;
   const std::vector<const RobotRun*> both = {&runs[a], &runs[b]};
   const FleetGraph known = between(meeting.agents.front().known(), runs[a].map->id, runs[b].map->id);
-  const Meeting of_two{{meeting.maps[a], meeting.maps[b]}, {}, {}};
+  const Meeting of_two{{meeting.maps[a], meeting.maps[b]}, {}, {}, {}};
   const Result<JudgedSolution> judged = judge(both, of_two, solve(known, config));
   if (!judged) return tl::unexpected(judged.error());
   const PairResult result = pair_result(both, of_two, *judged);

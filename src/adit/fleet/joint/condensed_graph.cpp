@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "adit/fleet/joint/condensed_graph.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 #include <utility>
+
+#include "adit/core/decompositions.hpp"
 
 namespace adit {
 namespace {
@@ -43,7 +44,7 @@ CondensedGraph condense(const PoseGraph& whole) {
     if (step[i] != kNoEdge) {
       const PoseGraph::Edge& edge = whole.edges[step[i]];
       const Matrix6 carry = edge.T_from_to.inverse().adjoint();
-      covariance = carry * covariance * carry.transpose() + edge.information.inverse();
+      covariance = carry * covariance * carry.transpose() + inverse(edge.information);
       T_kept_node = T_kept_node * edge.T_from_to;
     }
     if (!keep[i]) continue;

@@ -3,7 +3,6 @@
 #include "adit/fleet/joint/cycle.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +10,7 @@
 #include <optional>
 #include <tuple>
 
+#include "adit/core/decompositions.hpp"
 #include "adit/fleet/search/path.hpp"
 
 namespace adit {
@@ -51,7 +51,7 @@ Cycle::Cycle(const Robots& robots, const std::vector<const Merge*>& merges, cons
 std::vector<Cycle::Passage> Cycle::passages(const Merge& merge, RobotId from) {
   std::vector<Passage> out;
   for (const PcmLoop& loop : merge.loops) {
-    const Matrix6 covariance = loop.information.inverse();
+    const Matrix6 covariance = inverse(loop.information);
     if (merge.a == from)
       out.push_back({loop.a, loop.b, loop.T_a_b, covariance});
     else

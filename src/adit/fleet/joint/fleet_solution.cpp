@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "adit/fleet/joint/fleet_solution.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 
+#include "adit/core/decompositions.hpp"
+#include "adit/core/disjoint_sets.hpp"
 #include "adit/core/format.hpp"
 #include "adit/fleet/joint/condensed_graph.hpp"
 #include "adit/fleet/joint/frames.hpp"
@@ -29,7 +30,7 @@ PoseGraph build_graph(const FleetGraph& fleet, const std::vector<const LoopOutco
       const std::size_t node = graph.nodes.size() - 1;
       graph.edges.push_back({node - 1, node,
                              own.nodes[k - 1].T_odom_base.inverse() * own.nodes[k].T_odom_base,
-                             own.nodes[k].step_covariance.inverse(), EdgeKind::odometry});
+                             inverse(own.nodes[k].step_covariance), EdgeKind::odometry});
     }
   }
   for (const LoopOutcome* outcome : outcomes) {
@@ -44,23 +45,20 @@ PoseGraph build_graph(const FleetGraph& fleet, const std::vector<const LoopOutco
 /// Robots that loops in use link, each group in ascending order, groups by their smallest id.
 std::vector<std::vector<RobotId>> linked_robots(const FleetGraph& fleet,
                                                 const std::vector<LoopOutcome>& loops) {
-  std::map<RobotId, RobotId> root;
-  for (const auto& [robot, graph] : fleet.robots) root[robot] = robot;
-  const auto find = [&](RobotId robot) {
-    while (root[robot] != robot) robot = root[robot];
-    return robot;
+  std::vector<RobotId> robots;
+  for (const auto& [robot, graph] : fleet.robots) robots.push_back(robot);
+  const auto position = [&](RobotId robot) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(robots, robot) - robots.begin());
   };
-  for (const LoopOutcome& outcome : loops) {
-    if (!outcome.in_use()) continue;
-    const RobotId a = find(outcome.loop.from.robot);
-    const RobotId b = find(outcome.loop.to.robot);
-    root[std::max(a, b)] = std::min(a, b);
-  }
-  std::map<RobotId, std::vector<RobotId>> groups;
-  for (const auto& [robot, graph] : fleet.robots) groups[find(robot)].push_back(robot);
-  std::vector<std::vector<RobotId>> out;
-  for (auto& [anchor, group] : groups) out.push_back(std::move(group));
-  return out;
+  DisjointSets sets(robots.size());
+  for (const LoopOutcome& outcome : loops)
+    if (outcome.in_use()) sets.join(position(outcome.loop.from.robot), position(outcome.loop.to.robot));
+  std::vector<std::vector<RobotId>> groups(robots.size());  // the group of a set is where its first robot is
+  std::map<std::size_t, std::size_t> group_of_set;
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    groups[group_of_set.try_emplace(sets.find(i), i).first->second].push_back(robots[i]);
+  std::erase_if(groups, [](const std::vector<RobotId>& group) { return group.empty(); });
+  return groups;
 }
 
 /// The part of the fleet that these robots are.

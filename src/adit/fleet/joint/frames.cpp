@@ -3,7 +3,8 @@
 #include "adit/fleet/joint/frames.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
+
+#include "adit/core/decompositions.hpp"
 
 namespace adit {
 namespace {
@@ -29,10 +30,10 @@ Pose mean_frame(const FleetGraph& fleet, const std::vector<const LoopClosure*>& 
     seen_in_a += T_oa_to.translation();
     seen_in_b += T_ob_to.translation();
   }
-  const Eigen::JacobiSVD<Matrix3> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const auto [u, singular_values, v] = svd(sum);
   Matrix3 flip = Matrix3::Identity();
-  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-  const Matrix3 R = svd.matrixU() * flip * svd.matrixV().transpose();
+  flip(2, 2) = (u * v.transpose()).determinant();
+  const Matrix3 R = u * flip * v.transpose();
   return {R, (seen_in_a - R * seen_in_b) / static_cast<double>(loops.size())};
 }
 

@@ -3,7 +3,6 @@
 #include "adit/fleet/merge/merge_checker.hpp"
 
 #include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -41,7 +40,7 @@ MergeChecker checker_of(const std::vector<PcmLoop>& loops, MeasuredWhenAsked mea
   AdaptiveConfig all;
   all.merge_check = config;
   const OdometryChain other = chain;  // another robot: the same chain twice would mean revisits
-  return {{chain, other, loops}, {50.0, std::move(measured)}, all};
+  return {{chain, other, loops}, {50.0, std::move(measured), {}}, all};
 }
 
 MergeChecker a_check(const std::vector<PcmLoop>& loops, double chance_to_go_on = 0.5,

@@ -31,15 +31,14 @@ std::string MergeChecker::reason(MergeDecision decision, const std::vector<std::
     case MergeDecision::other_walls: {
       const StandingShare walls = h.offsets.counted();
       return format(
-          "walls stand off one another: scan after scan puts {:.0f} % of {} patches on one side, of which "
-          "noise leaves half; other tunnels, built alike; drive on until one passes where the other has "
-          "truly "
-          "been",
+          "the walls differ: at {:.0f} % of {} patches all scans lie on one side of the other robot's wall, "
+          "where noise would leave half; two tunnels built alike; drive on until one passes where the other "
+          "has truly been",
           100.0 * walls.share, walls.num_patches);
     }
     case MergeDecision::scans_differ:
       return format(
-          "scans differ at {} of {} places along the stretch that {} loops lay over one another: "
+          "scans differ at {} of {} places along the stretch that {} loops align: "
           "tunnels that only look alike; drive on until one passes where the other has truly been",
           h.num_differing(), h.compared.size(), h.loops.size());
     case MergeDecision::nothing_distinctive:

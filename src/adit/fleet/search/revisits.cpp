@@ -3,9 +3,12 @@
 #include "adit/fleet/search/revisits.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
+
 #include <cmath>
 #include <numbers>
 
+#include "adit/core/decompositions.hpp"
 #include "adit/posegraph/gnc.hpp"
 
 namespace adit {
@@ -33,7 +36,7 @@ bool fits_odometry(const OdometryChain& chain, const PcmLoop& loop, const Revisi
   const Matrix6 covariance =
       chain.covariance(loop.a, loop.b) + Eigen::LLT<Matrix6>(loop.information).solve(Matrix6::Identity());
   const Vector6 error = (chain.between(loop.a, loop.b).inverse() * loop.T_a_b).log();
-  return error.dot(covariance.ldlt().solve(error)) <
+  return error.dot(solve_symmetric(covariance, error)) <
          config.sigmas * config.sigmas * chi2_quantile(config.probability, 6);
 }
 

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "adit/fleet/sync/fleet_ledger.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <iterator>
 
+#include "adit/core/decompositions.hpp"
 #include "adit/fleet/sync/parts.hpp"
 
 namespace adit {
@@ -15,7 +15,7 @@ namespace {
 bool has_usable_covariances(const GraphPart& part) {
   for (std::size_t i = part.first_index == 0 ? 1 : 0; i < part.nodes.size(); ++i) {
     const Matrix6& covariance = part.nodes[i].step_covariance;
-    if (!covariance.allFinite() || covariance.llt().info() != Eigen::Success) return false;
+    if (!covariance.allFinite() || !is_positive_definite(covariance)) return false;
   }
   return true;
 }

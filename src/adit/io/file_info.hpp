@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What a file or folder holds, for people and scripts.
+#pragma once
+
+#include <string>
+
+#include "adit/core/result.hpp"
+#include "adit/io/recording_files.hpp"
+
+namespace adit {
+
+/// A JSON object with "kind" (recording, mcap, cloud, mesh, trajectory, graph, routes or session) and what
+/// that kind has: counts, stamps in seconds, lengths and boxes in metres. `path` is as for `open_recording`,
+/// or any other file that adit reads, by its ending. An MCAP that is no recording is described by its topics
+/// and the reason.
+Result<std::string> file_info(const std::string& path, const RecordingConfig& config);
+
+}  // namespace adit

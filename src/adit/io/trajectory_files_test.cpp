@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/trajectory_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include "adit/io/tum.hpp"
+#include "support/files.hpp"
+
+namespace adit {
+namespace {
+
+const Trajectory kTwoPoses{{{1'000'000'001}, Pose::planar(1.0, -2.0, 0.5)},
+                           {{2'000'000'000}, Pose::planar(0.1, 3.0, -3.0)}};
+
+TEST(TrajectoryFiles, CsvAndTumReadBackExactly) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.csv", "a.tum", "a.txt", "A.CSV"}) {
+    ASSERT_TRUE(write_trajectory(folder / name, kTwoPoses));
+    const Result<Trajectory> read = read_trajectory(folder / name);
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(tum_text(*read), tum_text(kTwoPoses)) << name;
+  }
+}
+
+TEST(TrajectoryFiles, CsvNeedsNoHeading) {
+  const test::TemporaryFolder folder;
+  test::put_file(folder / "bare.csv", "1.5,1,2,3,0,0,0,1\n2.5,2,2,3,0,0,0,1\n");
+  EXPECT_EQ(read_trajectory(folder / "bare.csv").value().at(1).pose.translation().x(), 2.0);
+}
+
+TEST(TrajectoryFiles, KittiIsWrittenAndNotRead) {
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_trajectory(folder / "a.kitti", kTwoPoses));
+  EXPECT_ERROR(read_trajectory(folder / "a.kitti"), "KITTI poses have no stamps");
+}
+
+TEST(TrajectoryFiles, ErrorsNameFileAndLine) {
+  const test::TemporaryFolder folder;
+  test::put_file(folder / "bad.csv", "stamp_s,x,y,z,qx,qy,qz,qw\n1.5,1,2,3,0,0,0\n");
+  EXPECT_ERROR(read_trajectory(folder / "bad.csv"), "bad.csv: line 2");
+}
+
+}  // namespace
+}  // namespace adit
