@@ -114,7 +114,7 @@ TEST(EndToEnd, TheProgramMapsAFolderOfScansIntoASession) {
     EXPECT_GT(path_length(*optimized), 3.0) << recording.name;
     const Result<AteResult> error = ate(*optimized, recording.truth);
     ASSERT_TRUE(error) << error.error().message;
-    EXPECT_LT(error->max_m, 0.05) << recording.name;
+    EXPECT_LT(error->max_m, 0.08) << recording.name;  // the noise of one range of this sensor, at its worst
     num_keyframes += optimized->size();
   }
   for (const char* name : {"graph_initial.g2o", "graph_pcm.g2o", "graph_optimized.g2o"}) {

@@ -134,7 +134,7 @@ TEST(Session, IsEvaluatedByNameInAnyOrder) {
   EXPECT_NE(one.err.find("behind has no truth"), std::string::npos) << one.err;
   fs::copy_file(ahead, folder / "other.tum");
   expect_refused("evaluate " + session + " --truth " + (folder / "other.tum").string(), 1,
-                 "named after none of the robots ahead, behind");
+                 "it names none of the robots ahead, behind");
   put_file(folder / "ahead.tum", "1000000000 0 0 0 0 0 0 1\n1000000001 1 0 0 0 0 0 1\n");
   expect_refused("evaluate " + session + " --truth " + (folder / "ahead.tum").string(), 1,
                  "not the truth of this drive");

@@ -46,7 +46,7 @@ TEST(ConfigToml, ErrorsNameTheLine) {
   EXPECT_ERROR(parse_config(fields, "[icp]\nvoxl = 2.0\n"),
                "line 2: unknown configuration key 'icp.voxl'; did you mean 'icp.voxel'?");
   EXPECT_ERROR(parse_config(fields, "[icp]\nvoxel = 20.0\n"), "outside 0.1 to 10 m");
-  EXPECT_ERROR(parse_config(fields, "[icp]\nvoxel = '2.0'\n"), "no string");
+  EXPECT_ERROR(parse_config(fields, "[icp]\nvoxel = '2.0'\n"), "not a string");
   EXPECT_ERROR(parse_config(fields, "[icp]\ncount = 2.5\n"), "whole number");
   EXPECT_ERROR(parse_config(fields, "[icp.deep]\nmode = 3\n"), "string in quotes");
   EXPECT_ERROR(parse_config(fields, "[icp]\nvoxel = [1]\n"), "line 2: icp.voxel");

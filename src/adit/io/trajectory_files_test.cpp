@@ -26,7 +26,7 @@ TEST(TrajectoryFiles, CsvAndTumReadBackExactly) {
 TEST(TrajectoryFiles, CsvNeedsNoHeading) {
   const test::TemporaryFolder folder;
   test::put_file(folder / "bare.csv", "1.5,1,2,3,0,0,0,1\n2.5,2,2,3,0,0,0,1\n");
-  EXPECT_EQ(read_trajectory(folder / "bare.csv").value().at(1).pose.translation().x(), 2.0);
+  EXPECT_EQ(read_trajectory(folder / "bare.csv").value().at(1).T_world_body.translation().x(), 2.0);
 }
 
 TEST(TrajectoryFiles, KittiIsWrittenAndNotRead) {

@@ -70,7 +70,7 @@ TEST(MatchTruths, ByNameInAnyOrder) {
 TEST(MatchTruths, WhatCannotBelongIsRefused) {
   const SavedSession session = two_robots();
   EXPECT_ERROR(match_truths(session, {{"x/cy_truth.tum", "", straight(0.0)}}),
-               "x/cy_truth.tum: named after none of the robots ada, bo; give it as NAME=x/cy_truth.tum");
+               "x/cy_truth.tum: it names none of the robots ada, bo; give it as NAME=x/cy_truth.tum");
   EXPECT_ERROR(match_truths(session, {{"1.tum", "cy", straight(0.0)}}),
                "'cy' is not one of the robots ada, bo");
   EXPECT_ERROR(match_truths(session, {{"ada.tum", "", straight(0.0)}, {"ada_gt.tum", "", straight(0.0)}}),
