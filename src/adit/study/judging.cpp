@@ -91,7 +91,10 @@ Result<JudgedSolution> judge(const std::vector<const RobotRun*>& runs, const Mee
   const auto true_pose = [&](KeyframeId id) -> Result<Pose> {
     for (std::size_t i = 0; i < runs.size(); ++i) {
       if (runs[i]->map->id == id.robot) {
-        return pose_at(runs[i]->truth, meeting.maps[i]->keyframes.at(id.index).stamp);
+        const Stamp stamp = meeting.maps[i]->keyframes.at(id.index).stamp;
+        return pose_at(runs[i]->truth, stamp).map_error([&](const Error& error) {
+          return Error{runs[i]->result.name + ": " + error.message};
+        });
       }
     }
     return fail("a loop names a robot that took no part");

@@ -184,7 +184,8 @@ Result<ChosenGraphs> chosen_graphs(const std::filesystem::path& list, const std:
                                    const std::vector<std::string>& only) {
   for (const std::string& name : only)
     if (std::ranges::find(graphs, name, &ListedGraph::name) == graphs.end())
-      return fail(format("{}: there is no graph '{}'", list.string(), name));
+      return fail(
+          format("{}: there is no graph '{}'; give the name of one of its [[graph]]", list.string(), name));
   ChosenGraphs chosen;
   for (const ListedGraph& graph : graphs) {
     if (!only.empty() && std::ranges::count(only, graph.name) == 0) continue;

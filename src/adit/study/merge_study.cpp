@@ -35,7 +35,8 @@ Result<ChosenWorlds> chosen_worlds(const std::filesystem::path& list, const std:
                                    const WorldChoice& choice) {
   for (const std::string& name : choice.only)
     if (std::ranges::find(worlds, name, &ListedWorld::name) == worlds.end())
-      return fail(format("{}: there is no world '{}'", list.string(), name));
+      return fail(
+          format("{}: there is no world '{}'; give the name of one of its [[world]]", list.string(), name));
   ChosenWorlds chosen;
   for (const ListedWorld& world : worlds) {
     const bool is_wanted = choice.only.empty() ? std::ranges::count(choice.groups, world.group) > 0

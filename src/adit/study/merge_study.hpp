@@ -32,7 +32,7 @@ struct MergeStudy {
   RunConfig config;
   std::vector<KeyframeSelection> policies;
   std::string variant;  ///< Added to the policies' names, so that results stand beside the usual ones.
-  std::filesystem::path folder;                 ///< Keeps the robots' maps (maps/) and results.json.
+  std::filesystem::path folder;  ///< Keeps the robots' maps (maps/, which exists) and results.json.
   std::function<void(const MergeRun&)> on_run;  ///< Called after each policy; may be empty.
 };
 

@@ -40,8 +40,9 @@ Fields fields_of(ListedWorld& c) {
 Result<> check(const std::deque<ListedWorld>& worlds) {
   std::set<std::string> names;
   for (const ListedWorld& world : worlds) {
-    if (world.name.empty()) return fail("an entry has no name");
-    if (!names.insert(world.name).second) return fail("two worlds are called '" + world.name + "'");
+    if (world.name.empty()) return fail("an entry has no name; add name = \"...\"");
+    if (!names.insert(world.name).second)
+      return fail("two worlds are called '" + world.name + "'; rename one");
   }
   return {};
 }
@@ -99,6 +100,8 @@ Result<> record_all(const ListedWorld& listed, const ScenarioConfig& simulation,
   if (!world) return tl::unexpected(world.error());
   const Result<std::vector<Recording>> recordings = simulate(*world, simulation);
   if (!recordings) return tl::unexpected(recordings.error());
+  if (recordings->size() < 2)
+    return fail(listed.name + ": merging needs at least two robots; add a route to " + listed.routes_file);
   std::vector<RobotSlamConfig> configs;
   std::vector<OutputDir> folders;
   for (const Drives& drives : wanted) {
@@ -183,7 +186,9 @@ Result<std::vector<RobotRun>> driven_robots(const ListedWorld& world, RunConfig 
     if (!run) return fail(run.error().message + "; remove " + cache.string() + " and run again");
     runs.push_back(std::move(*run));
   }
-  if (runs.size() < 2) return fail(world.name + ": merging needs at least two robots");
+  if (runs.size() < 2)
+    return fail(format("{}: the maps of two robots are missing; remove {} and run again",
+                       drives.front().folder.string(), cache.string()));
   return runs;
 }
 

@@ -31,8 +31,9 @@ Result<std::vector<ListedWorld>> read_world_list(const std::filesystem::path& li
 
 /// The robots' maps, by the odometries that those policies are studied under, and ground truth; from `cache`
 /// where that world was driven before with the same configuration of simulation and robots; else simulated
-/// and put there. What is used is always what the cache holds. The code itself is not part of the key: after
-/// a change of simulation, odometry, keyframes or descriptors the cache has to go.
+/// and put there, a folder that exists. What is used is always what the cache holds. The code itself and
+/// what a routes file and its mesh hold are not part of the key: after a change of those, of simulation,
+/// odometry, keyframes or descriptors the cache has to go. Fails on a world with fewer than two robots.
 Result<std::vector<RobotRun>> driven_robots(const ListedWorld& world, RunConfig config,
                                             const std::vector<KeyframeSelection>& selections,
                                             const std::filesystem::path& cache);

@@ -14,6 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr int kMergeRunsVersion = 2;  // of results.json
+
 Json json_of(const MergePair& pair) {
   return {{"robots", pair.robots},
           {"shared_m", pair.shared_m},
@@ -112,20 +114,22 @@ Result<std::vector<MergeRun>> read_merge_runs(const std::filesystem::path& file)
   if (!std::filesystem::exists(file)) return std::vector<MergeRun>{};
   const Result<std::string> bytes = read_bytes(file);
   if (!bytes) return tl::unexpected(bytes.error());
+  const auto refused = fail(file.string() + ": these are no results of this version; remove the file");
   try {
+    const Json content = Json::parse(*bytes);
+    if (content.at("version") != kMergeRunsVersion) return refused;
     std::vector<MergeRun> runs;
-    const Json file_content = Json::parse(*bytes);
-    for (const Json& run : file_content.at("runs")) runs.push_back(run_of(run));
+    for (const Json& run : content.at("runs")) runs.push_back(run_of(run));
     return runs;
   } catch (const std::exception&) {
-    return fail(file.string() + ": these are no results of this version; remove the file");
+    return refused;
   }
 }
 
 Result<> write_merge_runs(const std::filesystem::path& file, const std::vector<MergeRun>& runs) {
   Json all = Json::array();
   for (const MergeRun& run : runs) all.push_back(json_of(run));
-  return write_bytes(file, Json{{"version", 2}, {"runs", all}}.dump(1) + "\n");
+  return write_bytes(file, Json{{"version", kMergeRunsVersion}, {"runs", all}}.dump(1) + "\n");
 }
 
 Result<> write_merge_csv(const std::filesystem::path& file, const std::vector<MergeRun>& runs) {
