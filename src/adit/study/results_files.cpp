@@ -118,7 +118,7 @@ Result<std::vector<MergeRun>> read_merge_runs(const std::filesystem::path& file)
     for (const Json& run : file_content.at("runs")) runs.push_back(run_of(run));
     return runs;
   } catch (const std::exception&) {
-    return fail(file.string() + ": these are no results of this version; remove the file");
+    return fail(file.string() + ": not results of this version; remove the file");
   }
 }
 
