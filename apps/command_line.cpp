@@ -55,7 +55,7 @@ Program::Program()
            " ('adit --help' lists the commands, 'adit COMMAND --help' its options)\n";
   });
   cli_->set_version_flag("--version", std::string(version()));
-  cli_->add_flag("--json", common_.json, "Print the result as JSON on stdout, alone");
+  cli_->add_flag("--json", common_.json, "Print only the result, as JSON, on stdout");
   cli_->add_option("--threads", common_.threads, "Threads to use (default: all cores)")
       ->check(CLI::PositiveNumber);
   std::vector<std::string> profiles;
@@ -83,7 +83,7 @@ Command Program::add_command(const std::string& name, const std::string& descrip
     common_.profile = *std::ranges::find(kProfiles, profile_, [](Profile p) { return to_string(p); });
     if (common_.threads > 0) set_num_threads(common_.threads);
     exit_code_ = run_command(name, [&]() -> Result<> {
-      // Also where the command itself needs no configuration: a wrong setting is never passed over.
+      // Also for commands that need no configuration: a wrong setting is never ignored.
       if (const Result<RunConfig> config = configured(common_); !config)
         return tl::unexpected(config.error());
       return body(common_);
@@ -94,7 +94,7 @@ Command Program::add_command(const std::string& name, const std::string& descrip
 
 namespace {
 
-// What a session, a study or a page is written to, and how it is computed, changes no result.
+// Options for where output goes and how it is computed change no result.
 bool changes_results(const std::string& option) {
   constexpr std::array kNeutral{"--out", "--page", "--threads", "--json", "--help", "--rerun"};
   return std::ranges::find(kNeutral, option) == kNeutral.end();

@@ -28,9 +28,9 @@ class Option {
   Option one_of(const std::vector<std::string>& values) const;
   Option in_range(int least, int most) const;
   Option separated_by_commas() const;
-  /// The help shows the value that the variable has now.
+  /// The help shows the current value of the variable as the default.
   Option default_shown() const;
-  /// `fault` returns what is wrong with a value, "" for nothing.
+  /// `fault` returns what is wrong with a value, "" if nothing is.
   Option check(const std::function<std::string(const std::string&)>& fault) const;
 
  private:
@@ -67,7 +67,7 @@ struct Common {
 /// The body of a command: returns 0, or an error that main prints in one line (exit code 1).
 using Body = std::function<Result<>(const Common&)>;
 
-/// Collects the commands; `main` owns it. Wrong usage (exit code 2) is found by CLI11, or told by
+/// Collects the commands; `main` owns it. Wrong usage (exit code 2) is found by CLI11 or reported by
 /// `usage_error`.
 class Program {
  public:
@@ -89,7 +89,7 @@ class Program {
   int exit_code_ = 0;
 };
 
-/// For mistakes that only show after parsing: ends the command with exit code 2.
+/// For wrong usage that shows only after parsing: ends the command with exit code 2.
 [[noreturn]] void usage_error(const std::string& message);
 
 /// The configuration of a command, the one tree of keys that `adit config` prints: the profile, then

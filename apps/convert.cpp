@@ -117,7 +117,7 @@ void add_convert(Program& program) {
       program.add_command("convert", "Convert between recording, cloud, mesh, trajectory and graph formats",
                           [options](const Common& common) { return convert(*options, common); });
   command.add_option("IN", options->in, "What to read").required();
-  command.add_option("OUT", options->out, "What to write; its extension says the format").required();
+  command.add_option("OUT", options->out, "What to write; its extension sets the format").required();
   command.add_option("--clouds", options->clouds, "Format of the clouds in a folder: pcd, ply or bin (KITTI)")
       .one_of({"pcd", "ply", "bin"})
       .default_shown();

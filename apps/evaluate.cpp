@@ -45,7 +45,7 @@ Result<> evaluate_command(const Options& options, const Common& common) {
     for (const Table& table : tables_of(*evaluation)) std::printf("%s\n", text_of(table).c_str());
   }
   const Result<> saved = save_evaluation(options.session, *evaluation);
-  if (!saved) print_notes("evaluate", {"the session itself stays as it was: " + saved.error().message});
+  if (!saved) print_notes("evaluate", {"the session itself is unchanged: " + saved.error().message});
   return {};
 }
 
@@ -53,13 +53,13 @@ Result<> evaluate_command(const Options& options, const Common& common) {
 
 void add_evaluate(Program& program) {
   const auto options = std::make_shared<Options>();
-  const Command command =
-      program.add_command("evaluate", "ATE, RPE and loop precision of a session, given the true trajectories",
-                          [options](const Common& common) { return evaluate_command(*options, common); });
+  const Command command = program.add_command(
+      "evaluate", "Compute ATE, RPE and loop precision of a session from the true trajectories",
+      [options](const Common& common) { return evaluate_command(*options, common); });
   command.add_option("session", options->session, "Session directory of adit slam").required();
   command
       .add_option("--truth", options->truths,
-                  "True trajectories (TUM) in any order, each called after its robot (robot_0.tum, "
+                  "True trajectories (TUM) in any order, each named after its robot (robot_0.tum, "
                   "robot_0_truth.tum, robot_0/truth.tum) or given as NAME=FILE")
       .required();
   command.footer(

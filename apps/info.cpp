@@ -34,7 +34,7 @@ void add_info(Program& program) {
   };
   const auto options = std::make_shared<Options>();
   const Command command = program.add_command(
-      "info", "What a recording, cloud, mesh, trajectory, graph, routes file or session holds",
+      "info", "Show what a recording, cloud, mesh, trajectory, graph, routes file or session holds",
       [options](const Common& common) {
         return file_info(options->input, recording_config(configured(common)->recording, options->recording))
             .map([&](const std::string& info) {

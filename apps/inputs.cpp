@@ -61,7 +61,8 @@ Result<Inputs> open_inputs(const std::vector<std::string>& inputs, const RunConf
     return simulated(inputs.front(), config.simulation);
   Inputs opened;
   for (const std::string& input : inputs) {
-    if (is_routes_file(input)) return fail(input + ": a routes file stands for all robots; give it alone");
+    if (is_routes_file(input))
+      return fail(input + ": a routes file names all robots; give no other input with it");
     const auto [name, path] = name_and_path(input);
     Result<Recording> recording = open_input(path, config.recording);
     if (!recording) return tl::unexpected(recording.error());

@@ -22,10 +22,10 @@ void add_recording_options(const Command& command, RecordingConfig& config);
 /// assumption.
 Result<Recording> open_input(const std::string& input, const RecordingConfig& config);
 
-/// What the configuration says of recordings, under the options of the command.
+/// The configuration of recordings, overridden by the options of the command.
 [[nodiscard]] RecordingConfig recording_config(RecordingConfig config, const RecordingConfig& options);
 
-/// What is mapped, and where it comes from.
+/// The recordings to map, and where they come from.
 struct Inputs {
   std::vector<Recording> recordings;  ///< In the order given.
   std::string world;                  ///< The mesh that they are simulated in; "" for recordings.

@@ -25,7 +25,7 @@ struct Options {
   std::vector<std::string> only;
 };
 
-/// Every run of every chosen graph; a line of text per run goes where it does not mix with JSON.
+/// Every run of every chosen graph; prints one line of text per run, to stderr if JSON goes to stdout.
 Result<std::vector<FalseLoopRun>> run_all(const Options& options, const Common& common,
                                           const BackEndConfig& back_end) {
   const Result<std::vector<ListedGraph>> list = read_graph_list(options.graphs, options.data);
@@ -67,7 +67,8 @@ Result<> loop_study(const Options& options, const Common& common) {
 void add_loop_study(Program& program) {
   const auto options = std::make_shared<Options>();
   const Command command = program.add_command(
-      "loop-study", "Which false loops plain GNC, PCM and adit's own search find, over a list of pose graphs",
+      "loop-study",
+      "Measure which false loops plain GNC, PCM and adit's own search find, over a list of pose graphs",
       [options](const Common& common) { return loop_study(*options, common); });
   command.add_option("--graphs", options->graphs, "The list (TOML, as bench/merge/graphs.toml)").required();
   command.add_option("--data", options->data,
@@ -77,7 +78,7 @@ void add_loop_study(Program& program) {
       .separated_by_commas()
       .in_range(0, 99)
       .default_shown();
-  command.add_option("--only", options->only, "Only the graphs of these names").separated_by_commas();
+  command.add_option("--only", options->only, "Only the graphs with these names").separated_by_commas();
   command.add_option("--page", options->page,
                      "Markdown file whose section between 'false loops' marks takes the tables");
 }

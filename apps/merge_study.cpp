@@ -36,7 +36,7 @@ Result<> print(const std::filesystem::path& results, const std::vector<Table>& t
   return read_bytes(results).map([](const std::string& text) { std::printf("%s", text.c_str()); });
 }
 
-/// What is run under the options, with a line of text per run; that goes where it does not mix with JSON.
+/// The study under the options. It prints one line of text per run, to stderr if JSON goes to stdout.
 Result<MergeStudy> study_of(const Options& options, const Common& common) {
   const Result<RunConfig> config = configured(common, options.lidar);
   if (!config) return tl::unexpected(config.error());
@@ -76,7 +76,8 @@ Result<> merge_study(const Options& options, const Common& common) {
 void add_merge_study(Program& program) {
   const auto options = std::make_shared<Options>();
   const Command command = program.add_command(
-      "merge-study", "Which robots' maps are merged, refused or merged wrongly, over a list of worlds",
+      "merge-study",
+      "Measure which robots' maps are merged, refused or merged wrongly, over a list of worlds",
       [options](const Common& common) { return merge_study(*options, common); });
   command.add_option("--worlds", options->worlds, "The list (TOML, as bench/merge/worlds.toml)").required();
   command.add_option("--out", options->out, "Folder that keeps the robots' maps and the results of all runs")
@@ -90,7 +91,7 @@ void add_merge_study(Program& program) {
       .separated_by_commas()
       .one_of({"tuning", "check", "limit"})
       .default_shown();
-  command.add_option("--only", options->choice.only, "Only the worlds of these names, whatever their group")
+  command.add_option("--only", options->choice.only, "Only the worlds with these names, whatever their group")
       .separated_by_commas();
   command.add_option("--variant", options->variant,
                      "Added to the policies' names, so that a run with other settings (--set) stands beside "

@@ -98,7 +98,7 @@ Result<> odometry(const Options& options, const Common& common) {
 void add_odometry(Program& program) {
   const auto options = std::make_shared<Options>();
   const Command command =
-      program.add_command("odometry", "Odometry of one robot",
+      program.add_command("odometry", "Compute the odometry of one robot",
                           [options](const Common& common) { return odometry(*options, common); });
   command.add_option("input", options->input, "Recording (.mcap) or folder of scans").required();
   command
@@ -107,7 +107,7 @@ void add_odometry(Program& program) {
       .one_of({"plane-icp", "kinematic-icp", "kiss-icp"});
   command.add_option("--out", options->out, "Trajectory to write (TUM)").required();
   command.add_option("--truth", options->truth,
-                     "True trajectory (TUM), for the error; default: the recording's own");
+                     "True trajectory (TUM) for the error (default: the recording's own)");
   add_recording_options(command, options->recording);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// What the program shows of its work, and the signals that end it.
+/// The progress that the program shows, and the signals that end it.
 #pragma once
 
 #include <chrono>
@@ -19,7 +19,7 @@ namespace adit::app {
 /// ends it at once. A signal that the parent had ignored stays so (nohup, jobs in the background of a
 /// script).
 void catch_signals();
-/// The first signal that came, 0 before.
+/// The first signal caught; 0 if none was.
 [[nodiscard]] int caught_signal();
 
 /// Observer of a command: cancels it once a signal came. Where stderr is a terminal it draws one line with

@@ -102,7 +102,8 @@ Result<> register_files(const Options& options, const Common& common) {
 void add_register(Program& program) {
   const auto options = std::make_shared<Options>();
   const Command command = program.add_command(
-      "register", "Relative pose of two clouds, without a first guess (fields loops.adaptive.registration.*)",
+      "register",
+      "Compute the relative pose of two clouds without a guess (fields loops.adaptive.registration.*)",
       [options](const Common& common) { return register_files(*options, common); });
   command.add_option("A", options->cloud_a, "Cloud that the answer refers to (.pcd, .ply, .bin)").required();
   command.add_option("B", options->cloud_b, "Cloud to be placed: p_a = T_a_b * p_b").required();

@@ -12,7 +12,7 @@
 namespace adit::app {
 namespace {
 
-/// The body's own error, or what the system threw at it: a folder that cannot be read, no more memory.
+/// The result of the body; exceptions of the system (an unreadable folder, no memory left) become errors.
 Result<> outcome_of(const std::function<Result<>()>& body) {
   TerminalProgress progress;
   const ObserverScope scope(progress);

@@ -37,7 +37,7 @@ std::filesystem::path truth_file(const Options& options, const Recording& record
   return std::filesystem::path(options.out) / (recording.name + "_truth.tum");
 }
 
-// A robot keeps its noise whether or not the others are wanted, so all are set up and the rest is left out.
+// A robot's noise does not depend on which robots are wanted: all are set up, and the others are left out.
 Result<std::vector<Recording>> chosen(std::vector<Recording> recordings, const std::string& robot) {
   if (robot.empty()) return recordings;
   std::string names;

@@ -27,7 +27,7 @@ struct Options {
   std::string rerun;
 };
 
-/// What is to run, and how the session will say so.
+/// What is to run, and the provenance that the session will state.
 struct Job {
   RunConfig config;
   Provenance provenance;
@@ -51,12 +51,12 @@ Result<Job> job_of(const Options& options, const Common& common) {
   return Job{*config, provenance};
 }
 
-/// What a session says of itself is enough to make it again.
+/// The job of an earlier session, from the provenance in its session.toml.
 Result<Job> job_again(const Options& options, const Common& common) {
   if (!options.inputs.empty() || !options.lidar.empty() || !options.keyframes.empty() ||
       !options.recording.mount.empty() || !options.recording.points.empty() || !common.sets.empty() ||
       !common.config_file.empty() || common.profile != Profile::standard)
-    usage_error("--rerun repeats a session as it was: no inputs and no configuration beside it");
+    usage_error("--rerun repeats a session as it was; give no inputs and no configuration with it");
   const Result<std::string> text = read_bytes(options.rerun);
   if (!text) return tl::unexpected(text.error());
   Result<SessionHeader> header = parse_session_toml(*text);
@@ -98,7 +98,7 @@ void print_pairs(const Session& session) {
   }
 }
 
-/// The session is there all the same, so that this is the last word and not the only one.
+/// The session is written all the same, so this error is printed last.
 Result<> without_failures(const SlamRun& run, const std::string& out) {
   if (run.failed.empty()) return {};
   std::string reasons;
@@ -149,10 +149,10 @@ void add_slam(Program& program) {
   command.add_option("--keyframes", options->keyframes,
                      "Keyframe policy: adaptive (default), all, tunnel_filter or tunnel_filter_keep");
   command.add_option("--rerun", options->rerun,
-                     "session.toml of a session to make again, byte for byte, from the same inputs");
+                     "session.toml of a session to reproduce byte for byte from the same inputs");
   add_recording_options(command, options->recording);
   command.footer(
-      "A recording that cannot be mapped is named with its reason; the others go on, and the exit code is "
+      "A recording that cannot be mapped is reported with the reason; the others go on, and the exit code is "
       "1.");
 }
 

@@ -35,7 +35,7 @@ void zero_cross_blocks(BasicPoseGraph<P>& graph, const std::vector<std::size_t>&
   }
 }
 
-// Refuses indefinite information matrices, or repairs them all where that was asked for.
+// Refuses indefinite information matrices, or repairs them all where --repair asks for it.
 template <class P>
 Result<> check_information(const std::string& name, const SolveOptions& options, BasicPoseGraph<P>& graph,
                            G2oFile& file) {
@@ -47,7 +47,7 @@ Result<> check_information(const std::string& name, const SolveOptions& options,
     return fail(
         format("{}: {}; --repair zero-cross-blocks zeroes the translation-rotation blocks", name, found));
   }
-  // Where some are wrong the others' cross blocks are no more to be trusted.
+  // Where some are wrong, the cross blocks of the others cannot be trusted either.
   std::vector<std::size_t> all(graph.edges.size());
   for (std::size_t e = 0; e < all.size(); ++e) all[e] = e;
   zero_cross_blocks(graph, all);

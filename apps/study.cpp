@@ -34,7 +34,7 @@ double peak_rss_mb() {
 
 Result<World> world_of(const Options& options, const WorldConfig& built_in) {
   if (options.routes.empty() && options.world.empty()) return make_world(built_in);
-  if (options.routes.empty()) usage_error("--world needs --routes FILE: where do the robots drive in it?");
+  if (options.routes.empty()) usage_error("--world needs --routes FILE, the routes of the robots in it");
   return load_world(options.world, options.routes);
 }
 
@@ -86,7 +86,7 @@ Result<> study(const Options& options, const Common& common) {
 void add_study(Program& program) {
   const auto options = std::make_shared<Options>();
   const Command command =
-      program.add_command("study", "The paper's whole experiment on one world",
+      program.add_command("study", "Run the paper's whole experiment on one world",
                           [options](const Common& common) { return study(*options, common); });
   command.add_option(
       "--world", options->world,

@@ -95,7 +95,8 @@ void add_world(Program& program) {
                           [options](const Common& common) { return run(*options, common); });
   command.add_option("--preset", options->preset,
                      format("{} (default zab)", fmt::join(world_presets(), ", ")));
-  command.add_option("--seed", options->seed, "Another seed, another network of the same kind (default 1)");
+  command.add_option("--seed", options->seed,
+                     "Seed of the network (default 1); each seed gives another one of the same kind");
   command.add_option("--arrangement", options->arrangement,
                      "single (default), or two networks with two robots each: different, mirrored (one is "
                      "the other's mirror image), copies (the same tunnels with other furniture), twins");

@@ -175,8 +175,8 @@ Work optimizing_from_chordal(const std::string& name) {
   };
 }
 
-// Without these settings Debian's OpenBLAS and CHOLMOD start threads of their own and take new processors for
-// old ones: Ceres is twice as slow then.
+// Without these settings Debian's OpenBLAS and CHOLMOD start threads of their own and do not recognise new
+// processors: Ceres is then twice as slow.
 About about_ceres(const std::string& start) {
   return {
       .version = "Ceres " CERES_VERSION_STRING,

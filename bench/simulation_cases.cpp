@@ -205,9 +205,8 @@ const auto registered = [] {
           .num_threads = threads,
           .peer = "embree",
           .aim = 0.7,
-          .note = "least: Embree's own traversal, the peer; plus 1.9 MB of points and times written a scan "
-                  "and three "
-                  "64-bit hashes per ray",
+          .note = "least: Embree's own traversal, the peer; plus 1.9 MB of points and times written per scan "
+                  "and three 64-bit hashes per ray",
           .per_run = num_scans,
           .unit = "scan"});
     Side(name, "adit", [] {

@@ -16,7 +16,7 @@ namespace adit::bench {
 /// A simulated tunnel network and the path of each of its robots through it.
 class Tunnel {
  public:
-  /// The world `preset` of `seed`, seen by a sensor of that name.
+  /// The world `preset` with `seed`, seen by the sensor of that name.
   Tunnel(const std::string& preset, std::uint64_t seed, const std::string& lidar);
 
   [[nodiscard]] const std::vector<Trajectory>& paths() const { return paths_; }

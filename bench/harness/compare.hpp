@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Runs the sides of a case in turns.
+/// Runs the sides of a case alternately.
 #pragma once
 
 #include <optional>

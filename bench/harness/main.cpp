@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// adit_bench: ours and the peers, in turns, in one table.
+/// adit_bench: times adit and its peers alternately, in one table.
 #include <CLI/CLI.hpp>
 #include <ctime>
 #include <fstream>
@@ -97,9 +97,9 @@ void list_cases() {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  CLI::App app("Times adit beside its peers: each side in its own process, in turns, on the same input.");
+  CLI::App app("Times adit and its peers: each side in its own process, alternating, on the same input.");
   app.require_subcommand(1);
-  app.add_subcommand("list", "name the cases that adit does")->callback(list_cases);
+  app.add_subcommand("list", "name the cases that adit takes part in")->callback(list_cases);
 
   std::string name;
   std::string side;
@@ -120,7 +120,7 @@ int main(int argc, char** argv) try {
   runner->add_option("--peers", config.peers, "folder of further programs, see bench/README.md")
       ->check(CLI::ExistingDirectory);
   runner->add_option("--inputs", config.inputs, "folder that `export` has filled, for these programs");
-  runner->add_option("--base", config.base, "an older adit_bench to run beside")->check(CLI::ExistingFile);
+  runner->add_option("--base", config.base, "an older adit_bench to compare with")->check(CLI::ExistingFile);
   runner->add_option("--version-name", config.version, "name of what is measured");
   runner->add_option("--results", files.results, "where the figures go")->required();
   runner->add_option("--recorded", files.recorded, "figures of the last recorded version");

@@ -268,7 +268,7 @@ std::string plot_growth(const GrowthResult& growth) {
     canvas.text({at(x, y).x(), low.y() + 18.0}, tick_text(x),
                 {.color = kMutedInk, .size = 12.0, .anchor = Anchor::middle});
   }
-  // What growth in proportion to the size would look like.
+  // The line of growth in proportion to the size.
   const auto [first_x, first_y] = points.front();
   const double end_x = std::min(x1, x0 * y1 / first_y);
   canvas.line(at(first_x, first_y), at(end_x, first_y * end_x / first_x), {kMutedInk, 1.0, 0.6});

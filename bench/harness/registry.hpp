@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// All that the `*_cases.cpp` files have put on the list.
+/// The cases and sides that the `*_cases.cpp` files registered.
 #pragma once
 
 #include <string>

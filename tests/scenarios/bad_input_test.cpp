@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Whatever is wrong with the input: one line on stderr that names the file and the trouble, exit code 1
+/// Whatever is wrong with the input: one line on stderr that names the file and the problem, exit code 1
 /// (data) or 2 (usage), and what lies at the output stays as it was.
 #include <gtest/gtest.h>
 

@@ -83,7 +83,7 @@ std::ptrdiff_t num_in_use(const std::filesystem::path& session) {
   });
 }
 
-/// Where the first and the last keyframe of both robots stand, in the frame of the session.
+/// Positions of the first and the last keyframe of both robots, in the frame of the session.
 std::vector<Vector3> ends_of(const std::filesystem::path& session) {
   std::vector<Vector3> ends;
   for (const char* robot : {"a", "b"}) {
@@ -133,7 +133,7 @@ TEST(Canaries, TwoRobotsFarApartInOneMineStayApart) {
   EXPECT_EQ(num_in_use(folder / "session"), 0);
 }
 
-/// Half of the loops are false, in runs that agree with each other, as tunnels that look alike give them.
+/// Half of the loops are false, in runs that agree with each other, as look-alike tunnels produce them.
 TEST(Canaries, OfFalseLoopsNoneIsKeptAndNoTrueOneIsLost) {
   const PoseGraph laps = test::two_laps(0);
   const LabelledGraph<Pose> spoiled = with_false_loops(laps, 0.5, FalseLoops::clustered, 7);

@@ -63,7 +63,7 @@ TEST(EndToEnd, UnderThePapersPolicyTwoRobotsMergeByCorrectLoopsIntoAnAccurateMap
   EXPECT_EQ(as_text(joint, folder.path()), as_text(again, folder.path()));
 }
 
-TEST(EndToEnd, ByDefaultRobotsMergeByEvidenceAndSayIt) {
+TEST(EndToEnd, ByDefaultRobotsMergeByEvidenceAndSaySo) {
   const std::vector<Recording> recordings = two_robots();
   ASSERT_EQ(recordings.size(), 2U);
   const test::Joint joint = test::map_and_meet(recordings, RobotSlamConfig());

@@ -70,7 +70,7 @@ TEST_F(FolderMerge, IsThatOfTheRecordingInEveryFormat) {
   }
 }
 
-/// As other programs leave them: clouds moved to the robot's frame, no word of the mount.
+/// As other programs leave them: clouds moved to the robot's frame, and no mount stated.
 TEST_F(FolderMerge, WorksInTheBaseFrameWithTheMountFoundInTheClouds) {
   const auto recordings = through("_bare", [](const auto& path, Recording robot) {
     robot.read_scan = [read = robot.read_scan, mount = robot.T_base_lidar](std::size_t i) {

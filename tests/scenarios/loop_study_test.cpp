@@ -87,7 +87,7 @@ TEST(LoopStudy, SaysTheSameAgainAndAsJson) {
   EXPECT_EQ(timeless(again.out), timeless(run.out));
 }
 
-TEST(LoopStudy, TellsFalseLoopsOfRobotsOnAFloorByTheirTilt) {
+TEST(LoopStudy, FindsFalseLoopsOfRobotsOnAFloorByTheirTilt) {
   const test::TemporaryFolder folder;
   const std::uint64_t a = graph_key({{0}, 0});
   const std::uint64_t b = graph_key({{1}, 0});
@@ -117,7 +117,7 @@ TEST(LoopStudy, WhereAMethodHasNoAnswerThePageSaysWhy) {
   const test::ProgramRun run = test::run_adit(study(folder, "--shares 0"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(run.out.find("Methods without an answer"), std::string::npos) << run.out;
-  EXPECT_NE(run.out.find("this one is plane"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("this one is 2-D"), std::string::npos) << run.out;
 }
 
 TEST(LoopStudy, WrongListsAreRefusedWithTheFileAndTheRemedy) {
@@ -131,7 +131,7 @@ TEST(LoopStudy, WrongListsAreRefusedWithTheFileAndTheRemedy) {
   expect_list_refused("[[graph]]\npath = 'laps.g2o'\n", "no name; add name");
   expect_list_refused("[[graph]]\nname = 'a'\n", "no path; add path");
   expect_list_refused(entry("a", "laps.g2o", "random") + entry("a", "laps.g2o", "random"), "rename one");
-  expect_list_refused(entry("a", "laps.g2o", "as found"), "add it to that");
+  expect_list_refused(entry("a", "laps.g2o", "as found"), "add it");
   expect_list_refused(entry("a", "laps.g2o", "random", "max_tilt_deg = 5.0"), "or remove it");
   expect_list_refused(entry("a", "laps.g2o", "many"), "clustered");
   expect_list_refused(entry("a", "laps.g2o", "random", "keep_evry = 5"), "keep_every");

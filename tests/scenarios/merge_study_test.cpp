@@ -64,7 +64,7 @@ TEST(MergeStudy, KeepsTheMapsAndTheResultsOfEarlierRuns) {
       study(folder, "--keyframes tunnel_filter_keep --only short --page " + (folder / "page.md").string()));
   EXPECT_EQ(std::filesystem::last_write_time(only_map_folder(folder) / "0.map"), recorded);
   const std::string csv = get_file(folder / "out/results.csv");
-  EXPECT_EQ(std::ranges::count(csv, '\n'), 3) << csv;  // The header and one pair a policy.
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 3) << csv;  // The header, and one pair per policy.
   EXPECT_NE(csv.find("short,check,all,ahead,behind,"), std::string::npos) << csv;
   EXPECT_NE(csv.find("short,check,tunnel_filter_keep,ahead,behind,"), std::string::npos) << csv;
   const std::string page = get_file(folder / "page.md");

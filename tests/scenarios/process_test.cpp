@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Whatever happens to a process of a command that writes, what was saved before stays: Ctrl-C and SIGTERM in
-/// every phase, a full disk, a folder that is read-only or cannot be made. And what a terminal shows
+/// Whatever happens to the process of a command that writes, earlier output stays: Ctrl-C and SIGTERM in
+/// every phase, a full disk, a folder that is read-only or cannot be made. Also, what a terminal shows
 /// meanwhile.
 #include <gtest/gtest.h>
 #include <array>

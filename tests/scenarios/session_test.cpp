@@ -30,7 +30,7 @@ Route part_of(const Route& route, std::ptrdiff_t begin, std::ptrdiff_t end, cons
           std::vector<Vector3>(route.waypoints.begin() + begin, route.waypoints.begin() + end)};
 }
 
-/// world.ply and routes.yaml: robot `behind` follows `ahead` on the same tunnel.
+/// world.ply and routes.yaml: robot `behind` follows `ahead` through the same tunnel.
 void put_world(const fs::path& folder) {
   WorldConfig config;
   config.preset = "mine";
@@ -140,7 +140,7 @@ TEST(Session, IsEvaluatedByNameInAnyOrder) {
                  "not the truth of this drive");
 }
 
-TEST(Session, RobotsOfOneNameAreToldApart) {
+TEST(Session, RobotsOfOneNameGetDifferentNames) {
   const test::TemporaryFolder folder;
   put_world(folder.path());
   const std::string recordings = (folder / "recordings").string();

@@ -65,7 +65,7 @@ class BoxWorld {
 };
 
 /// A robot that drove through true poses `T_world_base`; its odometry starts at the identity and drifts by
-/// `yaw_drift` radians a step.
+/// `yaw_drift` radians per step.
 inline RobotMap drive(const BoxWorld& world, RobotId id, const std::vector<Pose>& T_world_base,
                       double yaw_drift) {
   RobotMap map;

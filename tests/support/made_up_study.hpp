@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// A small study with every part filled, for the tests of this folder.
+/// A small study with every part filled, for tests of tables, figures and reports.
 #pragma once
 
 #include <cmath>

@@ -60,7 +60,7 @@ struct Lidar {
   Duration period = std::chrono::milliseconds(100);
   std::uint64_t seed = 7;
   /// How far each ray strays from its cell's centre, in cells: 0.5 samples surfaces evenly at random, 0
-  /// repeats the same pattern in each scan, to which point-to-point residuals hold on where a surface is
+  /// repeats the same pattern in each scan, onto which point-to-point residuals lock where a surface is
   /// smooth.
   double jitter = 0.0;
 };
@@ -96,7 +96,7 @@ Scan sweep(const Scene& scene, const Lidar& lidar, const Pose& T_base_lidar, Sta
   return scan;
 }
 
-/// A drive that starts from rest and takes up the constant body twist `velocity` (a second) within about a
+/// A drive that starts from rest and takes up the constant body twist `velocity` (per second) within about a
 /// second, so that no first scan is skewed.
 struct Drive {
   Pose T_world_start;

@@ -7,7 +7,7 @@
 
 namespace adit {
 
-/// Walls and ceiling of a tube of rectangular section along x, a point every half metre.
+/// Walls and ceiling of a tube of rectangular section along x, one point every half metre.
 inline void add_tube(PointCloud& cloud, double length, double width, double height, const Pose& T_base_tube) {
   const auto add = [&](double x, double y, double z) {
     cloud.points.emplace_back((T_base_tube * Vector3(x, y, z)).cast<float>());

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Two agents that meet on a made-up street, for tests of what they say to one another.
+/// Two agents that meet on a made-up street, for tests of their messages.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ struct TwoRobots {
     }
   }
 
-  /// Delivers messages until all is said; `copies` of each.
+  /// Delivers messages until none is left; `copies` of each.
   void meet(int copies = 1) {
     std::deque<Message> queue;
     const auto post = [&](const std::vector<Message>& messages) {

@@ -24,9 +24,9 @@ struct PointCloud {
   [[nodiscard]] bool has_times() const { return !time_offsets_ns.empty(); }
   void check() const {
     ADIT_CHECK(intensities.empty() || intensities.size() == points.size(),
-               "one intensity a point, or none at all");
+               "one intensity per point, or none at all");
     ADIT_CHECK(time_offsets_ns.empty() || time_offsets_ns.size() == points.size(),
-               "one time a point, or none at all");
+               "one time per point, or none at all");
   }
 };
 

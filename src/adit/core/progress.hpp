@@ -43,8 +43,9 @@ class ProgressObserver {
   [[nodiscard]] virtual bool cancelled() const noexcept = 0;
 };
 
-/// Thrown where work finds that its observer wants it to stop. It is no error, so it is no std::exception:
-/// code that reports failures and goes on lets it pass. Destructors remove partial output on its way.
+/// Thrown where work finds that its observer wants it to stop. It is not an error, so it is not a
+/// std::exception: code that reports failures and goes on lets it pass. Destructors remove partial output on
+/// its way.
 struct Cancelled {};
 
 /// Ends the work by throwing `Cancelled` if the observer in scope wants that. `parallel_for` polls before

@@ -9,7 +9,7 @@
 
 namespace adit {
 
-/// Poses of an estimate beside the true pose at the same moment; the three arrays have one length.
+/// Estimated poses with the true poses at the same stamps; the three arrays are equally long.
 struct AssociatedPoses {
   std::vector<Stamp> stamps;
   std::vector<Pose> estimate;     ///< T_odom_body (or whatever frame the estimate lives in).

@@ -12,8 +12,8 @@ namespace adit {
 
 struct AteResult {
   std::vector<Stamp> stamps;
-  std::vector<double> errors_m;    ///< Distance between estimated and true position, one a stamp.
-  std::vector<Vector3> positions;  ///< The estimate after alignment, in the truth's world frame, one a stamp.
+  std::vector<double> errors_m;    ///< Distance between estimated and true position, one per stamp.
+  std::vector<Vector3> positions;  ///< The aligned estimate, in the world frame of the truth, one per stamp.
   Pose T_world_estimate;           ///< The alignment used.
   double max_m = 0.0;
   double rmse_m = 0.0;
@@ -25,7 +25,7 @@ struct AteResult {
 /// ATE of one trajectory after its own SE(3) alignment (Umeyama, no scale). Fails as `associate` does.
 [[nodiscard]] Result<AteResult> ate(const Trajectory& estimate, const Trajectory& truth);
 
-/// How far odometry alone leads astray: the largest distance of any position from the true one when the pose
+/// The drift of odometry alone, metres: the largest distance of any position from the true one when the pose
 /// is right at the start, in the middle, or at the end, whichever is worst. Fails as `associate` does.
 [[nodiscard]] Result<double> largest_drift_m(const Trajectory& estimate, const Trajectory& truth);
 

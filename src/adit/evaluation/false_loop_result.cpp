@@ -52,7 +52,7 @@ struct Sum {
   std::array<int, kLoopMethods.size()> flawless{};  ///< Graphs of which no false loop was kept.
 };
 
-/// By injection and share; "as found" is no share that was asked for, and left to the table of graphs.
+/// By injection and share; "as found" has no requested share, and is left to the table of graphs.
 std::map<std::pair<std::string, int>, Sum> sums_of(const std::vector<FalseLoopRun>& runs) {
   std::map<std::pair<std::string, int>, Sum> sums;
   for (const FalseLoopRun& run : runs) {
@@ -82,13 +82,12 @@ Table side_by_side(std::string title, std::string note, std::vector<std::string>
 }
 
 Table summary_table(const std::vector<FalseLoopRun>& runs) {
-  Table table = side_by_side(
-      "False loops, in short",
-      "Loops of all graphs for which every method has an answer. P: precision, the share of true loops among "
-      "those kept; R: recall, the share of true loops that are kept; both in per cent. Clean: graphs of "
-      "which "
-      "no false loop was kept.",
-      {"Injection", "False (%)", "Graphs", "True loops", "False loops"}, {"P", "R", "Clean"});
+  Table table =
+      side_by_side("False loops, in short",
+                   "Loops of all graphs for which every method has an answer. P: precision, the share of "
+                   "true loops among those kept; R: recall, the share of true loops that are kept; both in "
+                   "per cent. Clean: graphs of which no false loop was kept.",
+                   {"Injection", "False (%)", "Graphs", "True loops", "False loops"}, {"P", "R", "Clean"});
   for (const auto& [key, sum] : sums_of(runs)) {
     std::vector<std::string> row = {key.first, format("{}", key.second), format("{}", sum.graphs),
                                     format("{}", sum.num_true), format("{}", sum.num_false)};
@@ -102,14 +101,12 @@ Table summary_table(const std::vector<FalseLoopRun>& runs) {
 }
 
 Table graph_table(const std::vector<FalseLoopRun>& runs) {
-  Table table = side_by_side("False loops, each graph",
-                             "P and R as above; off: the largest distance in metres of a position from the "
-                             "optimum of the true loops, "
-                             "or the number of parts into which the kept loops divide the graph, where that "
-                             "is more than with the true "
-                             "loops; CPU: time in seconds. † The clique search stopped at its budget.",
-                             {"Graph", "Injection", "False (%)", "True loops", "False loops"},
-                             {"P", "R", "off", "CPU"});
+  Table table = side_by_side(
+      "False loops, each graph",
+      "P and R as above; off: the largest distance in metres of a position from the optimum of the true "
+      "loops, or the number of parts into which the kept loops divide the graph, where that is more than "
+      "with the true loops; CPU: time in seconds. † The clique search stopped at its budget.",
+      {"Graph", "Injection", "False (%)", "True loops", "False loops"}, {"P", "R", "off", "CPU"});
   for (const FalseLoopRun& run : runs) {
     std::vector<std::string> row = {run.graph, run.injection, format("{}", run.share_pct),
                                     format("{}", run.num_true), format("{}", run.num_false)};
@@ -119,7 +116,7 @@ Table graph_table(const std::vector<FalseLoopRun>& runs) {
   return table;
 }
 
-/// One line a graph, method and reason.
+/// One line per graph, method and reason.
 Table reason_table(const std::vector<FalseLoopRun>& runs) {
   Table table{"Methods without an answer",
               "Shown as \"-\" in the table of graphs.",

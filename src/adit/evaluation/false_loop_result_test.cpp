@@ -69,7 +69,7 @@ TEST(FalseLoopTables, ShowTheMethodsSideBySide) {
 TEST(FalseLoopTables, SumOnlyGraphsThatEveryMethodAnswers) {
   FalseLoopRun without = run("flat", 50);
   without.decisions[1].reset();
-  without.reasons[1] = "the graph is plane";
+  without.reasons[1] = "the graph is 2-D";
   const std::vector<Table> tables =
       false_loop_tables({run("a", 50), run("b", 50), run("c", 10), run("d", 10, "clustered"),
                          run("e", 50, "as found"), without, without});
@@ -80,7 +80,7 @@ TEST(FalseLoopTables, SumOnlyGraphsThatEveryMethodAnswers) {
                                     "2", "99.9", "100", "0"}));
   EXPECT_EQ(tables[1].rows.size(), 7U);
   ASSERT_EQ(tables[2].rows.size(), 1U);
-  EXPECT_EQ(tables[2].rows[0], (Row{"flat", "PCM", "the graph is plane"}));
+  EXPECT_EQ(tables[2].rows[0], (Row{"flat", "PCM", "the graph is 2-D"}));
 }
 
 }  // namespace

@@ -25,8 +25,8 @@ bool is_precise(const MergeEvidence& evidence) {
   });
 }
 
-/// Drift alone bends a merged map by what the robots' odometries lose on the way from where they met; a wrong
-/// place is far beyond that.
+/// Drift alone bends a merged map by what the odometries lose between the meeting and the end; the error of a
+/// wrong place is far larger.
 bool is_worse_than_drift(const MergeEvidence& evidence) {
   constexpr double kFactor = 1.5;
   constexpr double kSlack = 1.0;  // Metres: odometries may be better than registrations.
@@ -70,23 +70,19 @@ std::vector<GroupAndPolicy> groups_of(const std::vector<MergeRun>& runs) {
 }
 
 Table summary_table(const std::vector<MergeRun>& runs) {
-  Table table{
-      "Merging, in short",
-      "Mergeable pairs share at least 25 m and a place that is distinctive in the scans of both. Bent: "
-      "merged "
-      "in the correct place, but with an ATE of 1 % of the path or more. Indistinct: merged correctly, of "
-      "the "
-      "pairs that share 25 m but no such place. Kept apart: of the pairs that share less. Joint: all robots "
-      "of "
-      "a world at once; merged: mergeable pairs that end in one correct map; whole: worlds where all robots "
-      "that mergeable pairs connect share a map. CPU: time of all threads for merging alone, from the "
-      "robots' "
-      "maps to the joint solution.",
-      {},
-      {"Worlds", "Keyframes", "Number", "Merged well", "Bent", "Refused", "Indistinct", "Kept apart",
-       "Wrong merges", "Wrong loops", "Joint: merged", "Joint: whole", "Joint: wrong", "Joint: wrong loops",
-       "Registrations", "CPU (s)"},
-      {}};
+  Table table{"Merging, in short",
+              "Mergeable pairs share at least 25 m and a place that is distinctive in the scans of both. "
+              "Bent: merged in the correct place, but with an ATE of 1 % of the path or more. Indistinct: "
+              "merged correctly, of the pairs that share 25 m but no such place. Kept apart: of the pairs "
+              "that share less. Joint: all robots of a world at once; merged: mergeable pairs that end in "
+              "one correct map; whole: worlds where all robots that mergeable pairs connect share a map. "
+              "CPU: time of all threads for merging alone, from the robots' "
+              "maps to the joint solution.",
+              {},
+              {"Worlds", "Keyframes", "Number", "Merged well", "Bent", "Refused", "Indistinct", "Kept apart",
+               "Wrong merges", "Wrong loops", "Joint: merged", "Joint: whole", "Joint: wrong",
+               "Joint: wrong loops", "Registrations", "CPU (s)"},
+              {}};
   for (const GroupAndPolicy& key : groups_of(runs)) {
     MergeCounts counts;
     for (const MergeRun& run : runs)
@@ -104,7 +100,7 @@ Table summary_table(const std::vector<MergeRun>& runs) {
   return table;
 }
 
-/// Ablations say what they leave out after the policy's name; their worlds and refusals would fill pages.
+/// Ablations name what they leave out after the policy; their worlds and refusals would fill pages.
 bool is_variant(const MergeRun& run) { return run.keyframes.find(' ') != std::string::npos; }
 
 /// The worst robot of the pairs that were merged.
@@ -120,8 +116,7 @@ Table worlds_table(const std::vector<MergeRun>& runs) {
   Table table{
       "Each world",
       "Maps: robots that share one are joined by a plus; in brackets the maps that mergeable pairs would "
-      "allow, "
-      "where that is more. ATE: of the worst robot, in per cent of its path.",
+      "allow, where that is more. ATE: of the worst robot, in per cent of its path.",
       {},
       {"World", "Keyframes", "Mergeable", "Well", "Bent", "Refused", "Indistinct", "Wrong", "Wrong loops",
        "Max ATE (%)", "Maps of all robots", "Joint max ATE (%)", "Registrations", "CPU (s)"},

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// How well the fleet decides which maps belong together, over many worlds: what became of each pair of
-/// robots, judged by the ground truth, and the tables that say it in short.
+/// How well the fleet decides which maps belong together, over many worlds: the outcome of each pair of
+/// robots, judged by ground truth, and its tables.
 #pragma once
 
 #include <array>
@@ -13,22 +13,22 @@
 
 namespace adit {
 
-/// Metres of a shared stretch, and places on it that are like no other, from which on a pair counts as one
-/// that should be merged.
-inline constexpr double kMergeableShare = 25.0;
+/// A pair counts as mergeable from this length of shared stretch (metres) and number of distinctive places
+/// on.
+inline constexpr double kMergeableStretch = 25.0;
 inline constexpr int kMergeablePlaces = 1;
 
 enum class MergeOutcome {
   success,  ///< Merged, and the largest ATE of every robot is below 1 % of its path (the paper's rule).
-  bent,     ///< Merged in the right place, but less exact than that: the odometry was no better.
+  bent,     ///< Merged in the correct place, but less exactly: the odometry was no better.
   refused,  ///< Not merged.
-  wrong,    ///< Merged in a wrong place: what must never happen.
+  wrong,    ///< Merged in a wrong place, which must never happen.
 };
 [[nodiscard]] std::string_view to_string(MergeOutcome outcome);
-/// The outcome of that name; throws ContractViolation when there is none.
+/// The outcome of that name; throws ContractViolation for an unknown one.
 [[nodiscard]] MergeOutcome merge_outcome(std::string_view name);
 
-/// What the ground truth says of the robots that one solution put together.
+/// What ground truth says about the robots that one solution merged.
 struct MergeEvidence {
   struct Robot {
     double path_length_m = 0.0;
@@ -41,8 +41,8 @@ struct MergeEvidence {
   std::vector<Robot> robots;
 };
 
-/// A merge that fails the 1 % rule is wrong when half of the loops that hold it are, or when it left a robot
-/// more than a metre and twice as far off as the worst of the odometries alone; else it is bent.
+/// A merge that fails the 1 % rule is wrong when at least half of its loops in use are, or when the largest
+/// ATE exceeds 1.5 times the worst drift of its robots' odometries plus a metre; else it is bent.
 [[nodiscard]] MergeOutcome judge_merge(const MergeEvidence& evidence);
 
 /// Whether every map lies within one of `groups`. All are lists of robot names.
@@ -53,7 +53,7 @@ struct MergeEvidence {
 struct MergePair {
   std::array<std::string, 2> robots;
   double shared_m = 0.0;
-  int distinctive_places = 0;  ///< On the stretch, to both of them.
+  int distinctive_places = 0;  ///< On the shared stretch, in the scans of both.
   MergeOutcome outcome = MergeOutcome::refused;
   std::string refused_reason;  ///< One sentence where it was refused.
   int registrations = 0;
@@ -62,7 +62,7 @@ struct MergePair {
   std::array<double, 2> ate_max_m{};
   std::array<double, 2> ate_max_over_path_pct{};
 
-  [[nodiscard]] bool shares_enough() const { return shared_m >= kMergeableShare; }
+  [[nodiscard]] bool shares_enough() const { return shared_m >= kMergeableStretch; }
   [[nodiscard]] bool mergeable() const { return shares_enough() && distinctive_places >= kMergeablePlaces; }
 };
 
@@ -91,12 +91,12 @@ struct MergeRun {
 struct MergeCounts {
   int worlds = 0;
   int mergeable = 0, success = 0, bent = 0,
-      refused = 0;                            ///< Pairs that should be merged, and what became of them.
+      refused = 0;                            ///< Mergeable pairs and their outcomes.
   int indistinct = 0, indistinct_merged = 0;  ///< Pairs that share enough, but no distinctive place.
   int others = 0, kept_apart = 0;             ///< Pairs that share less.
   int wrong = 0;                              ///< Of all pairs.
   int wrong_loops = 0, joint_wrong_loops = 0, joint_wrong = 0, joint_whole = 0;
-  int joint_merged = 0;  ///< Mergeable pairs that share a map with all robots of the world, and a right one.
+  int joint_merged = 0;  ///< Mergeable pairs in one correct map after all robots of the world met.
   int registrations = 0;
   double time_s = 0.0;
 
@@ -104,8 +104,8 @@ struct MergeCounts {
 };
 
 /// Summary of each group and policy; each world; the wrong merges; the pairs that share enough and were
-/// refused, with the reason. The last two only where there are any; worlds and refusals of policies as they
-/// are, not of those with a second word in their name, which leave something out.
+/// refused, with the reason. The last two only where there are any. Variants, which have a second word after
+/// the policy's name, appear in the summary and among the wrong merges only.
 [[nodiscard]] std::vector<Table> merge_tables(const std::vector<MergeRun>& runs);
 
 }  // namespace adit

@@ -21,7 +21,7 @@ TEST(JudgeMerge, ThePapersRuleDecidesSuccess) {
   EXPECT_EQ(judge_merge(apart), MergeOutcome::refused);
 }
 
-TEST(JudgeMerge, AWrongPlaceIsToldFromDrift) {
+TEST(JudgeMerge, AWrongPlaceIsSeparatedFromDrift) {
   EXPECT_EQ(judge_merge(evidence(5.4, 0)), MergeOutcome::bent);
   EXPECT_EQ(judge_merge(evidence(5.6, 0)), MergeOutcome::wrong);
   EXPECT_EQ(judge_merge(evidence(5.0, 4)), MergeOutcome::bent);
@@ -83,7 +83,7 @@ TEST(MergeTables, NameEveryRefusalAndEveryWrongMerge) {
   ASSERT_EQ(tables.size(), 4U);
   for (const Table& table : tables)
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size()) << table.title;
-  EXPECT_EQ(tables[0].rows.size(), 2U);  // One a group.
+  EXPECT_EQ(tables[0].rows.size(), 2U);  // One per group.
   EXPECT_EQ(tables[1].rows.size(), 2U);
   EXPECT_EQ(tables[1].rows[0][10], "0+1 2 (0+1+2)");
   EXPECT_EQ(tables[2].rows.size(), 2U);
@@ -109,7 +109,7 @@ TEST(MergeCounts, AMapThatHoldsMoreThanMergeablePairsWouldJoinIsWhole) {
   EXPECT_EQ(counts.joint_merged, 3);
 }
 
-TEST(MergeTables, OfVariantsTellOnlyTheSumsAndTheWrongMerges) {
+TEST(MergeTables, ShowOnlyTheSumsAndTheWrongMergesOfVariants) {
   MergeRun variant = made_up_run("a", "tuning");
   variant.keyframes = "all without relief";
   const std::vector<Table> tables = merge_tables({made_up_run("a", "tuning"), variant});

@@ -9,7 +9,7 @@
 
 namespace adit {
 
-/// One entry a segment. Percent and degrees a metre follow by dividing by the segment's length.
+/// One entry per segment. Per cent and degrees per metre follow by dividing by the segment's length.
 struct RpeResult {
   std::vector<double> translation_errors_m;
   std::vector<double> rotation_errors_rad;

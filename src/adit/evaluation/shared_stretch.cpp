@@ -9,7 +9,7 @@
 namespace adit {
 namespace {
 
-/// Metres between the points that stand for a path: fine beside the reach, coarse enough for brute force.
+/// Metres between the points that stand for a path: small against the reach, coarse enough for brute force.
 constexpr double kStep = 0.5;
 
 /// Points every `kStep` along the path, whatever the robot's speed.
@@ -50,7 +50,7 @@ std::vector<std::vector<std::size_t>> groups_sharing(const std::vector<std::vect
   std::vector<std::vector<std::size_t>> groups;
   std::vector<bool> placed(shared_m.size(), false);
   for (std::size_t first = 0; first < shared_m.size(); ++first) {
-    ADIT_CHECK(shared_m[first].size() == shared_m.size(), "one row and one column a robot");
+    ADIT_CHECK(shared_m[first].size() == shared_m.size(), "one row and one column per robot");
     if (placed[first]) continue;
     std::vector<std::size_t> group{first};
     placed[first] = true;

@@ -9,10 +9,10 @@
 
 namespace adit {
 
-/// Metres of the true path of one robot that lie within `reach_m` of that of the other, whichever way and
-/// whenever either drove; of the two directions the smaller. Paths are compared in space, so a crossing on
-/// another level does not count. A stretch that a robot drove twice counts twice for that robot alone. Empty
-/// trajectories share nothing.
+/// Metres of the true path of one robot that lie within `reach_m` of that of the other, whatever the
+/// direction and time of either drive; the smaller value of the two robots. Paths are compared in space, so a
+/// crossing on another level does not count. A stretch that a robot drove twice counts twice for that robot
+/// alone. Empty trajectories share nothing.
 [[nodiscard]] double shared_stretch_m(const Trajectory& truth_a, const Trajectory& truth_b,
                                       double reach_m = 4.0);
 

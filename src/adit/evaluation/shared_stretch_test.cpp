@@ -9,7 +9,7 @@
 namespace adit {
 namespace {
 
-/// Straight from `from` to `to`, a pose every centimetre, one a millisecond.
+/// Straight from `from` to `to`, a pose every centimetre, one per millisecond.
 Trajectory drive(const Vector3& from, const Vector3& to) {
   Trajectory trajectory;
   const double length = (to - from).norm();

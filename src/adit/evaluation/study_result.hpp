@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// All that a study found out, as plain data: what the tables, the figures, report.html and metrics.json are
-/// made of.
+/// All results of a study, as plain data: the source of tables, figures, report.html and metrics.json.
 #pragma once
 
 #include <array>
@@ -90,8 +89,8 @@ enum class LoopFate {
   weak,  ///< Refused, and free to slide along the tunnel.
 };
 
-/// The robots of a fleet as their maps have them, and the loops between them. Different maps have nothing to
-/// do with one another: they are drawn side by side.
+/// The paths of a fleet's robots in their maps, and the loops between them. Separate maps have no known
+/// relative pose and are drawn side by side.
 struct LoopMap {
   struct Robot {
     std::string name;
@@ -119,7 +118,7 @@ struct MergePicture {
     double evidence = 0.0;
     int places_compared = 0;
     int places_differing = 0;
-    std::vector<Vector3> path;   ///< Of the second robot, if the hypothesis holds.
+    std::vector<Vector3> path;   ///< Of the second robot if the hypothesis holds.
     std::vector<Vector3> loops;  ///< Where its loops lie on that path.
   };
   std::array<std::string, 2> robots;
@@ -134,7 +133,7 @@ struct MergePicture {
 struct JointResult {
   std::string keyframes;
   std::vector<std::vector<std::string>>
-      components;                   ///< Names of the robots that share a map, one list a map.
+      components;                   ///< Names of the robots that share a map, one list per map.
   std::vector<MergedRobot> robots;  ///< In the order of StudyResult::robots.
   LoopCounts loops;                 ///< In the solution, or before GNC.
   int wrong_loops_in_solution = 0;

@@ -172,8 +172,8 @@ Row odometry_cells(const OdometryResult& odometry, double path_length_m) {
           odometry.ms_per_scan_median ? format("{:.1f}", *odometry.ms_per_scan_median) : ""};
 }
 
-/// The number of the shared map that a robot is in, counted from 1; "alone" when it shares its map with
-/// nobody.
+/// The number of the shared map that a robot is in, counted from 1; "alone" when it shares its map with no
+/// other.
 std::string map_of(const JointResult& joint, const std::string& robot) {
   for (std::size_t i = 0; i < joint.components.size(); ++i) {
     const std::vector<std::string>& names = joint.components[i];
@@ -218,8 +218,7 @@ Table outliers_before_pcm_table(const StudyResult& study, PaperFigures paper) {
   table.title = "Outliers before PCM";
   table.caption =
       "Per cent of wrong loops among all loops found, before PCM: PR, a wrong place; PCR, the right place "
-      "but a wrong "
-      "registration. - stands for 0, none for a pair without a loop (the paper's table 2).";
+      "but a wrong registration. - stands for 0, none for a pair without a loop (the paper's table 2).";
   fill_outliers(table, study, {&counts_before, &paper::PairRow::all_before, &paper::PairRow::filtered_before},
                 paper);
   return table;
@@ -230,8 +229,7 @@ Table outliers_after_pcm_table(const StudyResult& study, PaperFigures paper) {
   table.title = "Outliers after PCM";
   table.caption =
       "Per cent of wrong loops among the loops that PCM kept: PR, a wrong place; PCR, the right place but a "
-      "wrong "
-      "registration. - stands for 0, none for a pair without a loop (the paper's table 3).";
+      "wrong registration. - stands for 0, none for a pair without a loop (the paper's table 3).";
   fill_outliers(table, study, {&counts_after, &paper::PairRow::all_after, &paper::PairRow::filtered_after},
                 paper);
   return table;
@@ -241,9 +239,8 @@ Table success_table(const StudyResult& study, PaperFigures paper) {
   Table table;
   table.title = "Success of the merge";
   table.caption =
-      "✓ both robots end with a largest ATE below 1 % of their path; ✗ merged, but not so; ○ not merged, for "
-      "a stated "
-      "reason (the paper's table 4).";
+      "✓ both robots end with a largest ATE below 1 % of their path; ✗ merged with a larger error; ○ not "
+      "merged, for a stated reason (the paper's table 4).";
   add_group(table, "", {"Robot pair", "PCM"});
   std::vector<std::string> headings;
   for (const std::string& policy : policies_of(study)) headings.push_back(policy_title(policy));
@@ -263,8 +260,7 @@ Table max_ate_table(const StudyResult& study, PaperFigures paper) {
   table.title = "Largest ATE";
   table.caption =
       "Largest ATE in metres of both robots of a pair, with PCM, after one alignment of both together; ○ not "
-      "merged, each "
-      "robot after its own alignment (the paper's table 5).";
+      "merged, each robot after its own alignment (the paper's table 5).";
   add_group(table, "", {"Robot pair"});
   const std::vector<std::string> policies = policies_of(study);
   for (const std::string& policy : policies)
@@ -290,8 +286,7 @@ Table odometry_table(const StudyResult& study) {
   table.title = "Odometry";
   table.caption =
       "ATE of each odometry after the robot's own alignment; the largest also as per cent of the path. Time "
-      "is the "
-      "median for one scan.";
+      "is the median per scan.";
   table.header = {"Robot", "Method", "Max (m)", "RMSE (m)", "Median (m)", "Max / path (%)", "ms / scan"};
   for (const RobotResult& robot : study.robots) {
     for (const OdometryResult& odometry : robot.odometry) {

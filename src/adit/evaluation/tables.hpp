@@ -17,8 +17,8 @@ struct ColumnGroup {
   std::size_t columns = 1;
 };
 
-/// Cells are UTF-8 text. Every row is as long as the header. The first column is left-aligned, all others are
-/// centred or right-aligned as the writer likes.
+/// Cells are UTF-8 text. Every row is as long as the header. The first column is left-aligned; the writer
+/// centres or right-aligns the others.
 struct Table {
   std::string title;
   std::string caption;

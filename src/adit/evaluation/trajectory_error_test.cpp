@@ -17,7 +17,7 @@ namespace {
 
 Stamp at(double seconds) { return Stamp{} + from_seconds(1.6e9) + from_seconds(seconds); }
 
-/// A winding drive at 2 m/s, ten poses a second.
+/// A winding drive at 2 m/s, ten poses per second.
 Trajectory winding(int n, double y = 0.0) {
   Trajectory trajectory;
   for (int i = 0; i < n; ++i) {
@@ -85,7 +85,7 @@ TEST(Ate, HandMadeErrors) {
   EXPECT_NEAR(result.median_m, 4.0, 1e-9);
 }
 
-TEST(Ate, AStraightDriveHasOne) {
+TEST(Ate, IsDefinedForAStraightDrive) {
   Trajectory truth;
   for (int i = 0; i < 50; ++i) truth.push_back({at(i), Pose::planar(i, 0.0, 0.0)});
   Trajectory stretched = truth;  // odometry that reads 2 % too long

@@ -174,7 +174,7 @@ TEST(ConvexHull, ShapesOfLowerDimension) {
   const ConvexHull segment = hull_of({a + step, a, a + 3 * step, a + 2 * step, a});
   EXPECT_EQ(segment.shape, HullShape::segment);
   EXPECT_EQ(segment.vertices, (Indices{1, 2}));
-  // Along y, where the first coordinate tells nothing apart.
+  // Along y, where the first coordinate is the same for all.
   EXPECT_EQ(hull_of({{0, 1, 0}, {0, 2, 0}, {0, 0, 0}}).vertices, (Indices{1, 2}));
   EXPECT_EQ(hull_of({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}).vertices, (Indices{0, 1, 2}));
   Rng rng(10);

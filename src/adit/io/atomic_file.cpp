@@ -58,7 +58,8 @@ Result<> check_replaceable(const fs::path& path, const std::string& kind) {
     return fail(path.string() + ": is a file, a folder is needed; choose another name");
   if (fs::is_empty(path, error) || is_own_output(path, kind)) return {};
   return fail(
-      format("{}: holds files that are no {} of adit and is left alone; choose another folder or empty it",
+      format("{}: holds files that are not adit's own output ({}) and is left alone; choose another folder "
+             "or empty it",
              path.string(), kind));
 }
 

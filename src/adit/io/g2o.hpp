@@ -39,7 +39,7 @@ struct G2oFile {
 void write_g2o(std::ostream& stream, const PoseGraph& graph);
 void write_g2o(std::ostream& stream, const PoseGraph2& graph);
 
-/// Several graphs in one, e.g. one file a robot: nodes with equal keys become one (the first file's pose
+/// Several graphs in one, e.g. one file per robot: nodes with equal keys become one (the first file's pose
 /// counts, as separators between robots appear in both), edges that two files repeat exactly are kept once.
 [[nodiscard]] Result<G2oFile> merge_g2o(const std::vector<G2oFile>& files);
 

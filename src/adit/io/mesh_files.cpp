@@ -103,7 +103,7 @@ Result<TriangleMesh> soup_of(const Assimp::Importer& importer, const aiScene* sc
 
 Result<TriangleMesh> checked(const TriangleMesh& soup) {
   if (soup.triangles.empty())
-    return fail("the mesh has no triangles; a world needs them, a point cloud will not do");
+    return fail("the mesh has no triangles; a world needs them, and a point cloud has none");
   // Before welding, which sorts: NaN has no place in an order.
   return check_mesh(soup)
       .map([&] { return weld(soup); })

@@ -65,8 +65,7 @@ using Words = std::vector<std::string_view>;
 Result<std::size_t> whole_number(std::string_view word) {
   const std::optional<std::size_t> number = parse_size(word);
   // Bounds the products taken later, far above any cloud.
-  if (!number || *number > (std::size_t{1} << 40U))
-    return fail(format("'{}' is not a sensible number", word));
+  if (!number || *number > (std::size_t{1} << 40U)) return fail(format("'{}' is not a valid number", word));
   return *number;
 }
 

@@ -200,7 +200,7 @@ std::string robot_map_bytes(const RobotMap& map) {
 }
 
 Result<RobotMap> parse_robot_map(std::string_view bytes) {
-  if (!bytes.starts_with(kMagic)) return fail("no map of a robot, or one of another version of adit");
+  if (!bytes.starts_with(kMagic)) return fail("not a robot's map, or one of another version of adit");
   bytes.remove_prefix(kMagic.size());
   std::uint64_t size = 0;
   std::uint32_t sum = 0;

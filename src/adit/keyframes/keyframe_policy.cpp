@@ -34,7 +34,7 @@ std::string_view to_string(KeyframeRule rule) {
 }
 
 Fields fields_of(KeyframePolicyConfig& c) {
-  return {enum_field("policy", &c.policy, kKeyframeRules, "what a new keyframe needs"),
+  return {enum_field("policy", &c.policy, kKeyframeRules, "criterion for a new keyframe"),
           {"distance_m", &c.distance_m, "m", 0.0, 100.0,
            "motion since the last keyframe (distance, distance_angle)"},
           {"angle_deg", &c.angle_deg, "deg", 0.1, 180.0, "or this much turning (distance_angle)"},

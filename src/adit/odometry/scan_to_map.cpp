@@ -168,21 +168,21 @@ Alignment gauss_newton(const Pose& T_prediction, const ScanToMapConfig& config, 
 }  // namespace
 
 Fields fields_of(ScanToMapConfig& c) {
-  return {
-      {"voxel_size", &c.voxel_size, "m", 0.01, 10.0,
-       "edge of a map voxel; scans are thinned to 0.5 and 1.5 of it"},
-      {"max_range", &c.max_range, "m", 1.0, 1000.0, "points beyond are dropped, and so is the map beyond it"},
-      {"min_range", &c.min_range, "m", 0.0, 100.0, "points nearer are dropped"},
-      {"max_points_per_voxel", &c.max_points_per_voxel, "", 1, 200, "points kept per map voxel"},
-      {"deskew", &c.deskew, "", 0, 1, "remove the motion within the sweep where points carry times"},
-      {"max_iterations", &c.max_iterations, "", 1, 10000, "Gauss-Newton iterations per scan, at most"},
-      {"convergence", &c.convergence, "", 1e-9, 1.0,
-       "norm of the last step [m; rad] at which iterating stops"},
-      {"min_correspondences", &c.min_correspondences, "", 6, 100000, "fewer leave the scan unregistered"},
-      {"max_correction", &c.max_correction, "m", 0.01, 1000.0,
-       "larger corrections of the predicted position count as divergence"},
-      {"degeneracy_threshold", &c.degeneracy_threshold, "", 0.0, 0.33,
-       "share of the information (1/3 = even) below which a direction counts as open"}};
+  return {{"voxel_size", &c.voxel_size, "m", 0.01, 10.0,
+           "edge of a map voxel; scans are thinned to 0.5 and 1.5 of it"},
+          {"max_range", &c.max_range, "m", 1.0, 1000.0,
+           "points beyond this range are dropped, and so is the map"},
+          {"min_range", &c.min_range, "m", 0.0, 100.0, "points nearer than this are dropped"},
+          {"max_points_per_voxel", &c.max_points_per_voxel, "", 1, 200, "points kept per map voxel"},
+          {"deskew", &c.deskew, "", 0, 1, "remove the motion within the sweep where points carry times"},
+          {"max_iterations", &c.max_iterations, "", 1, 10000, "Gauss-Newton iterations per scan, at most"},
+          {"convergence", &c.convergence, "", 1e-9, 1.0,
+           "norm of the last step [m; rad] at which iterating stops"},
+          {"min_correspondences", &c.min_correspondences, "", 6, 100000, "fewer leave the scan unregistered"},
+          {"max_correction", &c.max_correction, "m", 0.01, 1000.0,
+           "larger corrections of the predicted position count as divergence"},
+          {"degeneracy_threshold", &c.degeneracy_threshold, "", 0.0, 0.33,
+           "share of the information (1/3 = even) below which a direction counts as open"}};
 }
 
 NormalEquations<6> linearize_rigid(Correspondences& pairs, const Pose& T_map_base, double kernel_scale) {

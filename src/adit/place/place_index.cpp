@@ -30,14 +30,13 @@ std::string_view to_string(PlaceSearch search) {
 }
 
 Fields fields_of(PlaceIndexConfig& c) {
-  return {
-      {"max_distance", &c.max_distance, "", 0.0, 1.0,
-       "descriptor distance that a loop candidate may have at most"},
-      {"num_candidates", &c.num_candidates, "", 1, 100000, "nearest ring keys whose columns are compared"},
-      {"exclude_recent", &c.exclude_recent, "", 0, 100000,
-       "keyframes of the query's own robot this near in index are no loop candidates"},
-      enum_field("search", &c.search, kPlaceSearches,
-                 "compare with the keyframes of the nearest ring keys, or with all")};
+  return {{"max_distance", &c.max_distance, "", 0.0, 1.0, "largest descriptor distance of a loop candidate"},
+          {"num_candidates", &c.num_candidates, "", 1, 100000,
+           "number of nearest ring keys whose columns are compared"},
+          {"exclude_recent", &c.exclude_recent, "", 0, 100000,
+           "keyframes of the query's own robot this near in index are not loop candidates"},
+          enum_field("search", &c.search, kPlaceSearches,
+                     "compare with the keyframes of the nearest ring keys, or with all")};
 }
 
 PlaceIndex::PlaceIndex(const PlaceIndexConfig& config) : config_(checked(config)) {}

@@ -229,7 +229,7 @@ ScanContext describe(const PointCloud& cloud_base, const ScanContextConfig& conf
 ScanContext from_heights(int num_rings, int num_sectors, std::span<const float> heights) {
   ADIT_CHECK(num_rings > 0 && num_sectors > 0, "a context has at least one ring and one sector");
   ADIT_CHECK(heights.size() == static_cast<std::size_t>(num_rings) * static_cast<std::size_t>(num_sectors),
-             "one height a cell");
+             "one height per cell");
   const Heights cells(heights.data(), num_rings, num_sectors);
   ADIT_CHECK((cells >= 0.0F && cells <= std::numeric_limits<float>::max()).all(),
              "heights are finite and not negative");
@@ -270,7 +270,7 @@ ContextMatch compare(const ScanContext& query, const ScanContext& match) {
 }
 
 // Byte 0: rings; bytes 1 and 2: sectors, low byte first; bytes 3 to 6: greatest height in millimetres, low
-// byte first; then one byte a cell. A seen cell never becomes 0, which means empty.
+// byte first; then one byte per cell. A seen cell never becomes 0, which means empty.
 namespace {
 constexpr std::size_t kHeaderBytes = 7;
 constexpr float kLevels = 255.0F;

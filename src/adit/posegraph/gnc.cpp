@@ -7,6 +7,7 @@
 
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
+#include "adit/core/log_gamma.hpp"
 #include "adit/core/robust_kernel.hpp"
 #include "adit/posegraph/loop_clusters.hpp"
 
@@ -22,7 +23,7 @@ double lower_gamma(double a, double x) {
     term *= x / (a + n);
     sum += term;
   }
-  return sum * std::exp(a * std::log(x) - x - std::lgamma(a));
+  return sum * std::exp(a * std::log(x) - x - log_gamma(a));
 }
 
 // The control parameter mu of Yang et al.; no unit.

@@ -21,10 +21,10 @@ inline Fields fields_of(GncConfig& c) {
   Fields fields = {
       {"inlier_probability", &c.inlier_probability, "", 0.5, 0.999999,
        "share of true loops that the bound keeps"},
-      {"mu_step", &c.mu_step, "", 1.01, 10.0, "growth of the control parameter an outer iteration"},
+      {"mu_step", &c.mu_step, "", 1.01, 10.0, "growth of the control parameter per outer iteration"},
       {"max_outer_iterations", &c.max_outer_iterations, "", 1, 10000, "weight updates, at most"},
       {"plain", &c.plain, "", 0, 0,
-       "the paper's search alone: no clusters, no fitted bound, no second hearing; to compare"}};
+       "the paper's search alone, for comparison: no clusters, no fitted bound, no second pass"}};
   append(fields, "optimizer", fields_of(c.optimizer));
   return fields;
 }

@@ -19,7 +19,7 @@ struct PcmConfig {
   std::uint64_t max_search_nodes = 20'000'000;
 };
 inline Fields fields_of(PcmConfig& c) {
-  return {{"probability", &c.probability, "", 0.01, 0.999999, "two true loops agree this often"},
+  return {{"probability", &c.probability, "", 0.01, 0.999999, "probability that two true loops agree"},
           {"max_search_nodes", &c.max_search_nodes, "", 1, 1e15, "budget of the clique search, in branches"}};
 }
 

@@ -29,7 +29,7 @@ class SeenSurface {
   SeenSurface(OrientedPoints points, const Vector3& viewpoint);
 
   [[nodiscard]] const OrientedPoints& points() const { return points_; }
-  /// Some of the points, spread over all: enough to align by.
+  /// A sample of the points, spread over all, that suffices for alignment.
   [[nodiscard]] const OrientedPoints& some() const { return some_; }
   [[nodiscard]] const KdTree& tree() const { return tree_; }
   [[nodiscard]] const Eigen::Vector3f& viewpoint() const { return viewpoint_; }
@@ -57,11 +57,11 @@ struct Agreement {
   [[nodiscard]] bool is_comparable() const { return confirmed > 0.0; }  ///< Points of both scans count.
 };
 
-/// `T_a_b` brings the points of b into the frame of a. Nothing in common: not comparable.
+/// `T_a_b` brings the points of b into the frame of a. Scans with nothing in common are not comparable.
 [[nodiscard]] Agreement agreement(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
                                   const RegistrationConfig& config);
 
-/// A guess from odometry, corrected by the surfaces, and how well they agree there.
+/// A guess from odometry, corrected by the surfaces, and their agreement there.
 struct LocalFit {
   Pose T_a_b;
   Agreement agreement;
@@ -69,12 +69,13 @@ struct LocalFit {
 /// Where a fit starts.
 enum class FitFrom {
   guess,
-  along_the_way,  ///< Also up to 1.5 m ahead of it and behind it, along the path of b (its x axis).
+  along_the_path,  ///< Also up to 1.5 m ahead of the guess and behind it, along the path of b (its x axis).
 };
 /// The point-to-plane fit with the smallest difference. A difference of at most `enough` points ends the
-/// search. The guess counts as exact first, then as some voxels off. Fits more than 2.5 m from the guess are
-/// not accepted; if there is no other, the result is not comparable.
+/// search. Points are first paired over short distances, as if the guess were exact, then over several
+/// voxels. Fits more than 2.5 m from the guess are not accepted; if there is no other, the result is not
+/// comparable.
 [[nodiscard]] LocalFit fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b, double enough,
-                                const RegistrationConfig& config, FitFrom from = FitFrom::along_the_way);
+                                const RegistrationConfig& config, FitFrom from = FitFrom::along_the_path);
 
 }  // namespace adit

@@ -60,7 +60,7 @@ TEST(Agreement, DoesNotDependOnWhichScanIsFirst) {
   EXPECT_GT(forth.largest_difference, 5.0 * kNoise);
 }
 
-TEST(Agreement, WhatHidesBehindASurfaceSaysNothing) {
+TEST(Agreement, HiddenPointsDoNotCount) {
   // Seen from behind the block, the tube on its other side is hidden; nothing of it counts against the pose.
   const Agreement found =
       between(seen_at(with_block(), 0.0, 1), seen_at(with_block(), 12.0, 2), Pose::planar(12.0, 0.0, 0.0));
@@ -68,8 +68,8 @@ TEST(Agreement, WhatHidesBehindASurfaceSaysNothing) {
 }
 
 TEST(Agreement, FreeSpaceBeginsAtTheSensor) {
-  // The same surfaces, said to have been seen from two metres beside where they were: what stands free for
-  // one sensor is then hidden from the other, and the floor before it is taken for a wall that was passed.
+  // The same surfaces with a viewpoint two metres beside the true one: what stands free for one sensor is
+  // then hidden from the other, and beams seem to have passed through the floor before it.
   const SeenSurface a = seen_at(with_block(), 0.0, 1);
   const SeenSurface b = seen_at(with_block(), 2.0, 2);
   const Vector3 wrong(0.0, 0.0, -1.9);
@@ -87,7 +87,7 @@ TEST(Agreement, OfNothingIsNotComparable) {
   EXPECT_FALSE(fit_near(a, nothing, Pose(), kNoise, {}).agreement.is_comparable());
 }
 
-TEST(FitNear, PutsAGuessRight) {
+TEST(FitNear, CorrectsAGuess) {
   const SeenSurface a = seen_at(with_block(), 0.0, 1);
   const SeenSurface b = seen_at(with_block(), 2.0, 2);
   const LocalFit fit = fit_near(a, b, Pose::planar(2.4, 0.2, 0.02), kNoise, {});
@@ -95,7 +95,7 @@ TEST(FitNear, PutsAGuessRight) {
   EXPECT_LT(fit.agreement.largest_difference, kNoise);
 }
 
-TEST(FitNear, LooksFartherAlongTheWayWhereTheGuessDoesNotFit) {
+TEST(FitNear, LooksFartherAlongThePathWhereTheGuessDoesNotFit) {
   // The ends of the block are 1.8 m off, more than points are matched over.
   const SeenSurface a = seen_at(with_block(), 0.0, 1);
   const SeenSurface b = seen_at(with_block(), 2.0, 2);
@@ -107,7 +107,7 @@ TEST(FitNear, LooksFartherAlongTheWayWhereTheGuessDoesNotFit) {
   EXPECT_NEAR(anew.T_a_b.translation().x(), 2.0, 0.1);
 }
 
-TEST(FitNear, DoesNotMakeTwoBlocksOneThatAreFarApart) {
+TEST(FitNear, DoesNotMatchTwoBlocksThatAreFarApart) {
   const SeenSurface a = seen_at(with_block(5.0), 0.0, 1);
   const SeenSurface b = seen_at(with_block(10.0), 0.0, 2);
   EXPECT_GT(fit_near(a, b, Pose(), kNoise, {}).agreement.largest_difference, 2.0 * kNoise);

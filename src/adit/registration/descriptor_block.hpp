@@ -40,7 +40,7 @@ struct alignas(32) DescriptorBlock {
                                        std::uint16_t bound,
                                        std::array<std::uint16_t, DescriptorBlock::kLanes>& squared_distances);
 
-/// The same in plain code: for processors without that instruction, and the oracle of the other.
+/// The same in plain code: for processors without that instruction, and the oracle in tests.
 [[nodiscard]] std::uint32_t near_lanes_by_definition(
     const DescriptorBlock& block, const DescriptorQuery& query, std::uint16_t bound,
     std::array<std::uint16_t, DescriptorBlock::kLanes>& squared_distances);

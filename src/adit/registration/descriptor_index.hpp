@@ -35,7 +35,7 @@ class DescriptorIndex {
   /// have at most 30000): squared distances then fit 16 bits.
   explicit DescriptorIndex(const std::vector<Descriptor>& descriptors);
 
-  /// The nearest two with a squared distance of at most `bound`; none when there is none so near. Throws
+  /// The nearest two with a squared distance of at most `bound`; none when no descriptor is that near. Throws
   /// ContractViolation when a bin of `query` is above 127.
   [[nodiscard]] std::optional<NearestTwo> nearest_two(const Descriptor& query, std::uint32_t bound) const;
   /// Whether any descriptor but number `except` is nearer than `distance` (squared), or as near with a

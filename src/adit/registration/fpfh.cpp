@@ -13,8 +13,8 @@ namespace adit {
 namespace {
 
 constexpr int kBins = 11;
-constexpr int kNoBin = kBins;     ///< What a pair without features counts as.
-constexpr int kPart = kBins + 1;  ///< One histogram of the three, with the place for those.
+constexpr int kNoBin = kBins;     ///< The bin of a pair without features.
+constexpr int kPart = kBins + 1;  ///< One of the three histograms, with a bin for such pairs.
 /// The three, padded to whole vector registers.
 constexpr std::size_t kHistogram = 40;
 
@@ -258,7 +258,7 @@ std::optional<std::array<int, 3>> pair_feature_bins(const Eigen::Vector3f& point
 
 FpfhResult compute_fpfh(const std::vector<Eigen::Vector3f>& points, const std::vector<SurfacePoint>& surface,
                         const NeighborPairs& pairs) {
-  ADIT_CHECK(points.size() == surface.size(), "one surface a point");
+  ADIT_CHECK(points.size() == surface.size(), "one surface per point");
   ADIT_CHECK(points.size() == pairs.num_points(), "the pairs belong to these points");
   constexpr std::uint32_t kMinPairs = 3;
   PairCounter counter(points, surface);

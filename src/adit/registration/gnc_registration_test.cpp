@@ -44,7 +44,7 @@ TEST(GncRotation, SurvivesFourFifthsOutliers) {
   }
 }
 
-TEST(GncRotation, SaysSoWhenTheTurnAboutALineIsOpen) {
+TEST(GncRotation, HasNoAnswerWhenTheRotationAboutALineIsOpen) {
   std::vector<Vector3> along;
   for (int k = 1; k < 20; ++k) along.emplace_back(0.5 * k, 0.0, 0.0);
   EXPECT_FALSE(gnc_rotation(along, along, 0.1, {}).has_value());
@@ -72,7 +72,7 @@ TEST(TruncatedMean, ReachesTheCostOfAnExhaustiveSearch) {
   }
 }
 
-TEST(SolveRobustly, FindsPoseAndInliers) {
+TEST(AlignRobustly, FindsPoseAndInliers) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Rng rng(seed);
     const Pose T_a_b = random_pose(rng);
@@ -95,7 +95,7 @@ TEST(SolveRobustly, FindsPoseAndInliers) {
   }
 }
 
-TEST(SolveRobustly, HasNoAnswerForTooFewOrCollinearPoints) {
+TEST(AlignRobustly, HasNoAnswerForTooFewOrCollinearPoints) {
   const std::vector<Eigen::Vector3f> two = {{0, 0, 0}, {1, 0, 0}};
   EXPECT_FALSE(align_robustly(two, two, 0.2, {}).has_value());
   std::vector<Eigen::Vector3f> line;

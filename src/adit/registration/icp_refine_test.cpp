@@ -23,7 +23,7 @@ OrientedPoints corner(std::size_t n, std::uint64_t seed) {
   return out;
 }
 
-TEST(RefinePointToPlane, BringsACornerHome) {
+TEST(RefinePointToPlane, RecoversThePoseOfACorner) {
   const OrientedPoints a = corner(3000, 2);
   const OrientedPoints b = corner(3000, 3);
   const KdTree tree(a.points);

@@ -45,7 +45,7 @@ class PlaneAligner {
   struct alignas(32) Block {
     Row p[3];  ///< Of b, in the frame of b.
     Row n[3];  ///< Its normal; zero: padding.
-    Row a[3];  ///< The nearest point of a; with a zero normal: where it was searched in vain.
+    Row a[3];  ///< The nearest point of a; a zero normal: none was found.
     Row n_a[3];
     Row seen[3];  ///< Where p was, in the frame of a, when it was searched.
     Row others;   ///< No other point of a was nearer to `seen` than this.

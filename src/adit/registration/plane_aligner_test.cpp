@@ -14,7 +14,7 @@
 namespace adit {
 namespace {
 
-/// A rough floor and a rough wall, with normals that sometimes point elsewhere.
+/// A rough floor and a rough wall, with some normals turned away.
 OrientedPoints rough_corner(std::size_t n, std::uint64_t seed) {
   Rng rng(seed);
   OrientedPoints out;

@@ -91,7 +91,7 @@ Registration register_features(const Features& a, const Features& b, const Regis
   }
   out.T_a_b = solution->T_a_b;
   out.num_inliers = static_cast<int>(solution->inliers.size());
-  // most candidates of a search end here, cheaply
+  // most candidates of a loop search end here, before the costly refinement
   if (out.num_inliers < config.min_inliers) return judged(out, config);
   return judged(with_evidence(std::move(out), a, b, config), config);
 }

@@ -37,6 +37,8 @@ struct Registration {
   std::string reason;  ///< One sentence: why.
 };
 
+/// The pose of b in the frame of a, without a guess. Both clouds in metres, each in the frame of its sensor
+/// or of its robot's base; a cloud without usable points is rejected with a reason, never an error.
 [[nodiscard]] Registration register_features(const Features& a, const Features& b,
                                              const RegistrationConfig& config);
 [[nodiscard]] Registration register_clouds(const PointCloud& a, const PointCloud& b,

@@ -17,7 +17,7 @@ namespace {
 
 /// Points spread over the rectangle origin + s u + t v, 0 <= s, t <= 1.
 void add_rectangle(PointCloud& cloud, Rng& rng, const Vector3& origin, const Vector3& u, const Vector3& v) {
-  constexpr double kDensity = 40.0;  // a square metre
+  constexpr double kDensity = 40.0;  // per square metre
   const auto n = static_cast<int>(kDensity * u.cross(v).norm());
   for (int k = 0; k < n; ++k) {
     const Vector3 noise = 0.01 * Vector3(rng.normal(), rng.normal(), rng.normal());
@@ -60,7 +60,7 @@ PointCloud tube(std::uint64_t sample) {
   return cloud;
 }
 
-TEST(Registration, FindsHallsAgainUnderAnyTurn) {
+TEST(Registration, FindsHallsUnderAnyRotation) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     Rng rng(100 + seed);
     const double angle = std::numbers::pi * static_cast<double>(seed) / 6.0;  // up to half a turn
@@ -77,9 +77,9 @@ TEST(Registration, FindsHallsAgainUnderAnyTurn) {
   }
 }
 
-/// The squared error in standard deviations of the reported covariance is six where the covariance is right.
-/// The reported one is cautious (points that share a normal's neighbourhood count as one): never
-/// over-confident, and its sigma at most five times too large.
+/// The mean squared Mahalanobis distance of the errors is six where the reported covariance is right. The
+/// reported one is cautious (points that share a normal's neighbourhood count as one): never over-confident,
+/// and its sigma at most five times too large.
 TEST(Registration, CovarianceIsOfTheSizeOfTheErrors) {
   double squared_mahalanobis = 0.0;
   const int num_runs = 12;

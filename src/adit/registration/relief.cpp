@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kChance = 0.5;  ///< Share of equal signs that noise gives.
 
-/// The chance of so large a share, or a larger one.
+/// The probability of this share or a larger one.
 double chance_of_at_least(const StandingShare& found, const SameWalls& walls) {
   return 0.5 *
          std::erfc((found.share - walls.mean) / std::hypot(walls.sigma, found.sigma) / std::numbers::sqrt2);
@@ -114,7 +114,8 @@ StandingShare StandingOffsets::counted() const {
   StandingShare out{all.size(), agreeing / weight, 0.0};
   double squares = 0.0;
   for (const OfPatch& one : all) squares += std::pow(one.agreeing - out.share * one.weight, 2);
-  out.sigma = std::max(std::sqrt(squares), 1.0) / weight;  // where all agree, one might not have
+  // Even where all agree, count one that might not have.
+  out.sigma = std::max(std::sqrt(squares), 1.0) / weight;
   return out;
 }
 

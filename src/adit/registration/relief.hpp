@@ -35,8 +35,8 @@ struct PatchOffset {
                                                      const Pose& T_a_b, const Pose& T_map_a,
                                                      const ReliefConfig& config);
 
-/// How often two pairs of scans that saw a patch put the wall on the same side. 0.5, chance, where no patch
-/// was seen twice.
+/// The share of equal signs: how often two pairs of scans that saw a patch put the wall on the same side.
+/// 0.5, as by chance, where no patch was seen twice.
 struct StandingShare {
   std::size_t num_patches = 0;  ///< Over which it was counted.
   double share = 0.5;
@@ -63,12 +63,12 @@ class StandingShares {
   StandingShares() = default;
   explicit StandingShares(const ReliefConfig& config) : config_(config) {}
 
-  /// Of its own walls, seen twice.
+  /// The share of the robot's own walls, seen twice.
   void set_same(const StandingShare& share);
-  /// Of a stretch of wall that only looks like another one.
+  /// The share of a stretch of wall that only looks like another one.
   void add_other(const StandingShare& share);
 
-  /// The share is a little more than half even for one wall: where on an edge the beams fall is not random.
+  /// A little more than half even for one wall, because where the beams fall on an edge is not random.
   [[nodiscard]] SameWalls same() const;
   /// Predicted share for different walls, from the robot's own look-alikes. None if none of them has
   /// `min_patches` patches, or if the walls of one of them may be the same (cast in one mould).

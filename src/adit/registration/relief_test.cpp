@@ -17,7 +17,7 @@ constexpr double kRadius = 4.0;    // metres, of a tube along x
 constexpr double kNoise = 0.03;    // metres, of one point
 constexpr double kRelief = 0.012;  // metres, of the rock
 
-// Rock as it was broken in the tunnel of that seed: waves of a few metres.
+// The relief of the rock in the tunnel of that seed: waves of a few metres.
 double rock(std::uint64_t tunnel, double x, double angle) {
   Rng rng(tunnel);
   double out = 0.0;
@@ -28,7 +28,7 @@ double rock(std::uint64_t tunnel, double x, double angle) {
   return kRelief * out / std::sqrt(2.0);
 }
 
-// By a LiDAR on the axis of the tunnel, at x.
+// The tunnel seen by a LiDAR on its axis, at x.
 SeenSurface seen(std::uint64_t tunnel, double x, std::uint64_t noise) {
   Rng rng(noise);
   PointCloud cloud;
@@ -42,8 +42,8 @@ SeenSurface seen(std::uint64_t tunnel, double x, std::uint64_t noise) {
   return {compute_surface(cloud, {}), Vector3::Zero()};
 }
 
-// One robot drove through `first`, the other through `second`, which lie on one another but for the rock; the
-// second one stands `ahead` of the first each time.
+// One robot drove through `first`, the other through `second`, which coincide except for the rock; the second
+// robot stands `ahead` metres of the first each time.
 StandingOffsets driven(std::uint64_t first, std::uint64_t second, int num_pairs = 8, double ahead = 1.0) {
   StandingOffsets offsets;
   for (int i = 0; i < num_pairs; ++i) {
@@ -65,7 +65,7 @@ StandingShares where_others_stand(double share, int num_stretches = 5) {
   return shares;
 }
 
-// Of a thousand patches that two pairs saw, so many that they put on one side.
+// A thousand patches that two pairs saw, `num_standing` of them with equal signs.
 StandingOffsets of_a_thousand(int num_standing) {
   StandingOffsets offsets;
   for (int i = 0; i < 1000; ++i)
@@ -73,7 +73,7 @@ StandingOffsets of_a_thousand(int num_standing) {
   return offsets;
 }
 
-TEST(Relief, TheSameWallsStandOffHereAndThereByChance) {
+TEST(Relief, OffsetsOfTheSameWallsHaveRandomSigns) {
   for (const std::uint64_t tunnel : {1U, 2U, 3U}) {
     const StandingOffsets offsets = driven(tunnel, tunnel);
     ASSERT_GT(offsets.counted().num_patches, 200U);
@@ -82,7 +82,7 @@ TEST(Relief, TheSameWallsStandOffHereAndThereByChance) {
   }
 }
 
-TEST(Relief, OtherWallsStandOffAlikeInAllScansThoughNoiseIsLarger) {
+TEST(Relief, OffsetsOfOtherWallsHaveEqualSignsInAllScansThoughNoiseIsLarger) {
   static_assert(kRelief < 0.5 * kNoise);
   for (const std::uint64_t tunnel : {1U, 2U, 3U}) {
     const StandingOffsets offsets = driven(tunnel, tunnel + 10);
@@ -91,7 +91,7 @@ TEST(Relief, OtherWallsStandOffAlikeInAllScansThoughNoiseIsLarger) {
   }
 }
 
-// However many scans have seen a patch: what a short stretch shows can be held against a long one.
+// The share does not depend on how many scans saw a patch, so short stretches compare with long ones.
 TEST(Relief, TheShareIsTheSameForFewPairsOfScansAndForMany) {
   const StandingOffsets few = driven(1, 11, 3);
   const StandingOffsets many = driven(1, 11, 12);
@@ -111,7 +111,7 @@ TEST(Relief, OnePairOfScansSaysNothing) {
   EXPECT_EQ(offsets.evidence(where_others_stand(0.65)), 0.0);
 }
 
-TEST(Relief, WhatStandsFarOffIsNoRelief) {
+TEST(Relief, LargeOffsetsAreNotRelief) {
   // A step of 0.3 m: seen by `agreement`, not here.
   const SeenSurface a = seen(1, 0.0, 1);
   OrientedPoints points = a.points();
@@ -150,7 +150,7 @@ TEST(Relief, PatchesStayWhereTheyAreInTheMap) {
   }
 }
 
-TEST(StandingOffsets, EveryTwoPairsThatSawAPatchAgreeOrNot) {
+TEST(StandingOffsets, EveryTwoPairsThatSawAPatchAreCompared) {
   StandingOffsets offsets;
   const WallPatch stands{0, 0, 0, 0}, wavers{1, 0, 0, 0}, once{2, 0, 0, 0};
   offsets.add({{stands, 0.01}, {wavers, 0.01}});
@@ -158,7 +158,7 @@ TEST(StandingOffsets, EveryTwoPairsThatSawAPatchAgreeOrNot) {
   offsets.add({{stands, 0.02}, {wavers, -0.01}, {once, 0.01}});
   EXPECT_EQ(offsets.counted().num_patches, 2U);
   EXPECT_DOUBLE_EQ(offsets.counted().share, 0.5);
-  offsets.add({{stands, -0.005}});  // one of three twos still agrees; it weighs as two
+  offsets.add({{stands, -0.005}});  // one of three combinations still agrees; the patch weighs as two
   EXPECT_DOUBLE_EQ(offsets.counted().share, (2.0 / 3.0 + 0.0) / (2.0 + 1.0));
 }
 
@@ -199,10 +199,10 @@ TEST(StandingOffsets, TheShareIsAsUncertainAsTheTossOfACoin) {
   EXPECT_NEAR(squares, 1.0, 0.3);
 }
 
-TEST(StandingOffsets, AreOfOtherWallsWhenMoreStandThanOfTheSame) {
+TEST(StandingOffsets, AreOfOtherWallsWhenMoreSignsAreEqualThanOnTheSame) {
   EXPECT_FALSE(of_a_thousand(560).are_of_other_walls({}, 0.01));
   EXPECT_TRUE(of_a_thousand(600).are_of_other_walls({}, 0.01));
-  StandingShares cluttered;  // edges stand off even of one place
+  StandingShares cluttered;  // at edges signs are equal even of one place
   cluttered.set_same(found(0.6));
   EXPECT_FALSE(of_a_thousand(600).are_of_other_walls(cluttered, 0.01));
   EXPECT_TRUE(of_a_thousand(680).are_of_other_walls(cluttered, 0.01));
@@ -213,12 +213,12 @@ TEST(StandingOffsets, WhereAllAgreeTheEvidenceIsFinite) {
   EXPECT_TRUE(std::isfinite(of_a_thousand(1000).evidence(where_others_stand(0.65))));
 }
 
-TEST(StandingOffsets, FewerThanHalfIsChanceAsWell) {
+TEST(StandingOffsets, AShareBelowHalfCountsAsChance) {
   EXPECT_NEAR(of_a_thousand(400).evidence(where_others_stand(0.65)),
               of_a_thousand(500).evidence(where_others_stand(0.65)), 0.5);
 }
 
-TEST(StandingShares, AreMeasuredOrElseBelieved) {
+TEST(StandingShares, UseWhatWasMeasuredOrElseTheSetting) {
   StandingShares shares;
   const double believed = shares.same().mean;
   EXPECT_GT(believed, 0.5);
@@ -231,7 +231,7 @@ TEST(StandingShares, AreMeasuredOrElseBelieved) {
   EXPECT_EQ(shares.same().mean, 0.6);
 }
 
-TEST(StandingShares, TheMoreLookAlikesWereSeenTheSharperIsWhatOthersDo) {
+TEST(StandingShares, MoreLookAlikesSharpenThePredictionForOtherWalls) {
   const auto one = where_others_stand(0.65, 1).other();
   const auto many = where_others_stand(0.65, 20).other();
   ASSERT_TRUE(one && many);

@@ -62,8 +62,7 @@ Figure odometry_figure(const StudyResult& study) {
   }
   return {"odometry_ate", "", "Absolute trajectory error of the odometries",
           "ATE of every pose after the robot's own alignment. Box: quartiles and median; whiskers: 1.5 "
-          "interquartile ranges; "
-          "the number is the largest error in metres.",
+          "interquartile ranges; the number is the largest error in metres.",
           plot_boxes(titles, groups, "ATE (m)")};
 }
 
@@ -92,7 +91,7 @@ Figure graph_figure(const StudyResult& study, const PairResult& pair, const Stag
           plot_graph(picture, robots)};
 }
 
-/// With PCM where the pair was run with it: six pictures a pair, as in the paper's appendix A.
+/// With PCM where the pair was run with it: six pictures per pair, as in the paper's appendix A.
 bool is_pictured(const StudyResult& study, const PairResult& pair) {
   return pair.pcm ||
          find_pair(study, {pair.robots[0].name, pair.robots[1].name}, pair.keyframes, true) == nullptr;
@@ -137,7 +136,7 @@ Figure loops_figure(const LoopMap& map) {
       "the loops in use. {} further candidates could not be registered.",
       map.num_weak_in_use, map.num_unregistered);
   if (std::ranges::any_of(map.robots, [](const LoopMap::Robot& robot) { return robot.map > 0; }))
-    caption += " Each frame holds a map; how they lie to one another is not known.";
+    caption += " Each frame holds one map; their relative position is not known.";
   return {"loops", "", "Loops in use and refused", caption, plot_loop_map(map)};
 }
 
@@ -178,9 +177,8 @@ void add_joint_figures(std::vector<Figure>& figures, const StudyResult& study, c
   }
   if (!clouds.empty()) {
     figures.push_back({"merged_map", "", "The merged map of all robots",
-                       "Every robot's points from above in its colour; the denser, the darker. Walls of two "
-                       "robots that lie "
-                       "on one another show a good merge.",
+                       "Every robot's points from above in its colour; the denser, the darker. In a good "
+                       "merge the walls of different robots coincide.",
                        plot_merged_map(clouds)});
   }
   if (has_ate(joint.robots)) {

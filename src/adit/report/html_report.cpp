@@ -94,8 +94,7 @@ std::string summary(const StudyResult& study) {
   for (const Tally& tally : tallies(study)) {
     list += format(
         "<li>Keyframes <b>{}</b>, {} PCM: <b>{} of {}</b> pairs merged within 1 % of their path, {} merged "
-        "but "
-        "further off, {} not merged.</li>\n",
+        "with a larger error, {} not merged.</li>\n",
         escaped(tally.keyframes), tally.pcm ? "with" : "without", tally.successes, tally.runs, tally.failures,
         tally.refusals);
   }
@@ -104,8 +103,7 @@ std::string summary(const StudyResult& study) {
     for (const auto& names : study.joint->components) largest = std::max(largest, names.size());
     list += format(
         "<li>All robots jointly (keyframes <b>{}</b>): the largest shared map holds {} of {} robots; wrong "
-        "loops in the "
-        "solution: {}.</li>\n",
+        "loops in the solution: {}.</li>\n",
         escaped(study.joint->keyframes), largest, study.robots.size(), study.joint->wrong_loops_in_solution);
   }
   return list + "</ul>\n";
@@ -127,7 +125,8 @@ std::string pictures(std::span<const Figure> figures, const std::string& section
   return html.empty() ? "" : format("<div class=\"{}\">\n{}</div>\n", layout, html);
 }
 
-/// What was merged by which evidence and what was not, with the figures of the hypotheses.
+/// The section on merges: what was merged by which evidence, what was not and why, and the figures of the
+/// hypotheses.
 std::string merges(const StudyResult& study, std::span<const Figure> figures) {
   std::string list;
   for (const PairResult& pair : study.pairs) {
@@ -147,8 +146,8 @@ std::string merges(const StudyResult& study, std::span<const Figure> figures) {
       list += format("<li>Jointly, not merged: {}</li>\n", escaped(reason));
   }
   if (list.empty()) return "";
-  return "<h2 id=\"merges\">What was merged and what was not, and why</h2>\n<p>No merge is an honest answer; "
-         "a wrong one is not.</p>\n<ul>\n" +
+  return "<h2 id=\"merges\">What was merged and what was not, and why</h2>\n<p>A refused merge leaves the "
+         "maps correct; a wrong one destroys them.</p>\n<ul>\n" +
          list + "</ul>\n" + pictures(figures, kMergeSection, "wide");
 }
 
@@ -200,9 +199,9 @@ std::string html_report(const StudyResult& study, std::span<const Table> tables,
       study.world.empty() ? "" : ": study of " + escaped(study.world), kStyle);
   const std::string merged = merges(study, figures);
   html += format("<h1>Multi-robot LiDAR SLAM in tunnels</h1>\n<p class=\"lead\">{}</p>\n",
-                 study.pairs.empty() ? "Maps of several robots, merged jointly."
-                                     : "Odometry comparison, map merging of every robot pair, and all robots "
-                                       "jointly.");
+                 study.pairs.empty()
+                     ? "Maps of several robots, merged jointly."
+                     : "Odometry comparison, map merging of every robot pair, and all robots jointly.");
   html += facts(study) + navigation(sections, !tables.empty(), !merged.empty()) + summary(study);
   if (!tables.empty()) {
     html += "<h2 id=\"tables\">Tables</h2>\n<div class=\"tables\">\n";

@@ -11,7 +11,7 @@
 
 namespace adit {
 
-/// One self-contained page: facts, tables, figures (inline SVG), refusals with their reasons, a section a
+/// One self-contained page: facts, tables, figures (inline SVG), refusals with their reasons, a section per
 /// robot pair, and the configuration at the end. No script, no network. `tables` and `figures` are those of
 /// `study_tables` and `study_figures`: the caller makes them once and uses them for the terminal and the PNG
 /// files too.

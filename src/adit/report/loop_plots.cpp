@@ -21,7 +21,7 @@ struct PlacedMap {
   Vector3 shift = Vector3::Zero();
 };
 
-/// Fills rows from left to right, about as wide in all as they are high together.
+/// Fills rows from left to right; the whole is about as wide as high.
 void place_side_by_side(std::vector<PlacedMap>& maps) {
   double area = 0.0;
   double widest = 0.0;

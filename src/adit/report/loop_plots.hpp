@@ -10,11 +10,11 @@
 
 namespace adit {
 
-/// Every map of a fleet, those that share nothing side by side in frames of their own, with the loops in use
-/// (green, solid), refused (red, dashed) and weak (blue, dotted). Robot i of the map has colour i.
+/// All maps of a fleet, separate ones side by side in their own frames, with the loops in use (green, solid),
+/// refused (red, dashed) and weak (blue, dotted). Robot i of the map has colour i.
 [[nodiscard]] std::string plot_loop_map(const LoopMap& map);
 
-/// So many hypotheses are drawn at most; the plot says how many are not.
+/// At most this many hypotheses are drawn; the caption says how many are not.
 inline constexpr std::size_t kHypothesesDrawn = 4;
 
 /// The first robot's path, and over it that of the second as each hypothesis says: the best one solid, the

@@ -61,7 +61,7 @@ void draw_start(SvgCanvas& canvas, const Point2& at, Rgba color);
 /// A bar of round length with its metres, below the map at the left.
 void draw_scale_bar(SvgCanvas& canvas, const MapView& view);
 
-/// The plan as a raster of one colour, its density the opacity; at most two raster cells a pixel.
+/// The plan as a raster of one colour, its density the opacity; at most two raster cells per pixel.
 void draw_floor_plan(SvgCanvas& canvas, const MapView& view, const FloorPlan& plan, Rgba color);
 
 }  // namespace adit

@@ -101,7 +101,7 @@ std::string metrics_json(const StudyResult& study) {
                         {"robots", robots},
                         {"pairs", pairs},
                         {"joint", study.joint ? joint_json(*study.joint) : Json(nullptr)}};
-  // Names may hold any bytes; what is no UTF-8 is replaced rather than thrown about.
+  // Names may hold any bytes; those that are not UTF-8 are replaced instead of throwing.
   return metrics.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

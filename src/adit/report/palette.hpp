@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Colours and axis ticks that all figures share. The colours keep apart under the common colour-vision
-/// deficiencies.
+/// Colours and axis ticks that all figures share. The colours can be told apart under the common
+/// colour-vision deficiencies.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ inline constexpr Rgba kGrid = {223, 228, 234};
 inline constexpr Rgba kWall = {98, 110, 122};
 inline constexpr Rgba kWhite = {255, 255, 255};
 
-/// The robot's colour; they repeat after eight robots.
+/// The robot's colour; colours repeat after eight robots.
 [[nodiscard]] Rgba robot_color(std::size_t robot);
 /// Green, red, blue.
 [[nodiscard]] Rgba loop_color(LoopClass loop_class);

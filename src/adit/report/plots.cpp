@@ -152,7 +152,7 @@ void draw_axis(SvgCanvas& canvas, const ValueAxis& axis, double left, const std:
               {.anchor = Anchor::middle, .turn_deg = -90.0});
 }
 
-/// At most this many outliers a box, evenly picked and the furthest always among them.
+/// At most this many outliers per box, evenly picked; the farthest is always among them.
 constexpr std::size_t kMostOutliers = 40;
 
 void draw_box(SvgCanvas& canvas, const ValueAxis& axis, double x, std::span<const double> samples,
@@ -218,7 +218,7 @@ std::string plot_boxes(std::span<const std::string> methods, std::span<const Box
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const double center = kLeft + (static_cast<double>(g) + 0.5) * group_width;
     const double pitch = std::min(64.0, group_width / static_cast<double>(methods.size() + 1));
-    ADIT_CHECK(groups[g].samples.size() == methods.size(), "one list of samples a method");
+    ADIT_CHECK(groups[g].samples.size() == methods.size(), "one list of samples per method");
     for (std::size_t m = 0; m < methods.size(); ++m) {
       const double offset = static_cast<double>(m) - 0.5 * static_cast<double>(methods.size() - 1);
       const std::vector<double>& samples = groups[g].samples[m];
@@ -230,7 +230,7 @@ std::string plot_boxes(std::span<const std::string> methods, std::span<const Box
 }
 
 std::string plot_graph(const GraphPicture& picture, std::span<const RobotPath> robots) {
-  ADIT_CHECK(picture.robot_paths.size() == robots.size(), "one robot a path");
+  ADIT_CHECK(picture.robot_paths.size() == robots.size(), "one robot per path");
   MapExtent extent;
   for (const std::vector<Vector3>& path : picture.robot_paths) extent.extend(path);
   SvgCanvas canvas(kFigureWidth);
@@ -257,7 +257,7 @@ std::string plot_error_paths(const FloorPlan& plan, std::span<const ErrorPath> p
   double largest = 0.0;
   std::string summary;
   for (const ErrorPath& path : paths) {
-    ADIT_CHECK(path.path.size() == path.errors_m.size(), "one error a position");
+    ADIT_CHECK(path.path.size() == path.errors_m.size(), "one error per position");
     extent.extend(path.path);
     const double here =
         path.errors_m.empty() ? 0.0 : *std::max_element(path.errors_m.begin(), path.errors_m.end());

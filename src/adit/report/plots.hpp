@@ -21,12 +21,12 @@ struct RobotPath {
 /// Robots' routes over the walls of the world (`plan` may be empty), a dot where each starts.
 [[nodiscard]] std::string plot_routes(const FloorPlan& plan, std::span<const RobotPath> routes);
 
-/// One group of boxes a robot, one box a method. The axis turns logarithmic when the boxes span more than a
-/// factor of 30.
+/// One group of boxes per robot, one box per method. The axis turns logarithmic when the boxes span more than
+/// a factor of 30.
 struct BoxGroup {
   std::string name;
   std::vector<std::vector<double>>
-      samples;  ///< One list a method, in the order of the methods; may be empty.
+      samples;  ///< One list per method, in the order of the methods; may be empty.
 };
 [[nodiscard]] std::string plot_boxes(std::span<const std::string> methods, std::span<const BoxGroup> groups,
                                      const std::string& axis_title);

@@ -54,7 +54,7 @@ Result<Document> parsed(const std::string& svg) {
   Document document(
       rsvg_handle_new_from_data(reinterpret_cast<const guint8*>(svg.data()), svg.size(), &raw_error));
   const RsvgError error(raw_error);
-  if (!document) return fail("the figure is no valid SVG: " + message_of(error));
+  if (!document) return fail("the figure is not valid SVG: " + message_of(error));
   return document;
 }
 
@@ -100,7 +100,7 @@ std::string png_from_pixels(std::span<const Rgba> pixels, int width, int height)
   ADIT_CHECK(width >= 1 && height >= 1 && width <= kLargestSide && height <= kLargestSide,
              "a picture's sides lie between 1 and 16384 pixels");
   ADIT_CHECK(pixels.size() == static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
-             "one colour a pixel");
+             "one colour per pixel");
   const Surface surface = image_surface(width, height);
   cairo_surface_flush(surface.get());
   unsigned char* data = cairo_image_surface_get_data(surface.get());

@@ -12,10 +12,10 @@
 namespace adit {
 
 /// The bytes of a PNG of the SVG document, `width_px` wide (1 to 16384) and as high as its shape asks for.
-/// Fails when the text is no SVG, or has no size.
+/// Fails when the text is not SVG, or states no size.
 [[nodiscard]] Result<std::string> png_from_svg(const std::string& svg, int width_px);
 
-/// Straight (not premultiplied) colour, 8 bits a channel.
+/// Straight (not premultiplied) colour, 8 bits per channel.
 struct Rgba {
   std::uint8_t r = 0;
   std::uint8_t g = 0;

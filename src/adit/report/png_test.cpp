@@ -31,7 +31,7 @@ TEST(Png, HasSignatureAndTheShapeOfTheFigure) {
   EXPECT_EQ(png, png_from_svg(kSvg, 600).value());
 }
 
-TEST(Png, RefusesWhatIsNoFigure) {
+TEST(Png, RefusesWhatIsNotAFigure) {
   EXPECT_FALSE(png_from_svg("", 100));
   EXPECT_FALSE(png_from_svg("<svg", 100));
   EXPECT_FALSE(png_from_svg("<html xmlns=\"http://www.w3.org/1999/xhtml\"></html>", 100));

@@ -30,8 +30,7 @@ class PhaseTree {
   void end(PhaseId phase);
 
   /// From an outermost phase inwards, as long as one phase alone runs inside the last. Robots that are mapped
-  /// side by side are thus one phase, and pairs that meet one after the other show where the pair at hand
-  /// stands.
+  /// in parallel are thus one phase; of pairs that meet one after the other the current one is shown.
   [[nodiscard]] std::vector<Running> chain() const;
 
  private:
@@ -43,7 +42,7 @@ class PhaseTree {
 /// number of steps is unknown.
 [[nodiscard]] std::optional<double> seconds_left(const PhaseTree::Running& phase, PhaseTree::Seconds now);
 
-/// "40 s", "3 min 20 s", "2 h 05 min": what a person can use of a time.
+/// "40 s", "3 min 20 s", "2 h 05 min": rounded to what a person needs.
 [[nodiscard]] std::string rough_time(double seconds);
 
 /// One line of at most `width` columns: "meetings 2/6, registering [######    ] 60 %, 12 s left (all: 3 min

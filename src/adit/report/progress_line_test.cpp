@@ -54,7 +54,7 @@ TEST(ProgressLine, MoreStepsThanAnnouncedAreAllOfThem) {
   EXPECT_EQ(line_at(tree, 1.0), "work [########################] 100 %, 0 s left");
 }
 
-TEST(ProgressLine, TimesAreRoundedUpToWhatAPersonCanUse) {
+TEST(ProgressLine, TimesAreRoundedUpToWhatAPersonNeeds) {
   EXPECT_EQ(rough_time(0.0), "0 s");
   EXPECT_EQ(rough_time(0.2), "1 s");
   EXPECT_EQ(rough_time(59.4), "1 min 00 s");

@@ -38,7 +38,7 @@ struct TextStyle {
 
 class SvgCanvas {
  public:
-  /// White. The height may change until the end: what stands above often decides how much room is needed.
+  /// A white canvas. The height may be set at the end, when the room that the content needs is known.
   explicit SvgCanvas(double width, double height = 1.0);
   void set_height(double height);
 
@@ -65,11 +65,11 @@ class SvgCanvas {
   std::string body_;
 };
 
-/// The line through a subset of the points that strays from the others by at most `tolerance`, ends kept
+/// The line through a subset of the points, both ends included, that is at most `tolerance` from the others
 /// (Douglas and Peucker, 1973).
 [[nodiscard]] std::vector<Point2> simplified(std::span<const Point2> points, double tolerance);
 
-/// How wide the text will be, nearly: fonts differ from viewer to viewer.
+/// The approximate width of the text, pixels: fonts differ from viewer to viewer.
 [[nodiscard]] double text_width(std::string_view text, double size);
 
 struct LegendItem {

@@ -15,11 +15,11 @@
 namespace adit {
 namespace {
 
-TEST(Markup, EscapesWhatMarkupGivesAMeaning) {
+TEST(Markup, EscapesCharactersThatMarkupUses) {
   EXPECT_EQ(escaped("a<b> & \"c\" 'd'"), "a&lt;b&gt; &amp; &quot;c&quot; &#39;d&#39;");
   EXPECT_EQ(escaped("zwölf ✓"), "zwölf ✓");
   EXPECT_EQ(escaped(std::string("a\0b\x1b", 4)), "a?b?");
-  EXPECT_EQ(escaped("\xff\xc3"), "??");       // no UTF-8
+  EXPECT_EQ(escaped("\xff\xc3"), "??");       // not UTF-8
   EXPECT_EQ(escaped("\xed\xa0\x80"), "???");  // a lone surrogate
   EXPECT_EQ(escaped("\xc0\xbc"), "??");       // an overlong <
 }

@@ -17,7 +17,7 @@ void check(const Table& table) {
   std::size_t grouped = 0;
   for (const ColumnGroup& group : table.groups) grouped += group.columns;
   ADIT_CHECK(table.groups.empty() || grouped == table.header.size(), "column groups cover the header");
-  for (const Row& row : table.rows) ADIT_CHECK(row.size() == table.header.size(), "one cell a column");
+  for (const Row& row : table.rows) ADIT_CHECK(row.size() == table.header.size(), "one cell per column");
 }
 
 std::string padding(std::size_t width, const std::string& text) {

@@ -12,12 +12,12 @@
 
 namespace adit {
 
-/// How far the odometry between two keyframes may be off: a random walk, so that variances grow with the
-/// distance driven and add up along the chain whatever the spacing of the keyframes.
+/// Noise of the odometry between two keyframes, a random walk: variances grow with the distance driven, so
+/// they add up along the path whatever the spacing of the keyframes.
 struct OdometryNoise {
-  double translation = 0.05;   ///< Sigma of each axis after one metre.
+  double translation = 0.05;   ///< Sigma of each axis after one metre, metres.
   double rotation_deg = 0.15;  ///< Sigma about each axis after one metre.
-  double guessed = 5.0;        ///< Times these where odometry had no prediction to rely on.
+  double guessed = 5.0;        ///< Factor on both where odometry had no prediction to rely on.
 };
 inline Fields fields_of(OdometryNoise& c) {
   return {
@@ -25,11 +25,11 @@ inline Fields fields_of(OdometryNoise& c) {
       {"rotation_deg", &c.rotation_deg, "deg/sqrt(m)", 1e-4, 10.0,
        "odometry noise, rotation after one metre"},
       {"guessed", &c.guessed, "", 1.0, 100.0,
-       "times that noise where scans come at no steady pace and without wheels"}};
+       "factor on that noise where scans come at irregular intervals and there are no wheels"}};
 }
 
-/// Covariance of the relative pose over `distance_m` metres of odometry (right perturbation). Never below
-/// that of 1 cm.
+/// Covariance of the relative pose over `distance_m` metres of odometry (right perturbation, [translation;
+/// rotation], metres and radians). Distances below 1 cm count as 1 cm.
 [[nodiscard]] Matrix6 odometry_covariance(const OdometryNoise& noise, double distance_m);
 
 /// One robot's own map: its keyframes in the order driven and the odometry that joins them. All vectors but
@@ -37,23 +37,22 @@ inline Fields fields_of(OdometryNoise& c) {
 struct RobotMap {
   RobotId id;
   std::string name;
-  Vector3 viewpoint = Vector3::Zero();  ///< Where the LiDAR stands, in the frame of the robot's body.
+  Vector3 viewpoint = Vector3::Zero();  ///< Position of the LiDAR in the base frame, metres.
   std::vector<Keyframe> keyframes;
-  std::vector<Matrix6> step_covariances;  ///< Of T_{k-1}_{k}; entry 0 is zero.
-  ScanContextConfig scan_context;         ///< With which `places` were described.
+  std::vector<Matrix6> step_covariances;  ///< Of T_{k-1}_{k} (right perturbation); entry 0 is zero.
+  ScanContextConfig scan_context;         ///< What `places` were described with.
   std::vector<ScanContext> places;
   std::vector<TunnelVerdict> tunnel;
   std::vector<bool> searchable;  ///< Takes part in loop search.
   Trajectory odometry;           ///< T_odom_base of every scan.
-  int num_degenerate = 0;        ///< Steps with an open direction.
+  int num_degenerate = 0;        ///< Odometry steps with a direction that the scan did not fix.
   int num_refused = 0;           ///< Scans with too few points, or that diverged.
 };
 
-/// Which keyframes take part in what: the paper's two policies, and its filter applied to the loop search
-/// alone.
+/// Which keyframes take part in the graph and in the loop search.
 enum class KeyframeSelection {
-  all,                 ///< Every keyframe in the graph and in the loop search.
-  tunnel_filter,       ///< Tunnel-like keyframes leave graph and search, as in the paper.
+  all,                 ///< The paper's first policy: every keyframe takes part in both.
+  tunnel_filter,       ///< The paper's second policy: tunnel-like keyframes leave both.
   adaptive,            ///< All in the graph; candidates and merges by evidence (MergePolicy::adaptive).
   tunnel_filter_keep,  ///< Tunnel-like keyframes stay in the graph and are barred from the search only.
 };

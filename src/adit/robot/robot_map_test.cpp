@@ -48,7 +48,7 @@ RobotMap winding_drive(const std::vector<std::uint32_t>& tunnel) {
   return map;
 }
 
-/// Covariance of T_a_b to first order, the long way: each step's error pushed through the product of all
+/// Covariance of T_a_b to first order, by brute force: each step's error carried through the product of all
 /// steps by central differences.
 Matrix6 dense_covariance(const RobotMap& map, std::size_t a, std::size_t b) {
   const auto product = [&](std::size_t disturbed, const Vector6& error) {

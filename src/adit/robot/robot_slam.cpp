@@ -19,7 +19,8 @@ RobotSlamConfig checked(RobotSlamConfig config) {
 }  // namespace
 
 Fields fields_of(RobotSlamConfig& c) {
-  Fields fields = {{"cloud_voxel", &c.cloud_voxel, "m", 0.01, 2.0, "keyframe clouds keep one point a voxel"}};
+  Fields fields = {
+      {"cloud_voxel", &c.cloud_voxel, "m", 0.01, 2.0, "keyframe clouds keep one point per voxel"}};
   append(fields, "odometry", fields_of(c.odometry));
   append(fields, "keyframes", fields_of(c.keyframes));
   append(fields, "tunnel_filter", fields_of(c.tunnel_filter));
@@ -57,10 +58,11 @@ void RobotSlam::add_keyframe(const OdometryStep& step) {
   keyframe.stamp = step.stamp;
   keyframe.T_odom_base = step.T_odom_base;
   PointCloud thinned = voxel_downsample(full, config_.cloud_voxel);
-  thinned.time_offsets_ns.clear();  // deskewed: the times have done their work
+  thinned.time_offsets_ns.clear();  // the cloud is deskewed
   keyframe.cloud = std::make_shared<const PointCloud>(std::move(thinned));
   map_.places.push_back(describe(full, config_.scan_context));
-  // A cloud too thin for a box says nothing about the place, so it takes no part in loop search either.
+  // A cloud with too few points for a bounding box does not describe the place: it takes no part in the loop
+  // search.
   map_.tunnel.push_back(
       tunnel_filter(*keyframe.cloud, config_.tunnel_filter).value_or(TunnelVerdict{Vector3::Zero(), true}));
   map_.searchable.push_back(true);

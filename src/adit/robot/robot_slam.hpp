@@ -19,7 +19,7 @@ struct RobotSlamConfig {
   TunnelFilterConfig tunnel_filter;
   ScanContextConfig scan_context;
   OdometryNoise noise;
-  double cloud_voxel = 0.15;  ///< Keyframe clouds are thinned to one point a voxel.
+  double cloud_voxel = 0.15;  ///< Keyframe clouds are thinned to one point per voxel of this edge, metres.
 };
 Fields fields_of(RobotSlamConfig& config);
 
@@ -35,7 +35,8 @@ class RobotSlam {
   /// Throws ContractViolation when `config` is out of its documented ranges.
   RobotSlam(RobotId id, const std::string& name, const RobotSlamConfig& config, const Pose& T_base_lidar);
 
-  /// `wheel` from the scan before to this one; ignored by kiss-icp, needed by the others.
+  /// `wheel`: the motion of the base from the scan before to this one; ignored by kiss-icp, needed by the
+  /// others.
   RobotStep process(const Scan& scan, const std::optional<WheelDelta>& wheel);
 
   [[nodiscard]] const RobotMap& map() const { return map_; }
@@ -46,12 +47,12 @@ class RobotSlam {
   RobotSlamConfig config_;
   Odometry odometry_;
   KeyframePolicy keyframe_policy_;
-  bool is_guessed_ = false;  ///< A step since the last keyframe was.
+  bool is_guessed_ = false;  ///< A step since the last keyframe had no prediction.
   RobotMap map_;
 };
 
-/// Fails where the odometry needs wheels and the recording has none; `without_wheels` is the option of the
-/// command that chooses one without.
+/// Fails where the odometry needs wheels and the recording has none. The message recommends `without_wheels`,
+/// the option that selects an odometry without wheels.
 [[nodiscard]] Result<> check_wheels(const Recording& recording, const OdometryConfig& config,
                                     std::string_view without_wheels);
 
@@ -63,7 +64,7 @@ using ScanObserver = std::function<bool(std::size_t num_done)>;
 [[nodiscard]] Result<RobotMap> map_recording(const Recording& recording, RobotId id,
                                              const RobotSlamConfig& config,
                                              const ScanObserver& observer = {});
-/// The same under several configurations, a map for each; every scan is read once.
+/// The same under several configurations: one map per configuration, and every scan is read once.
 [[nodiscard]] Result<std::vector<RobotMap>> map_recording(const Recording& recording, RobotId id,
                                                           const std::vector<RobotSlamConfig>& configs,
                                                           const ScanObserver& observer = {});

@@ -14,7 +14,7 @@ namespace {
 // Metres.
 constexpr double kPointSpacing = 1.0;  ///< Of the points on the floor between two waypoints.
 constexpr double kWallHeight = 0.5;    ///< Above the floor, where walls are looked for: over kerbs and rails.
-constexpr double kShortestRoute = 0.1;  ///< What is shorter is a robot that stands.
+constexpr double kShortestRoute = 0.1;  ///< On a shorter one the robot would stand.
 constexpr double kCrack = 1e-3;         ///< Width of a gap that is still floor: coordinates in millimetres.
 constexpr double kPastSurface = 1e-3;   ///< From a surface that was met to where the search goes on.
 
@@ -61,7 +61,7 @@ bool wall_between(const Raycaster& raycaster, const Vector3& a, const Vector3& b
       .hit();
 }
 
-// From a to b (not included) on the floor. Over a hole in the mesh the straight line stands in.
+// From a to b (not included) on the floor. A hole in the mesh is crossed on the straight line.
 std::vector<Vector3> between(const Raycaster& raycaster, const Vector3& a, const Vector3& b) {
   std::vector<Vector3> points{a};
   const auto parts = static_cast<int>(std::ceil((b - a).norm() / kPointSpacing));

@@ -19,12 +19,13 @@ namespace adit {
 /// another level.
 inline constexpr double kFloorAbove = 1.5;  ///< Metres: waypoints may lie below the floor.
 inline constexpr double kFloorBelow =
-    3.0;  ///< Metres: waypoints may be where a sensor or a person's eyes were.
+    3.0;  ///< Metres: waypoints may be at the height of a sensor or of a person's eyes.
 [[nodiscard]] std::optional<double> floor_height(const Raycaster& raycaster, const Vector3& p);
 
-/// The route's waypoints put on the floor, with further points on the floor between those more than a metre
-/// apart. Fails, naming robot, waypoint and position, on fewer than two distinct waypoints, a number that is
-/// not finite, a waypoint without floor, and a wall between two waypoints (looked for 0.5 m above the floor).
+/// The route's waypoints put on the floor (world frame, metres), with further floor points between waypoints
+/// more than a metre apart. Fails, naming robot, waypoint and position, on fewer than two distinct waypoints,
+/// a number that is not finite, a waypoint without floor, and a wall between two waypoints (looked for 0.5 m
+/// above the floor).
 [[nodiscard]] Result<std::vector<Vector3>> floor_line(const Raycaster& raycaster, const Route& route);
 
 }  // namespace adit

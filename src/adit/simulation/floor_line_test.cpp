@@ -61,7 +61,7 @@ TEST(FloorHeight, ClosesCracksAsWideAsRoundingLeavesThem) {
   const Raycaster raycaster = caster(mesh);
   EXPECT_NEAR(floor_height(raycaster, {0, 0.3, 0}).value(), 0.0, 1e-6);
   EXPECT_NEAR(floor_height(raycaster, {0, 0.3, -0.001}).value(), 0.0, 1e-6);
-  EXPECT_FALSE(floor_height(raycaster, {2.01, 0.3, 0}));  // the rim is no crack
+  EXPECT_FALSE(floor_height(raycaster, {2.01, 0.3, 0}));  // the rim is not a crack
 }
 
 TEST(FloorHeight, KeepsToTheLevelOfTheWaypoint) {

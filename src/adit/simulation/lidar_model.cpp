@@ -62,7 +62,7 @@ std::vector<LidarConfig> presets() {
           vlp16()};
 }
 
-// For 0 <= x <= 1, to 1e-6 (Abramowitz and Stegun, 4.4.46). The C library's takes no vectors.
+// For 0 <= x <= 1, to 1e-6 (Abramowitz and Stegun, 4.4.46). The C library's is not vectorized.
 float arc_cosine(float x) {
   constexpr std::array<float, 8> kCoefficients = {1.5707963050F,  -0.2145988016F, 0.0889789874F,
                                                   -0.0501743046F, 0.0308918810F,  -0.0170881256F,
@@ -98,7 +98,7 @@ struct Chance {
   }
 };
 
-// What becomes of a true range.
+// How true ranges are reported, and which are lost.
 struct Returns {
   float range_min;
   float range_max;
@@ -274,7 +274,7 @@ Result<LidarConfig> lidar_preset(const std::string& name) {
   }
   std::string known;
   for (const std::string& preset : lidar_presets()) known += (known.empty() ? "" : ", ") + preset;
-  return fail("no lidar is called '" + name + "'; there are " + known);
+  return fail("unknown LiDAR '" + name + "'; known are " + known);
 }
 
 Scan cast_scan(const Raycaster& raycaster, const LidarConfig& config, const Sweep& sweep) {

@@ -14,7 +14,7 @@
 
 namespace adit {
 
-/// Defaults: Ouster OS2-128.
+/// Lengths in metres. Defaults: Ouster OS2-128.
 struct LidarConfig {
   std::string name = "os2-128";
   int beams = 128;

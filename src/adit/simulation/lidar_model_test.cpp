@@ -125,7 +125,7 @@ TEST(LidarModel, returns_get_lost_at_grazing_incidence) {
   c.dropout_end_deg = 60.0;
   c.elevation_min_deg = -75.0;
   c.elevation_max_deg = -15.0;
-  c.beams = 61;  // one a degree: incidence on the floor is 90 deg plus elevation
+  c.beams = 61;  // one per degree: incidence on the floor is 90 deg plus elevation
   TriangleMesh floor;
   test::add_quad(floor, {-90, -90, -1}, {90, -90, -1}, {90, 90, -1}, {-90, 90, -1});
   const PointCloud cloud = cast_scan(Raycaster::build(floor).value(), c, standing(Pose())).cloud;

@@ -25,7 +25,7 @@ struct ReleaseScene {
 using Device = std::unique_ptr<RTCDeviceTy, ReleaseDevice>;
 using EmbreeScene = std::unique_ptr<RTCSceneTy, ReleaseScene>;
 
-// What is needed to compute a hit exactly: a corner and the unit normal.
+// All that the exact hit of a triangle needs: a corner and the unit normal.
 struct FacePlane {
   Eigen::Vector3f corner;
   Eigen::Vector3f normal;
@@ -52,7 +52,7 @@ void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, con
   for (const Item& item : items) out = std::copy_n(item.data(), 3, out);
 }
 
-// The caller's observer, as Embree's own threads know none.
+// `observer` is the caller's: Embree's own threads have none in scope.
 bool goes_on(void* observer, double) {
   return observer == nullptr || !static_cast<const ProgressObserver*>(observer)->cancelled();
 }
@@ -101,7 +101,7 @@ void aim(RTCRayHit& query, const Ray& ray, float max_distance) {
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 }
 
-// What Embree wants to know of a block of rays beside their origins and directions, and what it answers.
+// What Embree needs of a block of rays besides origins and directions, and its answers.
 struct Query {
   RayBlock::Numbers near{};
   RayBlock::Numbers times{};
@@ -148,8 +148,8 @@ struct PlaneBlock {
   RayBlock::Vectors normals;
 };
 
-// A plane's own distance; Embree's counts only where the ray runs along the triangle and the plane equation
-// has no grip.
+// A plane's own distance; Embree's is used only where the ray is so nearly parallel to the triangle that the
+// plane equation is ill-conditioned.
 ADIT_WIDE_VECTORS void measure(const PlaneBlock& planes, const RayBlock::Vectors& origins,
                                const RayBlock::Vectors& directions, const RayBlock::Numbers& embree_distances,
                                RayBlock::Numbers& distances, RayBlock::Numbers& cosines, std::size_t size) {
@@ -177,8 +177,7 @@ struct Raycaster::Scene {
   EmbreeScene embree;
   std::vector<FacePlane> planes;
 
-  // Embree's own distance counts only where the ray runs along the triangle and the plane equation has no
-  // grip.
+  // Embree's own distance is used only where the ray is nearly parallel to the triangle.
   [[nodiscard]] RayHit hit_of(const RTCRayHit& answer, const Ray& ray) const {
     if (answer.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     const FacePlane& plane = planes[answer.hit.primID];

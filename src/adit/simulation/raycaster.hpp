@@ -29,7 +29,7 @@ struct RayHit {
   [[nodiscard]] bool hit() const { return distance < kMiss; }
 };
 
-/// Rays side by side, and what they meet: the fast way to cast many.
+/// Many rays and their hits, side by side: the fast form of casting.
 struct RayBlock {
   static constexpr std::size_t kCapacity = 128;
   using Numbers = std::array<float, kCapacity>;
@@ -39,20 +39,20 @@ struct RayBlock {
     Numbers z;
   };
 
-  std::size_t size = 0;  ///< How many of the following count.
+  std::size_t size = 0;  ///< Entries in use of the arrays below.
   Vectors origins;
   Vectors directions;
-  Numbers distances;  ///< As in RayHit, from here on what casting fills in.
+  Numbers distances;  ///< As in RayHit. Casting fills in these and the cosines.
   Numbers cosines;    ///< Of the angle between the ray and the normal, 0 to 1; undefined for a miss.
 };
 
 /// What happens to a ray that runs exactly through an edge or a corner that triangles share.
 enum class EdgeRule {
-  fast,        ///< One such ray in some 1e5 slips through: nothing to a scan, everything to a robot's floor.
+  fast,        ///< About one such ray in 1e5 slips through: harmless in a scan, fatal under a wheel.
   watertight,  ///< It is a hit. Slower to build and to cast at.
 };
 
-/// Casts rays against a triangle mesh (Embree behind it). A cheap value: copies share one acceleration
+/// Casts rays against a triangle mesh (Embree behind it). Cheap to copy: copies share one acceleration
 /// structure. All casting is const and may run on any number of threads at once.
 ///
 /// A hit's distance and normal are computed from the triangle itself and not taken from Embree, whose kernels

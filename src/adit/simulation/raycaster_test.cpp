@@ -211,7 +211,7 @@ TEST(Raycaster, far_from_the_origin_distances_keep_a_tenth_of_a_millimetre) {
   EXPECT_NEAR(hit.distance, 4.0F, 1e-4F);
 }
 
-TEST(Raycaster, refuses_what_is_no_mesh) {
+TEST(Raycaster, refuses_what_is_not_a_mesh) {
   EXPECT_FALSE(Raycaster::build({}).has_value());
   TriangleMesh mesh = test::room({0, 0, 0}, {1, 1, 1});
   mesh.vertices[2].y() = std::numeric_limits<float>::quiet_NaN();

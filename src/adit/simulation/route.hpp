@@ -9,7 +9,7 @@
 
 namespace adit {
 
-/// Where one robot drives: waypoints on the floor of the world, metres, z up, about one a metre. The robot
+/// Where one robot drives: waypoints on the floor of the world, metres, z up, about one per metre. The robot
 /// follows the smoothed line at `speed_mps` on average.
 struct Route {
   std::string name;

@@ -37,7 +37,8 @@ struct Robot {
   }
 };
 
-// From the end of the second turn on, so that the first sweep begins well after the first wheel odometry.
+// Stamps from the end of the second turn on, so that the first sweep begins well after the first wheel
+// odometry.
 std::vector<Stamp> scan_stamps(const Trajectory& truth, const LidarConfig& lidar) {
   std::vector<Stamp> stamps;
   for (std::int64_t i = 2;; ++i) {
@@ -86,7 +87,7 @@ Recording recording_of(Robot robot, const WheelConfig& wheels) {
   return recording;
 }
 
-// On a raycaster of its own that lets no wheel slip between two triangles. Scans keep to the fast one:
+// Uses a watertight raycaster, so that no wheel falls between two triangles. Scans use the fast one:
 // watertight edges would move one point in some 1e5, and with it the bytes of every recording.
 Result<std::vector<Trajectory>> drive_all(const World& world, const DriveConfig& config) {
   const Phase phase("driving the routes", world.routes.size() + 1);

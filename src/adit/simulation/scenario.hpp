@@ -22,7 +22,7 @@ struct ScenarioConfig {
 };
 
 inline Fields fields_of(ScenarioConfig& c) {
-  Fields fields{{"seed", &c.seed, "", 0, 1e15, "of all noise of sensors and wheels"}};
+  Fields fields{{"seed", &c.seed, "", 0, 1e15, "seed of all noise of sensors and wheels"}};
   append(fields, "lidar", fields_of(c.lidar));
   append(fields, "wheels", fields_of(c.wheels));
   append(fields, "drive", fields_of(c.drive));
@@ -30,9 +30,9 @@ inline Fields fields_of(ScenarioConfig& c) {
 }
 
 /// Drives every route of the world at the same time, each robot on a clock that starts at 0. One recording
-/// per route, in their order. No scan is cast or stored now: `read_scan` casts a scan whenever it is asked
-/// for, always the same one, on any thread. `wheel` covers every sweep from its start; `truth` has a pose at
-/// every scan stamp and between them.
+/// per route, in their order. No scan is cast or stored now: `read_scan(i)` casts scan i on demand, always
+/// the same one, on any thread. `wheel` covers every sweep from its start; `truth` has a pose at every scan
+/// stamp and between them.
 ///
 /// Fails on a mesh that `check_mesh` refuses, a field out of range, no route at all, two routes of one name,
 /// and routes that `drive` refuses. One phase of progress; may throw `Cancelled` (core/progress.hpp).

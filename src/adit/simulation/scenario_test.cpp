@@ -35,7 +35,7 @@ std::vector<Recording> simulated(const World& world, const ScenarioConfig& confi
   return simulate(world, config).value();
 }
 
-TEST(Scenario, makes_one_recording_a_route) {
+TEST(Scenario, makes_one_recording_per_route) {
   const std::vector<Recording> recordings = simulated(hall(), quick());
   ASSERT_EQ(recordings.size(), 2U);
   for (std::size_t robot = 0; robot < 2; ++robot) {
@@ -95,7 +95,7 @@ TEST(Scenario, scans_are_the_same_in_any_order_on_any_thread) {
   EXPECT_EQ(simulated(hall(), quick())[0].read_scan(5)->cloud.points, forwards[5].points);
 }
 
-TEST(Scenario, the_seed_changes_noise_and_wheels_but_not_the_way) {
+TEST(Scenario, the_seed_changes_noise_and_wheels_but_not_the_path) {
   ScenarioConfig other = quick();
   other.seed = 2;
   const Recording a = simulated(hall(), quick())[0];
@@ -105,7 +105,7 @@ TEST(Scenario, the_seed_changes_noise_and_wheels_but_not_the_way) {
   EXPECT_EQ(a.truth.back().T_world_body.translation(), b.truth.back().T_world_body.translation());
 }
 
-TEST(Scenario, robots_err_each_in_its_own_way) {
+TEST(Scenario, each_robot_errs_differently) {
   World world = hall();
   world.routes[1] = world.routes[0];
   world.routes[1].name = "twin";

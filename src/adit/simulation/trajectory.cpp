@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kSamplesPerCorner = 64;  ///< Path points per DriveConfig::corner_length: centimetres apart.
 constexpr double kHighestStep =
-    0.3;  ///< Metres that a wheel may stand above or below the floor midway between all.
+    0.3;  ///< Metres: largest height of a wheel above or below the floor midway between all four.
 
 // A sample of the path. They are dense enough (centimetres) to be interpolated linearly.
 struct PathPoint {
@@ -152,7 +152,7 @@ std::vector<double> moving_average(const std::vector<double>& values, std::size_
   return means;
 }
 
-// Tyres and springs: a mean over a wheelbase, twice, so that speeds stay continuous.
+// Stands for tyres and springs: a mean over a wheelbase, twice, so that speeds stay continuous.
 template <class Member>
 void spring(Path& path, std::size_t half_width, Member member) {
   std::vector<double> values;

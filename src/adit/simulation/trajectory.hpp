@@ -25,19 +25,20 @@ struct DriveConfig {
 
 inline Fields fields_of(DriveConfig& c) {
   return {{"sample_rate_hz", &c.sample_rate_hz, "Hz", 10, 1000, "ground-truth poses per second"},
-          {"stand_time", &c.stand_time, "s", 0, 60, "the robot stands before it drives off"},
-          {"acceleration", &c.acceleration, "m/s^2", 0.05, 10, "speeding up and braking, nominal"},
+          {"stand_time", &c.stand_time, "s", 0, 60, "time that the robot stands before it drives off"},
+          {"acceleration", &c.acceleration, "m/s^2", 0.05, 10, "nominal acceleration and braking"},
           {"lateral_acceleration", &c.lateral_acceleration, "m/s^2", 0.05, 10,
-           "limit in curves, nominal: the robot slows down"},
+           "nominal limit in curves; the robot slows down to keep it"},
           {"corner_length", &c.corner_length, "m", 0.2, 10,
            "stretch over which corners of the route are rounded"},
-          {"wheelbase", &c.wheelbase, "m", 0.1, 5, "between front and rear wheels"},
-          {"track", &c.track, "m", 0.1, 5, "between left and right wheels"}};
+          {"wheelbase", &c.wheelbase, "m", 0.1, 5, "distance between front and rear wheels"},
+          {"track", &c.track, "m", 0.1, 5, "distance between left and right wheels"}};
 }
 
-/// Drives `route` over the floor of the mesh: stands for a while, then follows the smoothed line with the
-/// route's mean speed (over the time it moves), slower in curves, speeding up at the start and braking at the
-/// end. Poses are T_world_base at `sample_rate_hz` from `start` on, ending with the robot at rest.
+/// Drives `route` over the floor of the mesh (world frame, metres): the robot stands for a while, then
+/// follows the smoothed line with the route's mean speed (over the time it moves), slower in curves, speeding
+/// up at the start and braking at the end. Poses are T_world_base at `sample_rate_hz` from `start` on, ending
+/// with the robot at rest.
 ///
 /// Fails, naming robot, waypoint and position, when there are fewer than two distinct waypoints, a number is
 /// not finite, no floor lies between 1.5 m above and 3 m below a waypoint, or a wall stands between two

@@ -29,7 +29,7 @@ Trajectory driven(const TriangleMesh& mesh, const Route& route, const DriveConfi
 double mean_speed(const Trajectory& t, const DriveConfig& config = {}) {
   return path_length(t) / (to_seconds(t.back().stamp - t.front().stamp) - config.stand_time);
 }
-// Body twist between two neighbouring poses, a second.
+// Body twist between two neighbouring poses, per second.
 Vector6 twist(const Trajectory& t, std::size_t i) {
   return (t[i - 1].T_world_body.inverse() * t[i].T_world_body).log() /
          to_seconds(t[i].stamp - t[i - 1].stamp);

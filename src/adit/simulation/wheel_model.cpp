@@ -35,8 +35,8 @@ class Wheels {
         drift_(config.yaw_drift_deg * kDegree / 100.0 * rng_.normal()),
         slip_(config.slip_sigma * rng_.normal()) {}
 
-  /// Turns the wheels by a true motion (metres ahead, radians to the left); what odometry makes of the new
-  /// ticks.
+  /// Turns the wheels by a true motion (metres ahead, radians to the left). Returns the motion that odometry
+  /// computes from the new ticks.
   Pose2 roll(double ahead, double turn, double seconds) {
     const double distance = std::abs(ahead);
     const double yaw_walk = config_.yaw_walk_deg * kDegree * std::sqrt(distance / 100.0) * rng_.normal();
@@ -53,7 +53,7 @@ class Wheels {
     double travel = 0.0;
     double counted = 0.0;
 
-    /// The travel that is counted anew; whole ticks of all travel so far, so that none gets lost for good.
+    /// The travel of the new ticks. Ticks are counted over all travel so far, so that no remainder is lost.
     double roll(double distance, double tick) {
       travel += distance;
       const double before = counted;
@@ -72,7 +72,7 @@ class Wheels {
   Rng rng_;
   double scale_;
   double turn_scale_;
-  double drift_;  // radians a metre
+  double drift_;  // radians per metre
   double slip_;
   Encoder left_;
   Encoder right_;

@@ -14,8 +14,8 @@
 
 namespace adit {
 
-/// Standard deviations describe how robots differ from one another or how one robot errs over time; the seed
-/// decides.
+/// Standard deviations describe how robots differ from one another, or how one robot errs over time; the seed
+/// draws the values.
 struct WheelConfig {
   double rate_hz = 50.0;
   double effective_track = 0.9;
@@ -32,7 +32,7 @@ inline Fields fields_of(WheelConfig& c) {
   return {
       {"rate_hz", &c.rate_hz, "Hz", 1, 1000, "odometry poses per second"},
       {"effective_track", &c.effective_track, "m", 0.1, 10, "track of the equivalent differential drive"},
-      {"tick", &c.tick, "m", 0, 0.1, "wheel travel between two encoder ticks; 0: none lost"},
+      {"tick", &c.tick, "m", 0, 0.1, "wheel travel between two encoder ticks; 0: continuous"},
       {"scale_sigma", &c.scale_sigma, "", 0, 0.2, "relative error of the wheel radius, constant per robot"},
       {"yaw_drift_deg", &c.yaw_drift_deg, "deg", 0, 90, "heading drift over 100 m, constant per robot"},
       {"yaw_walk_deg", &c.yaw_walk_deg, "deg", 0, 90, "random walk of the heading after 100 m"},
@@ -43,8 +43,7 @@ inline Fields fields_of(WheelConfig& c) {
 
 /// Dead reckoning from the encoders of one robot: T_wheelodom_base in the plane (z, roll and pitch stay 0),
 /// identity at the first stamp of `truth`, then at `rate_hz` until the end of `truth`, whose last stamp is
-/// always included. `truth`: T_world_base, not empty. Standing wheels count nothing: the pose then repeats
-/// exactly.
+/// always included. `truth`: T_world_base, not empty. While the wheels stand the pose repeats exactly.
 [[nodiscard]] Trajectory wheel_odometry(const Trajectory& truth, const WheelConfig& config,
                                         std::uint64_t seed);
 

@@ -17,7 +17,7 @@ WheelConfig perfect() {
   return c;
 }
 
-// A constant body twist (metres and radians a second) for some seconds, 100 poses a second.
+// A constant body twist (metres and radians per second) for some seconds, 100 poses per second.
 Trajectory steady(double speed, double turn_rate, double seconds) {
   Trajectory truth;
   const Pose start = Pose::planar(5.0, -3.0, 0.7, 2.0);
@@ -78,7 +78,7 @@ TEST(WheelModel, ticks_cost_less_than_a_tick_however_far_it_drives) {
   EXPECT_LT(error.angle(), 0.01 / c.effective_track);
 }
 
-TEST(WheelModel, climbing_counts_the_way_along_the_slope_and_stays_in_the_plane) {
+TEST(WheelModel, climbing_counts_the_path_along_the_slope_and_stays_in_the_plane) {
   Trajectory truth;
   const Pose climbing(Eigen::Quaterniond(Eigen::AngleAxisd(-0.3, Vector3::UnitY())), Vector3::Zero());
   for (int i = 0; i <= 1000; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Procedural tunnel networks: a mesh to cast rays at and the routes of four robots through it (section 2.1
+/// Procedural tunnel networks: a mesh for ray casting and the routes of four robots through it (section 2.1
 /// of the paper, whose robots drive through Zentrum am Berg). The same configuration gives the same bytes.
 #pragma once
 
@@ -23,9 +23,8 @@ struct World {
   double tunnel_length = 0.0;  ///< Sum over the centre lines of all tunnels, metres.
 };
 
-/// What makes a world hard: smooth, bare walls leave LiDAR nothing to hold on to along the axis, and equal
-/// places deceive place recognition. Each factor scales what the preset brings along; 1 keeps the preset as
-/// designed.
+/// How hard a world is: smooth, bare walls do not fix motion along the axis, and identical places deceive
+/// place recognition. Each factor scales a quantity of the preset; 1 keeps it as designed.
 struct WorldConfig {
   std::string preset = "zab";
   std::uint64_t seed = 1;
@@ -34,10 +33,10 @@ struct WorldConfig {
   double passage_spacing_factor = 1.0;
   double curvature_factor = 1.0;
   double facet_factor = 1.0;
-  /// Which robots have anything in common to merge by. Every arrangement but "single" puts two networks
-  /// side by side and lets two robots drive in each: "different", the networks of two seeds; "mirrored", a
-  /// network and its mirror image; "copies", the same tunnels twice, each with furniture and rock of its
-  /// own; "twins", the same twice to the last bit, which no measurement can tell apart.
+  /// Which robots share tunnels. Every arrangement but "single" puts two networks side by side and lets two
+  /// robots drive in each: "different", the networks of two seeds; "mirrored", a network and its mirror
+  /// image; "copies", the same tunnels twice, each with furniture and rock of its own; "twins", the same
+  /// twice to the last bit, which no measurement can tell apart.
   std::string arrangement = "single";
   std::string routes = "meeting";
   std::uint64_t furniture_seed = 0;
@@ -51,7 +50,7 @@ struct WorldConfig {
 inline Fields fields_of(WorldConfig& c) {
   return {
       {"preset", &c.preset, "", 0, 0, "kind of tunnel network", world_presets()},
-      {"seed", &c.seed, "", 0, 9e15, "another seed, another network of the same kind"},
+      {"seed", &c.seed, "", 0, 9e15, "seed of the network; each seed gives another one of the same kind"},
       {"relief_factor", &c.relief_factor, "", 0.0, 10.0, "scales the relief of the walls"},
       {"furniture_spacing_factor", &c.furniture_spacing_factor, "", 0.3, 100.0,
        "scales the distance between niches, cabinets and parked machines"},

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Level lines and the ways that robots drive along them.
+/// Level lines, and the routes of robots along them. World frame, metres.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@
 namespace adit {
 
 [[nodiscard]] double length_of(std::span<const Vector3> line);
-/// The line moved to its left, all of it by the same distance.
+/// The line moved to its left by `left` metres.
 [[nodiscard]] Polyline offset_line(std::span<const Vector3> line, double left);
 [[nodiscard]] Polyline reversed_line(Polyline line);
 /// The line with its first and last segments `by` metres longer.
@@ -27,9 +27,9 @@ struct LinePoint {
 /// From `begin` to `end` along the line, both clamped to it; begin < end.
 [[nodiscard]] Polyline part_of(std::span<const Vector3> line, double begin, double end);
 
-/// What one robot does: `legs` are lines that cross (or touch) one after another, each followed from its
-/// crossing with the one before to that with the one after; the last one to where `length` is used up, or
-/// to its end where that comes a little earlier.
+/// The drive of one robot: `legs` are lines that cross (or touch) one after another, each followed from its
+/// crossing with the one before to that with the one after; the last one to where `length` is used up, or to
+/// its end where that comes a little earlier.
 struct Drive {
   std::string name;
   double speed_mps = 1.87;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 /// An underground railway: two running tubes with identical stations and identical cross passages at equal
-/// distances. Nothing here is distinctive but how far it is to the portals.
+/// distances. Only the distance to the portals distinguishes places.
 #include <array>
 #include <cmath>
 #include <numbers>

@@ -117,8 +117,8 @@ struct Path {
   double length;
 };
 
-/// Ways that every pair of robots shares a stretch of, around the middle of the mine.
-std::array<Path, 4> meeting_ways() {
+/// Paths around the middle of the mine; every pair of robots shares a stretch.
+std::array<Path, 4> meeting_paths() {
   const auto a = [](int column) { return junction(column, 0); };
   const auto b = [](int column) { return junction(column, 1); };
   const auto c = [](int column) { return junction(column, 2); };
@@ -130,8 +130,8 @@ std::array<Path, 4> meeting_ways() {
   }};
 }
 
-/// Two robots pass one another in the first row of drifts, two in the last, and nobody leaves its row.
-std::array<Path, 4> parallel_ways() {
+/// Two robots pass one another in the first row of drifts, two in the last, and no robot leaves its row.
+std::array<Path, 4> parallel_paths() {
   const auto a = [](int column) { return junction(column, 0); };
   const auto c = [](int column) { return junction(column, kRows - 1); };
   constexpr double kLength = 260.0;
@@ -144,7 +144,7 @@ std::array<Path, 4> parallel_ways() {
 }
 
 std::vector<Drive> draw_drives(const Network& nodes, const WorldConfig& config) {
-  const std::array<Path, 4> paths = config.routes == "meeting" ? meeting_ways() : parallel_ways();
+  const std::array<Path, 4> paths = config.routes == "meeting" ? meeting_paths() : parallel_paths();
   const std::array speeds{1.87, 1.83, 1.85, 1.81};
   std::vector<Drive> all;
   for (std::size_t i = 0; i < paths.size(); ++i) {

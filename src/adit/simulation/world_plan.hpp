@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// What a preset decides, before anything is meshed. Internal to the world.
+/// The plan that a preset makes, before anything is meshed. Internal to the world.
 #pragma once
 
 #include <vector>
@@ -18,10 +18,10 @@ struct WorldPlan {
       spaces;  ///< Tunnels before what opens into them, so that floors keep the tunnel's facets.
   std::vector<Solid> obstacles;  ///< Matter, faces looking outwards.
   Relief relief;
-  double max_edge = 1.0;
+  double max_edge = 1.0;  ///< Longest edge of a triangle, metres.
   bool flat_floor = true;
   std::vector<Drive> drives;
-  double tunnel_length = 0.0;
+  double tunnel_length = 0.0;  ///< Sum over the centre lines, metres.
 };
 
 [[nodiscard]] WorldPlan plan_zab(const WorldConfig& config);
@@ -29,26 +29,27 @@ struct WorldPlan {
 [[nodiscard]] WorldPlan plan_metro(const WorldConfig& config);
 [[nodiscard]] WorldPlan plan_tiles(const WorldConfig& config);
 
-/// Nothing yet, to be lined with concrete: facets of a metre, uneven by millimetres.
+/// An empty plan with concrete walls: facets of a metre, uneven by millimetres.
 [[nodiscard]] WorldPlan concrete_plan(const WorldConfig& config);
-/// What furniture and rock are drawn from, so that they can differ in tunnels that are the same.
+/// The seed of furniture and rock, which can differ in otherwise identical tunnels.
 [[nodiscard]] std::uint64_t furniture_seed(const WorldConfig& config);
-/// Draws on where the tunnels were drawn, or anew where the furniture has a seed of its own.
+/// The generator of the furniture: continues `after_tunnels`, or starts anew where the furniture has its own
+/// seed.
 [[nodiscard]] Rng furniture_rng(const WorldConfig& config, const Rng& after_tunnels);
 
-/// Adds a tunnel along `line`, open at both ends, and its length.
+/// Adds a tunnel along `line` (world frame, metres), open at both ends, and its length.
 void add_tunnel(WorldPlan& plan, const Profile& profile, const Polyline& line);
 /// The same with walls at both ends; where an end lies inside another tunnel there is no wall.
 void add_closed_tunnel(WorldPlan& plan, const Profile& profile, const Polyline& line);
 
 /// A place beside a tunnel: `distance` along its line, on its left (+1) or right (-1).
 struct WallSite {
-  LinePoint foot;     ///< On the line.
-  double side = 1.0;  ///< +1 or -1.
-  double half_width = 5.0;
+  LinePoint foot;           ///< On the line.
+  double side = 1.0;        ///< +1 or -1.
+  double half_width = 5.0;  ///< Of the tunnel, metres.
 
   [[nodiscard]] Vector3 left() const { return Vector3::UnitZ().cross(foot.direction); }
-  /// `lateral` metres from the line towards the site's side, `along` metres on.
+  /// The point `lateral` metres from the line towards the site's side and `along` metres further on.
   [[nodiscard]] Vector3 at(double lateral, double along = 0.0) const {
     return foot.position + left() * (side * lateral) + foot.direction * along;
   }

@@ -46,7 +46,7 @@ Vector3 rock(const Relief& relief, const Vector3& p) {
   Vector3 sum = Vector3::Zero();
   for (std::size_t i = 0; i < relief.octaves.size(); ++i)
     if (relief.octaves[i].amplitude > 0.0)
-      // A lattice has about two nodes a wave.
+      // A lattice has about two nodes per wave.
       sum += relief.octaves[i].amplitude *
              smooth_noise(mix64(relief.seed, i), p * (2.0 / relief.octaves[i].wavelength));
   const double fade = std::clamp(p.z() / kFloorInfluence, 0.0, 1.0);

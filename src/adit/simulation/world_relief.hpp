@@ -21,15 +21,15 @@ struct Relief {
   std::uint64_t seed = 1;
   std::vector<ReliefOctave> octaves;
   double floor_share =
-      0.0;  ///< How much of the vertical displacement the floor (z = 0) takes part in, 0 to 1.
-  double ramp_amplitude = 0.0;  ///< Metres, of the long waves by which all floors rise and sink.
+      0.0;  ///< Share of the vertical displacement that the floor (z = 0) takes part in, 0 to 1.
+  double ramp_amplitude = 0.0;  ///< Amplitude of the long waves by which all floors rise and sink, metres.
   double ramp_wavelength = 320.0;
 };
 
-/// Where a point of the smooth world really lies.
+/// The position of a point of the smooth world after displacement.
 [[nodiscard]] Vector3 displaced(const Relief& relief, const Vector3& p);
 
-/// Where a point of the smooth floor (its z ignored) really lies: only its height changes.
+/// The same for a point of the smooth floor (its z is ignored): only its height changes.
 [[nodiscard]] Vector3 on_floor(const Relief& relief, const Vector3& p);
 
 }  // namespace adit

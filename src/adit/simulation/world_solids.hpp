@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// The building blocks of tunnel worlds: a convex profile swept along a level line. A solid is free space (a
-/// tunnel, a passage, a niche) or matter (a cabinet, a platform), by the use that is made of it.
+/// The building blocks of tunnel worlds: a convex profile swept along a level line. World frame, metres. A
+/// solid is used as free space (a tunnel, a passage, a niche) or as matter (a cabinet, a platform).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -68,10 +68,10 @@ enum class Ends { open, closed };
 /// Matter: the same solid with its faces looking outwards.
 [[nodiscard]] Solid turned_out(Solid solid);
 
-/// The larger this is, the farther inside: a lower bound on the distance from `point` to the walls of the
-/// union of `spaces` (joints between pieces do not count); negative outside of all.
+/// A lower bound on the distance in metres from `point` to the walls of the union of `spaces`; negative
+/// outside. Joints between pieces do not count.
 [[nodiscard]] double depth_inside(std::span<const Solid> spaces, const Vector3& point);
-/// A lower bound on the distance from `point` to the nearest of `obstacles`; negative inside one.
+/// A lower bound on the distance in metres from `point` to the nearest of `obstacles`; negative inside one.
 [[nodiscard]] double distance_to(std::span<const Solid> obstacles, const Vector3& point);
 
 }  // namespace adit

@@ -169,7 +169,8 @@ std::vector<Eigen::Vector3i> triangulated(const std::vector<Loop>& loops, std::v
   return triangles;
 }
 
-/// Halves every edge longer than wanted, each once a round, with the same midpoint for both of its triangles.
+/// Halves every edge longer than wanted, each once per round, with the same midpoint for both of its
+/// triangles.
 class Refiner {
  public:
   Refiner(const Surfacing& surfacing, std::vector<Vector3>& points)

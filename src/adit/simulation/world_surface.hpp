@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 /// From solids to one mesh. Faces are cut exactly against the other solids instead of sampling a field on a
-/// grid: concrete stays planar to rounding, and no grid leaves a texture that a scan matcher could hold on
-/// to.
+/// grid: concrete stays planar to rounding, and no grid leaves a texture that scan matching could lock onto.
 #pragma once
 
 #include <functional>
@@ -18,12 +17,12 @@ namespace adit {
 /// lie in one plane, the one of the earlier solid stays.
 [[nodiscard]] std::vector<Face> boundary_of_union(std::span<const Solid> solids);
 
-/// What the surface becomes after it is meshed.
+/// How the mesh is refined and displaced.
 struct Surfacing {
   double max_edge =
       1.0;  ///< Longer edges are halved; edges within the plane z = 0 too unless the floor is flat.
   bool flat_floor = true;
-  std::function<Vector3(const Vector3&)> displaced;  ///< Where a point of the smooth surface really lies.
+  std::function<Vector3(const Vector3&)> displaced;  ///< Maps points of the smooth surface to their place.
 };
 
 /// Merges equal corners, closes T-junctions, refines and displaces. Edges of the union end up in exactly two

@@ -51,7 +51,7 @@ std::array<double, N> draw_positions(int fewest, Rng& rng) {
 using Path = std::vector<Node>;  ///< From the mouth of an adit over the junctions at which the robot turns.
 
 /// All four lead through the middle of the second row, two in each direction.
-std::array<Path, 4> meeting_ways() {
+std::array<Path, 4> meeting_paths() {
   return {{{{-1, 0}, {1, 0}, {1, 1}, {3, 1}, {3, 2}, {0, 2}},
            {{5, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 2}, {4, 2}},
            {{-1, 3}, {0, 3}, {0, 2}, {1, 2}, {1, 1}, {4, 1}, {4, 3}},
@@ -59,7 +59,7 @@ std::array<Path, 4> meeting_ways() {
 }
 
 /// Two robots in the first two rows and two in the last ones.
-std::array<Path, 4> parallel_ways() {
+std::array<Path, 4> parallel_paths() {
   return {{{{-1, 0}, {1, 0}, {1, 1}, {4, 1}, {4, 0}, {0, 0}},
            {{5, 0}, {3, 0}, {3, 1}, {0, 1}, {0, 0}, {4, 0}},
            {{-1, 3}, {1, 3}, {1, 2}, {4, 2}, {4, 3}, {0, 3}},
@@ -127,7 +127,7 @@ WorldPlan plan_tiles(const WorldConfig& config) {
   Grid grid;
   grid.x = draw_positions<kColumns>(3, rng);
   grid.y = draw_positions<kRows>(2, rng);
-  const std::array<Path, 4> paths = config.routes == "meeting" ? meeting_ways() : parallel_ways();
+  const std::array<Path, 4> paths = config.routes == "meeting" ? meeting_paths() : parallel_paths();
   const std::vector<Edge> driven = edges_of(paths);
   for (const Path& path : paths) add_adit(plan, grid, path);
   for (const Edge& edge : all_edges()) {

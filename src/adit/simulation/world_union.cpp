@@ -46,8 +46,8 @@ bool lies_in(const Corners& corners, const Plane& plane) {
 
 enum class Coplanar { keep, drop };
 
-/// Whether a face in the plane of a wall of `piece` survives it: joints never shelter a face; a wall that
-/// looks the same way does when its solid comes later.
+/// Whether a face survives because it lies in the plane of a wall of `piece` (joints do not count). With
+/// Coplanar::drop only a face that looks out of the piece does.
 bool sheltered(const Face& face, const ConvexPiece& piece, Coplanar rule) {
   for (std::size_t k = 0; k < piece.num_walls; ++k)
     if (lies_in(face.corners, piece.planes[k]))

@@ -12,7 +12,7 @@
 namespace adit {
 namespace {
 
-/// KISS-ICP where there are no wheels to go by.
+/// Falls back to KISS-ICP for a recording without wheel odometry, and notes it.
 RobotSlamConfig config_for(const Recording& recording, RobotSlamConfig config,
                            std::vector<std::string>& notes) {
   if (!recording.wheel.empty() || !config.odometry.needs_wheels()) return config;
@@ -22,7 +22,7 @@ RobotSlamConfig config_for(const Recording& recording, RobotSlamConfig config,
   return config;
 }
 
-/// Whatever goes wrong with one robot is that robot's error.
+/// Turns whatever goes wrong into an error of this robot, so that the others go on.
 Result<RobotMap> map_one(const Recording& recording, RobotId id, const RobotSlamConfig& config,
                          const Phase& phase) {
   try {

@@ -26,7 +26,7 @@ struct FailedRobot {
 };
 
 struct Mapping {
-  std::vector<MappedRobot> robots;  ///< In the order of the recordings; ids count the recordings.
+  std::vector<MappedRobot> robots;  ///< In the order of the recordings; the id is the index of the recording.
   std::vector<FailedRobot> failed;
   std::vector<std::string> notes;  ///< What the user should know although nothing failed, one line each.
 };
@@ -37,7 +37,7 @@ struct Mapping {
 /// (ids are one byte) and where no robot is left.
 [[nodiscard]] Result<Mapping> map_robots(const std::vector<Recording>& recordings, const SlamConfig& config);
 
-/// Of all recordings together.
+/// The number of scans of all recordings together.
 [[nodiscard]] std::size_t num_scans(const std::vector<Recording>& recordings);
 
 }  // namespace adit

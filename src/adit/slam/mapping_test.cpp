@@ -59,7 +59,7 @@ TEST(Mapping, WhereNoRobotIsLeftThereIsNoMap) {
   EXPECT_ERROR(map_robots({}, SlamConfig{}), "no recording");
 }
 
-TEST(Mapping, WithoutWheelsKissIcpRunsAndItIsSaid) {
+TEST(Mapping, WithoutWheelsKissIcpRunsWithANote) {
   const Result<Mapping> mapping = map_robots({drive("ada")}, SlamConfig{});
   ASSERT_TRUE(mapping.has_value()) << mapping.error().message;
   EXPECT_EQ(mapping->robots[0].odometry, "kiss-icp");

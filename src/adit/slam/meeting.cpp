@@ -7,7 +7,8 @@
 namespace adit {
 namespace {
 
-/// In the first round every pair finds its loops; in the second the news of the first reaches everybody.
+/// In the first round every pair finds its loops; in the second each pair passes on what it heard in the
+/// first.
 constexpr std::size_t kRounds = 2;
 
 Result<> all_meet(const std::vector<Agent>& agents, LoopbackBus& bus, const Phase& phase) {

@@ -20,7 +20,8 @@ struct Meeting {
   std::vector<std::string> failures;      ///< Messages that an agent could not take, one line each.
 };
 
-/// No maps, no agents: an empty meeting. One phase of progress; may throw `Cancelled` (core/progress.hpp).
+/// Lets the agents of these maps meet. Without maps the meeting is empty. Fails where the bus does. One phase
+/// of progress; may throw `Cancelled` (core/progress.hpp).
 [[nodiscard]] Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps,
                                            const SlamConfig& config);
 

@@ -10,6 +10,7 @@
 
 namespace adit {
 
+/// The paths of all robots, each in the frame of its map, and the registered loops between them.
 LoopMap loop_map(const FleetGraph& fleet, const FleetSolution& solution);
 
 /// One picture per pair of robots whose merge was tested.

@@ -8,8 +8,8 @@
 
 namespace adit {
 
-/// Gives every recording a name that can be a folder (core/robot_name), and no two the same one: a second
-/// `robot_1` becomes `robot_1_2`.
+/// Gives every recording a unique name that can be a folder (core/robot_name): a second `robot_1` becomes
+/// `robot_1_2`.
 /// @returns one line for each name that changed.
 std::vector<std::string> name_robots(std::vector<Recording>& recordings);
 

@@ -7,8 +7,8 @@
 
 namespace adit {
 
-/// What a robot drove, and how many scans and keyframes it made of that; without its odometries. The path is
-/// the true one at the stamps of the scans, or that of the odometry where `truth` is empty.
+/// Path, duration, scans and keyframes of one robot; `odometry` of the result stays empty. The path is the
+/// true one at the stamps of the scans, or that of the odometry where `truth` is empty.
 [[nodiscard]] RobotResult robot_facts(const RobotMap& map, const Trajectory& truth);
 
 }  // namespace adit

@@ -37,7 +37,7 @@ TEST(RunConfig, WhatIsPrintedIsReadBackAndChangesNothing) {
   }
 }
 
-// What headers say of the defaults of their types, from the sources that they name.
+// Defaults for which a header names a source, compared with that source.
 TEST(RunConfig, DefaultsAreThoseThatHeadersNameASourceFor) {
   const ScanContextConfig place;  // Kim and Kim, IROS 2018: 20 rings of 4 m, 60 sectors
   EXPECT_EQ(place.num_rings, 20);

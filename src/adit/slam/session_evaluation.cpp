@@ -18,7 +18,7 @@ std::size_t index_of(const SavedSession& session, std::string_view robot) {
   return static_cast<std::size_t>(std::ranges::find(session.robots, robot) - session.robots.begin());
 }
 
-/// What the file may be called after: its stem, that without a word for truth at its end, its folder.
+/// Robot names that the file may state: its stem, its stem without a final word for truth, its folder.
 std::vector<std::string> possible_names(const GivenTruth& truth) {
   if (!truth.robot.empty()) return {truth.robot};
   const std::filesystem::path path = truth.source;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// A session against ground truth that arrives after it: trajectory errors of each robot, classes of the
-/// loops.
+/// Compares a session with ground truth that is given afterwards: trajectory errors of each robot, classes of
+/// the loops.
 #pragma once
 
 #include <filesystem>
@@ -16,15 +16,15 @@
 
 namespace adit {
 
-/// A true trajectory as it was given.
+/// A true trajectory, T_world_base, as the user gave it.
 struct GivenTruth {
   std::string source;  ///< What errors call it: its file.
-  std::string robot;   ///< The robot that it was given for (NAME=FILE); "": its file name tells.
+  std::string robot;   ///< The robot that it was given for (NAME=FILE); "": its file name says.
   Trajectory trajectory;
 };
 
 /// The truth of each robot of the session, in the session's order, whatever the order given; none for robots
-/// without one. A file belongs to the robot that it is called after: robot_0.tum, robot_0_truth.tum,
+/// without one. A file belongs to the robot that it is named after: robot_0.tum, robot_0_truth.tum,
 /// robot_0_gt.tum, or robot_0/truth.tum. Fails on a truth that names no robot of the session, on two for one
 /// robot, and on a truth that does not overlap its robot's drive in time: it cannot belong to it.
 [[nodiscard]] Result<std::vector<std::optional<Trajectory>>> match_truths(
@@ -43,7 +43,7 @@ struct SessionEvaluation {
   LoopCounts registered;            ///< Loops that registration accepted,
   LoopCounts consistent;            ///< of these those that PCM or the merge check kept,
   LoopCounts in_use;                ///< and of these those with a final weight of at least 0.5.
-  int num_unjudged = 0;             ///< Registered loops with an end at which the truth says nothing.
+  int num_unjudged = 0;             ///< Registered loops with a keyframe that has no true pose.
   std::vector<std::string>
       loop_classes;  ///< Per row of loops.csv; "" where it is not registered or unjudged.
 };

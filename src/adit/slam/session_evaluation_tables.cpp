@@ -27,7 +27,9 @@ Table robot_table(const SessionEvaluation& evaluation) {
 Table loop_table(const SessionEvaluation& evaluation) {
   Table table;
   table.title = "Loops";
-  table.caption = "Classes as in the paper: more than 10 m apart; more than 1 m or 15 degrees off.";
+  table.caption =
+      "Classes as in the paper. Wrong place: the keyframes are more than 10 m apart. Wrong registration: the "
+      "transform errs by more than 1 m or 15 degrees.";
   table.header = {"Stage", "Loops", "Correct", "Wrong place", "Wrong registration", "Precision (%)"};
   const auto row = [&](const std::string& stage, const LoopCounts& counts) {
     table.rows.push_back(

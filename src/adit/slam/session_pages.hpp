@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// What a session says about itself, for programs and for people.
+/// The pages of a session: metrics.json for programs, report.html for people.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace adit {
 
-/// metrics.json of a session: robots, pairs and maps. Of ground truth it knows nothing; `adit evaluate` adds
-/// `evaluation`.
+/// metrics.json of a session: robots, pairs and maps. It holds nothing that needs ground truth; `adit
+/// evaluate` adds the key `evaluation`.
 [[nodiscard]] std::string session_metrics(const SlamRun& run);
 
 /// report.html of a session: what was merged, by which loops, and why or why not.

@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kEvery = 10.0;      // metres along a path
 constexpr double kElsewhere = 15.0;  // metres from a place
-constexpr double kSamePlace = 4.0;   // metres between two scans, of which one is asked
+constexpr double kSamePlace = 4.0;   // metres; of scans nearer to one another only the best match counts
 constexpr std::size_t kMostAlike = 12;
-constexpr int kByRingKey = 128;  // keyframes of a robot that are compared, to find those
+constexpr int kByRingKey = 128;  // keyframes per robot whose descriptors are compared to find those
 
 /// One robot's keyframes, where they truly stand, and what is needed to compare them.
 struct Seen {
@@ -82,7 +82,7 @@ class MostAlike {
     std::vector<LoopCandidate> most;
     for (const LoopCandidate& c : found) {
       if (most.size() == kMostAlike) break;
-      // Of neighbours the most similar one speaks for all.
+      // The most similar one stands for its neighbours.
       const bool is_near = std::ranges::any_of(most, [&](const LoopCandidate& other) {
         return (position(c) - position(other)).norm() < kSamePlace;
       });
@@ -102,7 +102,7 @@ class MostAlike {
   std::optional<PlaceIndex> index_;
 };
 
-/// Whether registration can lay one scan over the other so that they do not differ.
+/// Whether registration can align the two scans such that they do not differ.
 bool are_alike(const Seen& a, std::uint32_t i, const Seen& b, std::uint32_t j,
                const RegistrationConfig& config) {
   const Registration found = register_features(a.features->at(i), b.features->at(j), config);
@@ -112,22 +112,22 @@ bool are_alike(const Seen& a, std::uint32_t i, const Seen& b, std::uint32_t j,
   return !a.discernment->differ(fit.agreement);
 }
 
-/// Of the sampled places of `all[robot]` those like no other.
-std::vector<Vector3> unlike_all(std::vector<Seen>& all, std::size_t robot, const MostAlike& most_alike,
-                                const RegistrationConfig& config) {
+/// The sampled places of `all[robot]` that are distinctive, as positions in the world frame.
+std::vector<Vector3> distinctive_in(std::vector<Seen>& all, std::size_t robot, const MostAlike& most_alike,
+                                    const RegistrationConfig& config) {
   struct Place {
     std::uint32_t keyframe;
     std::vector<LoopCandidate> others;
     bool has_equal = false;
   };
   const std::vector<std::uint32_t> samples = sampled(all[robot]);
-  const std::vector<bool> tells = all[robot].discernment->distinctive(samples);
+  const std::vector<bool> is_distinctive = all[robot].discernment->distinctive(samples);
   std::vector<Place> open;
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (tells[i]) open.push_back({samples[i], {}, false});
+    if (is_distinctive[i]) open.push_back({samples[i], {}, false});
   parallel_for_each(open.size(),
                     [&](std::size_t i) { open[i].others = most_alike.to(robot, open[i].keyframe); });
-  // One candidate of each place after another: most places of tiles end with the first.
+  // One candidate per place and pass: in a world of tiles the first one settles most places.
   for (std::size_t attempt = 0; attempt < kMostAlike; ++attempt) {
     std::vector<std::vector<std::uint32_t>> used(all.size());
     for (const Place& place : open) {
@@ -171,7 +171,7 @@ Result<DistinctivePlaces> distinctive_places(const std::vector<RobotRun>& runs, 
   const MostAlike most_alike(all, config);
   std::vector<std::vector<Vector3>> places;
   for (std::size_t robot = 0; robot < all.size(); ++robot)
-    places.push_back(unlike_all(all, robot, most_alike, config.loops.adaptive.registration));
+    places.push_back(distinctive_in(all, robot, most_alike, config.loops.adaptive.registration));
   DistinctivePlaces shared(all.size(), std::vector<int>(all.size(), 0));
   for (std::size_t a = 0; a < all.size(); ++a)
     for (std::size_t b = a + 1; b < all.size(); ++b)

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// What the ground truth says about merged maps. It judges; nothing that decides sees it.
+/// Judges merged maps by ground truth. No decision reads it.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,7 @@ struct JudgedSolution {
 [[nodiscard]] Result<JudgedSolution> judge(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
                                            const FleetSolution& solution);
 
-/// Of a meeting of two robots.
+/// The result of a meeting of two robots.
 [[nodiscard]] PairResult pair_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
                                      const JudgedSolution& judged);
 [[nodiscard]] JointResult joint_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting,

@@ -21,11 +21,11 @@ Fields fields_of(ListedGraph& c) {
            "",
            0,
            0,
-           "how false loops are made up, or that the file has its own",
+           "how false loops are added, or that the file has its own",
            {"random", "clustered", "as found"}},
-          {"seed", &c.seed, "", 0, 1e15, "of the injection"},
-          {"keep_every", &c.keep_every, "", 1, 1e6, "of so many true loops one is kept"},
-          {"information_scale", &c.information_scale, "", 1e-9, 1e9, "on all information matrices"},
+          {"seed", &c.seed, "", 0, 1e15, "seed of the added false loops"},
+          {"keep_every", &c.keep_every, "", 1, 1e6, "one in so many true loops is kept"},
+          {"information_scale", &c.information_scale, "", 1e-9, 1e9, "factor on all information matrices"},
           {"large", &c.large, "", 0, 0, "plain GNC and PCM would take too long, and are left out"},
           {"max_tilt_deg", &c.max_tilt_deg, "deg", 0.0, 90.0, "as found: loops that tilt by more are false"}};
 }
@@ -41,8 +41,7 @@ Result<> check(const std::deque<ListedGraph>& graphs) {
           format("two entries are called '{}' with injection '{}'; rename one", graph.name, graph.injection));
     if ((graph.injection == "as found") != (graph.max_tilt_deg > 0.0))
       return fail(graph.name +
-                  ": max_tilt_deg labels the loops of a graph as found, and of no other; add it to "
-                  "that, or remove it");
+                  ": max_tilt_deg goes with injection 'as found' and with no other; add it or remove it");
   }
   return {};
 }
@@ -93,7 +92,7 @@ Result<G2oFile> read_listed(const ListedGraph& graph) {
   if (bad > 0)
     return fail(
         format("{}: {} information matrices are indefinite; repair the file (adit solve --repair "
-               "--out) or take it off the list",
+               "--out) or remove it from the list",
                graph.path, bad));
   return file;
 }

@@ -34,7 +34,7 @@ Result<Reference<P>> solved(const BasicPoseGraph<P>& clean, const OptimizerConfi
   return Reference<P>{std::move(solution.poses), num_parts(clean)};
 }
 
-/// Both hold the first node of each part where it is.
+/// Both solutions hold the first node of each part where it is.
 template <class P>
 double largest_distance_m(const std::vector<P>& a, const std::vector<P>& b) {
   double largest = 0.0;
@@ -57,7 +57,7 @@ struct Attempt {
 };
 
 Attempt<Pose2> with_pcm(const PoseGraph2&, const LoopStudy&) {
-  return {{}, "PCM is written for graphs in space, and this one is plane"};
+  return {{}, "PCM is implemented for 3-D graphs, and this one is 2-D"};
 }
 
 Attempt<Pose> with_pcm(const PoseGraph& graph, const LoopStudy& study) {
@@ -127,7 +127,7 @@ void take(FalseLoopRun run, int share_pct, const LoopStudy& study) {
   study.on_run(std::move(run));
 }
 
-/// A graph that is true as it stands, spoiled with each share.
+/// A graph whose loops are all true, with each share of false ones added.
 template <class P>
 Result<> run_injected(const ListedGraph& listed, const BasicPoseGraph<P>& graph, const LoopStudy& study) {
   const BasicPoseGraph<P> clean = with_every_nth_loop(graph, listed.keep_every);
@@ -148,7 +148,7 @@ double tilt_deg(const Pose& T) {
   return std::acos(std::clamp(T.rotation_matrix()(2, 2), -1.0, 1.0)) * 180.0 / std::numbers::pi;
 }
 
-/// A graph with false loops of its own. Its robots drove on a floor, so that a loop that tilts is false.
+/// A graph with false loops of its own. Its robots drove on a floor, so a loop that tilts is false.
 Result<> run_as_found(const ListedGraph& listed, const PoseGraph& graph, const LoopStudy& study) {
   LabelledGraph<Pose> labelled{with_every_nth_loop(graph, listed.keep_every), 0};
   const auto first_false = std::ranges::stable_partition(labelled.graph.edges, [&](const auto& edge) {
@@ -175,8 +175,8 @@ Result<> run_graph(const ListedGraph& listed, const LoopStudy& study) {
   const auto* graph = std::get_if<PoseGraph>(&file->graph);
   if (graph == nullptr)
     return fail(listed.path +
-                ": loops that tilt can be labelled in graphs in space only; this one is plane, "
-                "take it off the list");
+                ": loops can be labelled by their tilt in 3-D graphs only, and this one is 2-D; remove it "
+                "from the list");
   return run_as_found(listed, *graph, study);
 }
 

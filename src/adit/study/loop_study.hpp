@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Which false loops plain GNC, PCM and adit's own search find in pose graphs.
+/// Measures which false loops plain GNC, PCM and adit's own search find in pose graphs.
 #pragma once
 
 #include <filesystem>
@@ -22,15 +22,15 @@ struct LoopStudy {
   std::function<void(FalseLoopRun)> on_run;    ///< Takes each result.
 };
 
-/// All methods on one listed graph: with each share of false loops, or on those that the file itself has.
-/// Fails where the graph cannot be read or its true edges cannot be solved.
+/// Runs all methods on one listed graph: with each share of false loops, or on those that the file itself
+/// has. Fails where the graph cannot be read or its true edges cannot be solved.
 Result<> run_graph(const ListedGraph& listed, const LoopStudy& study);
 
 struct ChosenGraphs {
   std::vector<ListedGraph> graphs;  ///< In the order of the list.
   std::vector<std::string> notes;   ///< One line per graph that is left out because its file is absent.
 };
-/// Those named, or all where `only` is empty. Fails on a name that the list does not have.
+/// The graphs named in `only`, or all where it is empty. Fails on a name that the list does not have.
 [[nodiscard]] Result<ChosenGraphs> chosen_graphs(const std::filesystem::path& list,
                                                  const std::vector<ListedGraph>& graphs,
                                                  const std::vector<std::string>& only);

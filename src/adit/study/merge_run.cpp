@@ -11,7 +11,7 @@
 namespace adit {
 namespace {
 
-/// What two robots know of each other, as if there were no others.
+/// What two robots would know if there were no others.
 FleetGraph between(const FleetGraph& all, RobotId a, RobotId b) {
   FleetGraph pair;
   pair.policy = all.policy;
@@ -88,7 +88,7 @@ bool is_wrong(const MergeTruth& truth, const JointResult& result, int num_loops_
   return judge_merge(evidence) == MergeOutcome::wrong;
 }
 
-/// What pairs share where they have something to tell it by.
+/// Metres of shared stretch of each pair; 0 where no place on it is distinctive.
 std::vector<std::vector<double>> distinctive_m(const MergeTruth& truth) {
   std::vector<std::vector<double>> shared_m = truth.shared_m;
   for (std::size_t a = 0; a < shared_m.size(); ++a)
@@ -102,7 +102,7 @@ MergeJoint joint_of(const std::vector<RobotRun>& runs, const MergeTruth& truth, 
   constexpr double kAnything = 1e-3;
   MergeJoint joint;
   joint.maps = result.components;
-  joint.possible_maps = named(runs, groups_sharing(distinctive_m(truth), kMergeableShare));
+  joint.possible_maps = named(runs, groups_sharing(distinctive_m(truth), kMergeableStretch));
   joint.wrong = is_wrong(truth, result, num_loops_in_use) ||
                 !are_within(joint.maps, named(runs, groups_sharing(truth.shared_m, kAnything)));
   joint.wrong_loops_in_use = result.wrong_loops_in_solution;

@@ -10,7 +10,7 @@
 namespace adit {
 namespace {
 
-/// As an earlier run measured them, or else measured now: that takes longer than a policy.
+/// As an earlier run measured them, else measured now, which takes longer than a run of one policy.
 Result<DistinctivePlaces> places_of(const ListedWorld& world, const std::vector<RobotRun>& robots,
                                     const RunConfig& config, const std::vector<MergeRun>& runs) {
   const auto earlier = std::ranges::find(runs, world.name, &MergeRun::world);
@@ -85,8 +85,7 @@ std::string summary_line(const MergeRun& run) {
   counts.add(run);
   return format(
       "{:28} {:18} {} mergeable: {} well, {} bent, {} refused; {} of {} others kept apart; {} WRONG, {} "
-      "wrong "
-      "loops; joint {} wrong loops, {}; {} registrations, {:.1f} s",
+      "wrong loops; joint {} wrong loops, {}; {} registrations, {:.1f} s",
       run.world, run.keyframes, counts.mergeable, counts.success, counts.bent, counts.refused,
       counts.kept_apart, counts.others, counts.wrong, counts.wrong_loops, counts.joint_wrong_loops,
       joint_outcome(counts), run.registrations, run.time_s);

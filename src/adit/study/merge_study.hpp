@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Merging over a list of worlds: which pairs of robots are merged, refused or merged wrongly under each
-/// keyframe policy.
+/// Measures merging over a list of worlds: which pairs of robots are merged, refused or merged wrongly under
+/// each keyframe policy.
 #pragma once
 
 #include <filesystem>
@@ -36,11 +36,12 @@ struct MergeStudy {
   std::function<void(const MergeRun&)> on_run;  ///< Called after each policy; may be empty.
 };
 
-/// Runs every policy on one world. Results take their place in `runs` and reach the disk at the end.
+/// Runs every policy on one world. Puts the results into `runs` (`put_run`) and writes them to disk at the
+/// end.
 Result<> run_world(const MergeStudy& study, const ListedWorld& world, std::vector<MergeRun>& runs);
 
-/// In the order of the list, policies as they were given when the world was first run; runs of worlds that
-/// the list no longer names are dropped.
+/// Sorts by the order of the list, and within a world by the order in which its policies were first given.
+/// Drops runs of worlds that the list no longer names.
 void sort_by_list(std::vector<MergeRun>& runs, const std::vector<ListedWorld>& list);
 
 /// One run in one line of text.

@@ -31,7 +31,7 @@ Fields fields_of(ListedWorld& c) {
                     0,
                     "tuned on, kept for the check, or beyond what measurement can decide",
                     {"tuning", "check", "limit"}},
-                   {"noise_seed", &c.noise_seed, "", 0, 1e15, "of all noise of sensors and wheels"},
+                   {"noise_seed", &c.noise_seed, "", 0, 1e15, "seed of all noise of sensors and wheels"},
                    {"routes_file", &c.routes_file, "", 0, 0, "routes.yaml of a mesh on disk"}};
   append(fields, "world", adit::fields_of(c.generated));
   return fields;
@@ -68,13 +68,13 @@ std::filesystem::path truth_file(const std::filesystem::path& folder, std::size_
   return folder / format("{}_truth.tum", robot);
 }
 
-/// What one odometry makes of a world, and the folder that keeps it.
+/// The maps of one odometry in a world, and the folder that keeps them.
 struct Drives {
   RobotSlamConfig config;
   std::filesystem::path folder;
 };
 
-/// Drives one recording and writes what it left, into the folder of each configuration.
+/// Maps one recording under each configuration and writes the result into its folder.
 Result<> record(const Recording& recording, std::size_t robot, const std::vector<RobotSlamConfig>& configs,
                 const std::vector<OutputDir>& folders, const Phase& phase) {
   const auto observer = [&](std::size_t) {

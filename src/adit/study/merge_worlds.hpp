@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// The list of worlds over which merging is measured, and what the robots made of each: their maps are
-/// recorded once and kept, since driving and odometry cost far more than all that follows.
+/// The list of worlds over which merging is measured, and the robots' maps of each. Maps are made once and
+/// kept, since driving and odometry cost far more than all that follows.
 #pragma once
 
 #include <filesystem>
@@ -29,11 +29,11 @@ Result<std::vector<ListedWorld>> read_world_list(const std::filesystem::path& li
 /// Whether the files that the world needs are there; generated ones need none.
 [[nodiscard]] bool is_available(const ListedWorld& world);
 
-/// The robots' maps, by the odometries that those policies are studied under, and ground truth; from `cache`
-/// where that world was driven before with the same configuration of simulation and robots; else simulated
-/// and put there, a folder that exists. What is used is always what the cache holds. The code itself and
-/// what a routes file and its mesh hold are not part of the key: after a change of those, of simulation,
-/// odometry, keyframes or descriptors the cache has to go. Fails on a world with fewer than two robots.
+/// The robots' maps, by the odometries that those policies are studied under, and their ground truth. They
+/// come from `cache`, a folder that exists, if the world was driven before with the same configuration of
+/// simulation and robots; otherwise they are simulated, stored there and read back. The key covers neither
+/// the code nor what a routes file and its mesh hold: after a change of those, remove the cache. Fails on a
+/// world with fewer than two robots.
 Result<std::vector<RobotRun>> driven_robots(const ListedWorld& world, RunConfig config,
                                             const std::vector<KeyframeSelection>& selections,
                                             const std::filesystem::path& cache);

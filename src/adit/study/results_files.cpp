@@ -114,7 +114,7 @@ Result<std::vector<MergeRun>> read_merge_runs(const std::filesystem::path& file)
   if (!std::filesystem::exists(file)) return std::vector<MergeRun>{};
   const Result<std::string> bytes = read_bytes(file);
   if (!bytes) return tl::unexpected(bytes.error());
-  const auto refused = fail(file.string() + ": these are no results of this version; remove the file");
+  const auto refused = fail(file.string() + ": not results of this version; remove the file");
   try {
     const Json content = Json::parse(*bytes);
     if (content.at("version") != kMergeRunsVersion) return refused;

@@ -121,7 +121,7 @@ Result<RobotRun> run_robot(const Recording& recording, RobotId id, const RunConf
   return run;
 }
 
-/// The first robot that failed decides; the others' work is lost, but nothing of theirs is touched.
+/// The values, or the error of the first robot that failed.
 template <class T>
 Result<std::vector<T>> all_or_first_error(std::vector<Result<T>> results) {
   std::vector<T> values;

@@ -18,7 +18,7 @@ struct RobotRun {
   Trajectory truth;                           ///< For evaluation alone.
   RobotResult result;
 
-  /// The one whose keyframes a policy selects.
+  /// The map from which `policy` selects keyframes.
   [[nodiscard]] const std::shared_ptr<const RobotMap>& map_for(KeyframeSelection policy) const {
     return policy == KeyframeSelection::adaptive ? map : paper_map;
   }

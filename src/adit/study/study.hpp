@@ -19,7 +19,7 @@ struct Study {
   RunConfig config;                         ///< Policies run under `with_policy`.
   std::vector<KeyframeSelection> policies;  ///< Of the pairs; the last one also of all robots jointly.
   Provenance provenance;                    ///< Of the sessions and the report; robots are filled in.
-  std::filesystem::path folder;             ///< Takes all output; it exists.
+  std::filesystem::path folder;             ///< Existing folder for all output.
 };
 
 /// Drives the robots of the world and merges their maps. Writes into the folder each robot's trajectories

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-// What a study leaves for people and programs.
+// The files of a study: tables.md, metrics.json, report.html and the figures.
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/folders.hpp"
 #include "adit/report/html_report.hpp"

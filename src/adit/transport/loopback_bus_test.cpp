@@ -61,7 +61,7 @@ TEST(LoopbackBus, AMessageThatFailsIsNotedAndStopsNobody) {
   join_all(agents, bus);
   ASSERT_TRUE(bus.meet({0}, {1}).has_value());
   ASSERT_EQ(bus.failures().size(), 1U);
-  EXPECT_EQ(bus.failures()[0].find("message to robot 0: message of kind 1 makes no sense"), 0U)
+  EXPECT_EQ(bus.failures()[0].find("message to robot 0: message of kind 1 is malformed"), 0U)
       << bus.failures()[0];
   EXPECT_EQ(agents[1].known().robots.size(), 2U) << "what the other one said has arrived";
 }

@@ -400,7 +400,7 @@ std::uint64_t checksum(std::span<const std::byte> bytes) {
 }
 
 Result<Message> decode(std::span<const std::byte> bytes) {
-  if (bytes.empty()) return fail("message without a byte");
+  if (bytes.empty()) return fail("message without bytes");
   const auto version = static_cast<std::uint8_t>(bytes.front());
   if (version != kProtocolVersion) {
     return fail(format("message of protocol version {}, this adit speaks {}", version, kProtocolVersion));
@@ -417,7 +417,7 @@ Result<Message> decode(std::span<const std::byte> bytes) {
   const std::size_t kind = in.scalar<std::uint8_t>();
   std::optional<Body> body = body_of(in, kind);
   if (!body) return fail(format("message of unknown kind {}", kind));
-  if (!in.ok()) return fail(format("message of kind {} makes no sense near byte {}", kind, in.at() + 1));
+  if (!in.ok()) return fail(format("message of kind {} is malformed near byte {}", kind, in.at() + 1));
   if (!in.at_end()) return fail(format("message of kind {} has more bytes than it needs", kind));
   message.body = std::move(*body);
   return message;

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "adit/core/decompositions.hpp"
+#include "adit/core/log_gamma.hpp"
 #include "adit/fleet/search/path.hpp"
 
 namespace adit {
@@ -138,7 +139,7 @@ double Cycle::log_drift(const Vector6& miss, const Matrix6& covariance) const {
   const Eigen::LDLT<Matrix6> ldlt(covariance);
   const double freedom = config_.freedom;
   const double half = 0.5 * (freedom + 6.0);
-  return std::lgamma(half) - std::lgamma(0.5 * freedom) - 3.0 * std::log(freedom * std::numbers::pi) -
+  return log_gamma(half) - log_gamma(0.5 * freedom) - 3.0 * std::log(freedom * std::numbers::pi) -
          0.5 * ldlt.vectorD().array().log().sum() - half * std::log1p(miss.dot(ldlt.solve(miss)) / freedom);
 }
 

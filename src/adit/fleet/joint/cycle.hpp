@@ -23,17 +23,18 @@ struct CycleConfig {
   int refuted_pairs = 2;
 };
 inline Fields fields_of(CycleConfig& c) {
-  return {{"freedom", &c.freedom, "", 1.0, 1e6,
-           "the configured noise of odometry is believed like so many measurements of it (Student's t): one "
-           "slip by "
-           "ten sigmas is then still drift"},
-          {"detour", &c.detour, "", 1.0, 100.0,
-           "of the paths around a cycle that drive at most so many times the shortest,"},
-          {"detour_m", &c.detour_m, "m", 0.0, 10000.0, "and this much more, the one that closes best counts"},
-          {"same_alignment_m", &c.same_alignment_m, "m", 0.0, 1000.0,
-           "hypotheses of two pairs agree if a cycle through both ends this near to where it began"},
-          {"refuted_pairs", &c.refuted_pairs, "", 1, 10000,
-           "pairs whose scans refute what merges together claim, before one of these is taken back"}};
+  return {
+      {"freedom", &c.freedom, "", 1.0, 1e6,
+       "degrees of freedom of Student's t: the configured odometry noise counts as so many measurements of "
+       "it, so that one slip by ten sigmas still counts as drift"},
+      {"detour", &c.detour, "", 1.0, 100.0,
+       "paths around a cycle are compared if at most this many times as long as the shortest one"},
+      {"detour_m", &c.detour_m, "m", 0.0, 10000.0,
+       "plus this; of these paths the one that closes best counts"},
+      {"same_alignment_m", &c.same_alignment_m, "m", 0.0, 1000.0,
+       "hypotheses of two pairs agree if a cycle through both ends within this distance of its beginning"},
+      {"refuted_pairs", &c.refuted_pairs, "", 1, 10000,
+       "pairs whose scans refute what merges together claim, before one of these is taken back"}};
 }
 
 /// The loops that join the maps of two robots; PcmLoop::a is a keyframe of robot a, b one of robot b.

@@ -71,10 +71,10 @@ std::string reason_of(const LoopOutcome& outcome, const MergeCheck* check,
     return hypothesis ? "not in use: " + finding(*check, *hypothesis)
                       : std::string("not in use: agrees with too few other loops to be a hypothesis");
   if (pair != nullptr && pair->num_selected > 0)
-    return format("dropped by PCM: disagrees with some of the {} loops of the largest set that agree",
+    return format("dropped by PCM: disagrees with some of the {} loops of the largest consistent set",
                   pair->num_selected);
   return pair != nullptr && !pair->merged ? "maps not joined: " + pair->refused_reason
-                                          : std::string("not in use: a keyframe of it is not known yet");
+                                          : std::string("not in use: one of its keyframes is not known yet");
 }
 
 }  // namespace

@@ -17,18 +17,20 @@ Fields fields_of(DiscernmentConfig& c) {
       {"allowance", &c.allowance, "", 1.0, 100.0, "scans differ beyond this times the usual difference"},
       {"second_looks", &c.second_looks, "", 0, 0,
        "a place differs only if a second pair of scans, nearby, differs too: one fit in many fails"},
-      {"second_look_m", &c.second_look_m, "m", 0.1, 100.0, "from the first pair of scans to the second"},
+      {"second_look_m", &c.second_look_m, "m", 0.1, 100.0,
+       "distance from the first pair of scans to the second"},
       {"followed_m", &c.followed_m, "m", 1.0, 10000.0, "path along which look-alikes are followed, each way"},
       {"starts_per_look_alike", &c.starts_per_look_alike, "", 1, 1000,
        "candidates of a stretch that are tried until one can be followed"},
       {"prior_chance", &c.prior_chance, "", 0.0, 1.0,
-       "chance that look-alikes agree at one more place, believed before anything is measured"},
-      {"prior_steps", &c.prior_steps, "", 0.0, 1e6, "measured places that this belief is worth"},
+       "prior chance that look-alikes agree at one more place"},
+      {"prior_steps", &c.prior_steps, "", 0.0, 1e6, "number of measured places that this prior counts as"},
       {"shortest_reach_m", &c.shortest_reach_m, "m", 1.0, 10000.0,
-       "maps are compared this far from a loop at least"},
-      {"longest_reach_m", &c.longest_reach_m, "m", 1.0, 10000.0, "and this far at most:"},
+       "maps are compared at least this far from a loop"},
+      {"longest_reach_m", &c.longest_reach_m, "m", 1.0, 10000.0,
+       "maps are compared at most this far from a loop,"},
       {"reach_off_m", &c.reach_off_m, "m", 0.01, 10.0,
-       "as far as odometry leads to within this distance to the side"}};
+       "and only as far as odometry's sideways error stays below this"}};
 }
 
 Fields fields_of(MergeCheckConfig& c) {
@@ -39,14 +41,14 @@ Fields fields_of(MergeCheckConfig& c) {
       {"spacing_m", &c.spacing_m, "m", 0.1, 1000.0, "path between two places where maps are compared"},
       {"max_checks", &c.max_checks, "", 1, 10000, "places that are compared at most, per hypothesis"},
       {"first_checks", &c.first_checks, "", 1, 10000,
-       "places that are compared of each hypothesis before the best ones are compared further"},
+       "places compared per hypothesis before the best ones are compared further"},
       {"max_hypotheses", &c.max_hypotheses, "", 1, 1000,
        "sets of consistent loops that are tested, the largest ones"},
       {"min_loops", &c.min_loops, "", 1, 1000, "loops that have to agree in a hypothesis that joins maps"},
       {"odometry_slack", &c.odometry_slack, "", 1.0, 100.0,
        "loops make one hypothesis if they agree within this many times the noise of odometry"},
       {"same_alignment_m", &c.same_alignment_m, "m", 0.0, 1000.0,
-       "hypotheses that put the other robot this near to one another are one"},
+       "hypotheses are one if they put the other robot within this distance of one another"},
       {"agreement_at_worst", &c.agreement_at_worst, "", 0.5, 0.999999,
        "least chance that scans of one place agree: a hypothesis is refuted when they differ more often"},
       {"gross_difference", &c.gross_difference, "", 1.0, 1000.0,
@@ -55,10 +57,10 @@ Fields fields_of(MergeCheckConfig& c) {
       {"misplaced_m", &c.misplaced_m, "m", 0.0, 1000.0,
        "a loop contradicts another one nearby if they disagree by more"},
       {"misplaced_keyframes", &c.misplaced_keyframes, "", 0, 1e6,
-       "which is this many keyframes away at most"},
+       "and nearby is at most this many keyframes away"},
       {"misplaced_neighbours", &c.misplaced_neighbours, "", 1, 1e6,
-       "so many of the nearest loops are asked, and a loop that most of them contradict is left out,"},
-      {"misplaced_quorum", &c.misplaced_quorum, "", 1, 1e6, "unless there are fewer than this"},
+       "a loop is left out if most of this many nearest loops contradict it,"},
+      {"misplaced_quorum", &c.misplaced_quorum, "", 1, 1e6, "unless there are fewer nearby loops than this"},
       {"distinctive_only", &c.distinctive_only, "", 0, 0,
        "agreement counts only where a displacement along the path would show"},
       {"relief", &c.relief, "", 0, 0,
@@ -72,8 +74,9 @@ Fields fields_of(AdaptiveConfig& c) {
   Fields fields = fields_of(c.search);
   fields.push_back({"one_place_m", &c.one_place_m, "m", 0.1, 1000.0,
                     "loops whose keyframes stand farther apart are rejected: not one place"});
-  fields.push_back({"second_search_share", &c.second_search_share, "", 1, 1e6,
-                    "the search goes on where one candidate in so many became a loop and all are refuted"});
+  fields.push_back(
+      {"second_search_share", &c.second_search_share, "", 1, 1e6,
+       "the search goes on where at least one candidate in this many became a loop and all are refuted"});
   append(fields, "registration", fields_of(c.registration));
   append(fields, "merge_check", fields_of(c.merge_check));
   return fields;

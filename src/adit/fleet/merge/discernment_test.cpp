@@ -60,7 +60,7 @@ struct OnAMap {
 TEST(Discernment, ADisplacementDoesNotShowInASmoothTubeAndDoesBesideABlock) {
   OnAMap smooth(in_a_tube({}));
   const std::vector<std::uint32_t> places = {40, 50, 60, 70};
-  for (const bool tells : smooth.discernment.distinctive(places)) EXPECT_FALSE(tells);
+  for (const bool is_distinctive : smooth.discernment.distinctive(places)) EXPECT_FALSE(is_distinctive);
   OnAMap with_block(in_a_tube({{{29.0, 1.5, -2.0}, {31.0, 4.0, 1.0}}}));
   const std::vector<bool> near = with_block.discernment.distinctive({56, 64});
   EXPECT_TRUE(near[0]);

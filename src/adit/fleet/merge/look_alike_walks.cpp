@@ -84,7 +84,7 @@ void LookAlikeWalks::follow(Measured& measured) {
     std::vector<std::uint32_t> places;
     for (const OwnComparison& place : step.asked) places.push_back(place.a);
     const std::vector<bool> is_distinctive = discernment_.distinctive(places);
-    step.found = discernment_.compare(step.asked, FitFrom::along_the_way);
+    step.found = discernment_.compare(step.asked, FitFrom::along_the_path);
     if (config_.merge_check.discernment.second_looks) look_again(step);
     SurfaceStore& surfaces = discernment_.surfaces();
     for (std::size_t w = 0; w < walks_.size(); ++w) {
@@ -129,7 +129,7 @@ void LookAlikeWalks::look_again(Step& step) {
       break;
     }
   }
-  const std::vector<LocalFit> again = discernment_.compare(asked, FitFrom::along_the_way);
+  const std::vector<LocalFit> again = discernment_.compare(asked, FitFrom::along_the_path);
   for (std::size_t i = 0; i < which.size(); ++i) {
     if (discernment_.differ(again[i].agreement)) continue;
     step.asked[which[i]] = asked[i];

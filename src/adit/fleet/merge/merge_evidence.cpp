@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "adit/core/log_gamma.hpp"
+
 namespace adit {
 
 double chance_to_go_on(const ChancesToGoOn& chances, std::size_t passed) {
@@ -38,7 +40,7 @@ double binomial_tail(std::size_t k, std::size_t n, double p) {
   for (std::size_t i = k; i <= n; ++i) {
     const auto x = static_cast<double>(i);
     const auto all = static_cast<double>(n);
-    chance += std::exp(std::lgamma(all + 1.0) - std::lgamma(x + 1.0) - std::lgamma(all - x + 1.0) +
+    chance += std::exp(log_gamma(all + 1.0) - log_gamma(x + 1.0) - log_gamma(all - x + 1.0) +
                        x * std::log(p) + (all - x) * std::log1p(-p));
   }
   return chance;

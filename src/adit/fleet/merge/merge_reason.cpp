@@ -31,15 +31,15 @@ std::string MergeChecker::reason(MergeDecision decision, const std::vector<std::
     case MergeDecision::other_walls: {
       const StandingShare walls = h.offsets.counted();
       return format(
-          "the walls differ: at {:.0f} % of {} patches all scans lie on one side of the other robot's wall, "
-          "where noise would leave half; two tunnels built alike; drive on until one passes where the other "
-          "has truly been",
-          100.0 * walls.share, walls.num_patches);
+          "the walls differ: of the pairs of scans that saw one of {} patches, {:.0f} % found the other "
+          "robot's wall on the same side, where noise alone would leave half: two tunnels built alike; drive "
+          "on until one passes where the other has truly been",
+          walls.num_patches, 100.0 * walls.share);
     }
     case MergeDecision::scans_differ:
       return format(
-          "scans differ at {} of {} places along the stretch that {} loops align: "
-          "tunnels that only look alike; drive on until one passes where the other has truly been",
+          "scans differ at {} of {} places along the stretch that {} loops align: tunnels that only look "
+          "alike; drive on until one passes where the other has truly been",
           h.num_differing(), h.compared.size(), h.loops.size());
     case MergeDecision::nothing_distinctive:
       return format(
@@ -51,12 +51,12 @@ std::string MergeChecker::reason(MergeDecision decision, const std::vector<std::
                     evidence(h), needed(), num_agreeing, h.compared.size(), h.num_distinctive(),
                     what_is_missing(h));
     case MergeDecision::too_few_loops:
-      return format("{} loops agree, {} are needed; drive the same stretch on", h.loops.size(),
+      return format("{} loops agree, {} are needed; drive on along the same stretch", h.loops.size(),
                     config_.min_loops);
     case MergeDecision::rival:
       return format(
-          "two hypotheses {:.0f} m apart along the tunnel have similar support, evidence {:.1f} and "
-          "{:.1f}; drive on until both pass something that only one of them explains",
+          "two hypotheses {:.0f} m apart along the tunnel have similar support, evidence {:.1f} and {:.1f}; "
+          "drive on until both pass something that only one of them explains",
           apart_m(best_first[0], best_first[1]), evidence(h), evidence(hypotheses_[best_first[1]]));
     case MergeDecision::no_loops:
     case MergeDecision::unfinished:
@@ -64,8 +64,8 @@ std::string MergeChecker::reason(MergeDecision decision, const std::vector<std::
       break;
   }
   return format(
-      "{} of {} places along the shared stretch agree, {} of them distinctive: evidence {:.1f}, "
-      "needed {:.1f}",
+      "{} of {} places along the shared stretch agree, {} of them distinctive: evidence {:.1f}, needed "
+      "{:.1f}",
       num_agreeing, h.compared.size(), h.num_distinctive(), evidence(h), needed());
 }
 

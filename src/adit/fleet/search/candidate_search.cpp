@@ -24,24 +24,25 @@ Fields fields_of(SearchConfig& c) {
   Fields fields = {
       {"candidates", &c.candidates, "", 1, 1e6, "candidates that are registered with each peer"},
       {"further_candidates", &c.further_candidates, "", 0, 1e6,
-       "and so many more where these led to many loops, all of which are refuted"},
+       "further candidates where the first led to many loops, all of which are refuted"},
       {"segments", &c.segments, "", 0, 1e6,
        "stretches along which candidates agree, whose best ones are registered first"},
       {"segments_that_stand_out", &c.segments_that_stand_out, "", 0, 1e6,
        "the same, weighed by how much a candidate stands out from look-alikes in the robot's own map; taken "
        "in turns"},
-      {"of_a_segment", &c.of_a_segment, "", 1, 1e6, "candidates that are registered of each of them"},
+      {"of_a_segment", &c.of_a_segment, "", 1, 1e6, "candidates registered per segment"},
       {"stand_out", &c.stand_out, "", 0, 0,
        "rank other candidates by their distance over that to the most similar other place of the own map; "
        "otherwise by their distance"},
-      {"of_a_place", &c.of_a_place, "", 1, 1e6, "of those, candidates of one place at most"},
+      {"of_a_place", &c.of_a_place, "", 1, 1e6, "of these, at most this many candidates of one place"},
       {"place_keyframes", &c.place_keyframes, "", 1, 1e6,
-       "keyframes nearer than this in index are of one place"},
+       "keyframes nearer than this in index count as one place"},
       {"lane_m", &c.lane_m, "m", 0.0, 100.0,
-       "between the lanes from which a keyframe is described for the search"},
+       "distance between the lanes from which a keyframe is described for the search"},
       {"lanes", &c.lanes, "", 0, 100, "such lanes on each side of the one that was driven"},
       {"revisits", &c.revisits, "", 0, 0, "look for loops within the robot's own map"},
-      {"revisit_candidates", &c.revisit_candidates, "", 1, 1e6, "candidates that are registered within it"}};
+      {"revisit_candidates", &c.revisit_candidates, "", 1, 1e6,
+       "candidates registered within the robot's own map"}};
   append(fields, "segment", fields_of(c.segment));
   append(fields, "self_similarity", fields_of(c.self_similarity));
   append(fields, "revisit", fields_of(c.revisit));

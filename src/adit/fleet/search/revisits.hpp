@@ -18,12 +18,13 @@ struct RevisitConfig {
   double probability = 0.99;
 };
 inline Fields fields_of(RevisitConfig& c) {
-  return {{"path_m", &c.path_m, "m", 1.0, 10000.0,
-           "path driven between two visits at least: nearer keyframes see the same walls without a return"},
-          {"near_m", &c.near_m, "m", 0.0, 1000.0, "two keyframes of one place stand this near"},
-          {"sigmas", &c.sigmas, "", 0.1, 100.0,
-           "sigmas by which odometry may be off, and factor on its noise in the test of a loop"},
-          {"probability", &c.probability, "", 0.5, 0.999999, "a true loop passes that test this often"}};
+  return {
+      {"path_m", &c.path_m, "m", 1.0, 10000.0,
+       "path driven between two visits at least: nearer keyframes see the same walls without a return"},
+      {"near_m", &c.near_m, "m", 0.0, 1000.0, "two keyframes of one place are at most this far apart"},
+      {"sigmas", &c.sigmas, "", 0.1, 100.0,
+       "sigmas by which odometry may be off, and factor on its noise in the test of a loop"},
+      {"probability", &c.probability, "", 0.5, 0.999999, "probability that a true loop passes that test"}};
 }
 
 /// The later keyframes that may stand where keyframe k does: at least `config.path_m` on along `path_m`

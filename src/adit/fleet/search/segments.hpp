@@ -24,14 +24,14 @@ struct SegmentConfig {
 };
 inline Fields fields_of(SegmentConfig& c) {
   return {{"reach_m", &c.reach_m, "m", 1.0, 10000.0,
-           "candidates of one segment lie this near along the own path, before and behind"},
+           "candidates of one segment lie within this distance along the own path, ahead or behind"},
           {"bin_m", &c.bin_m, "m", 0.1, 1000.0, "stretch of path that counts once"},
           {"off_m", &c.off_m, "m", 0.0, 1000.0,
-           "agreeing candidates place the other robot within this; a descriptor matches some metres ahead or "
-           "behind"},
+           "agreeing candidates place the other robot within this distance; a descriptor matches some metres "
+           "ahead or behind"},
           {"off_deg_per_m", &c.off_deg_per_m, "deg", 0.0, 90.0,
            "that grows by this angle times the distance between them: half a sector of 6 degrees"},
-          {"turned_deg", &c.turned_deg, "deg", 0.0, 180.0, "and within this heading"}};
+          {"turned_deg", &c.turned_deg, "deg", 0.0, 180.0, "largest difference of their headings"}};
 }
 
 /// Candidates that align two paths alike, within some tens of metres.
