@@ -253,8 +253,8 @@ TEST(Terminal, ShowsPhasesWithTheTimeLeft) {
   const test::TemporaryFolder folder;
   const std::string routes = Inputs(folder.path()).routes();
   const std::string output = test::output_on_terminal(
-      {"slam", routes, "--threads", "1", "--lidar", "os2-32", "--out", (folder / "out").string()});
-  const std::regex with_time(R"(mapping \[#* *\] \d+ %, (\d+ min )?\d+ s left)");
+      {"slam", routes, "--threads", "1", "--lidar", "os2-128", "--out", (folder / "out").string()});
+  const std::regex with_time(R"([a-z]+ \[#* *\] \d+ %, (\d+ min )?\d+ s left)");
   EXPECT_TRUE(std::ranges::any_of(drawn_lines(output), [&](const std::string& line) {
     return std::regex_search(line, with_time);
   })) << output;

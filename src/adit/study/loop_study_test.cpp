@@ -142,11 +142,11 @@ TEST(RunGraph, PlaneGraphsHaveNoPcmAndNoTilt) {
   const std::vector<FalseLoopRun> runs = runs_of(flat, {0});
   ASSERT_EQ(runs.size(), 1U);
   EXPECT_FALSE(runs[0].decisions[kPcm].has_value());
-  EXPECT_NE(runs[0].reasons[kPcm].find("plane"), std::string::npos);
+  EXPECT_NE(runs[0].reasons[kPcm].find("2-D"), std::string::npos);
   EXPECT_EQ(runs[0].decisions[kAdit]->score, (LoopScore{1, 0, 0, 0}));
   flat.injection = "as found";
   flat.max_tilt_deg = 10.0;
-  EXPECT_ERROR(run_graph(flat, {}), "flat.g2o: loops that tilt can be labelled in graphs in space only");
+  EXPECT_ERROR(run_graph(flat, {}), "flat.g2o: loops can be labelled by their tilt in 3-D graphs only");
   flat.path = (folder / "away.g2o").string();
   EXPECT_ERROR(run_graph(flat, {}), "away.g2o");
 }

@@ -113,7 +113,7 @@ TEST(MergeResults, OtherFilesAreRefusedWithTheRemedy) {
         replaced("\"version\": 2", "\"version\": 1"), replaced("\"version\": 2,", "")}) {
     put_file(folder / "results.json", text);
     EXPECT_ERROR(read_merge_runs(folder / "results.json"),
-                 "results.json: these are no results of this version; remove the file");
+                 "results.json: not results of this version; remove the file");
   }
 }
 
