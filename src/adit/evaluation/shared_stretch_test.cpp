@@ -13,9 +13,9 @@ namespace {
 Trajectory drive(const Vector3& from, const Vector3& to) {
   Trajectory trajectory;
   const double length = (to - from).norm();
-  const int num = static_cast<int>(length / 0.01);
-  for (int i = 0; i <= num; ++i) {
-    const Vector3 p = from + (to - from) * (static_cast<double>(i) / num);
+  const auto num = static_cast<std::int64_t>(length / 0.01);
+  for (std::int64_t i = 0; i <= num; ++i) {
+    const Vector3 p = from + (to - from) * (static_cast<double>(i) / static_cast<double>(num));
     trajectory.push_back({Stamp{i * 1'000'000}, Pose::translation_of(p.x(), p.y(), p.z())});
   }
   return trajectory;

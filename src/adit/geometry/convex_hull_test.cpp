@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <ranges>
 #include <set>
 #include <vector>
 
@@ -82,11 +81,12 @@ Indices vertices_of_solid(const Cloud& cloud) {
   Rng rng(11);
   for (int i = 0; i < 200; ++i) {
     const Vector3 direction = Vector3(rng.normal(), rng.normal(), rng.normal()).normalized();
+    double reach_of_cloud = -std::numeric_limits<double>::infinity();
+    double reach_of_hull = reach_of_cloud;
     const auto along = [&](const Eigen::Vector3f& p) { return direction.dot(p.cast<double>()); };
-    const auto along_index = [&](std::uint32_t v) { return along(cloud[v]); };
-    EXPECT_NEAR(std::ranges::max(cloud | std::views::transform(along)),
-                std::ranges::max(hull->vertices | std::views::transform(along_index)),
-                1e-6 * largest_coordinate(cloud));
+    for (const Eigen::Vector3f& p : cloud) reach_of_cloud = std::max(reach_of_cloud, along(p));
+    for (const std::uint32_t v : hull->vertices) reach_of_hull = std::max(reach_of_hull, along(cloud[v]));
+    EXPECT_NEAR(reach_of_cloud, reach_of_hull, 1e-6 * largest_coordinate(cloud));
   }
   return hull->vertices;
 }

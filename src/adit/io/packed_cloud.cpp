@@ -103,16 +103,18 @@ Result<> check_layout(const PackedCloud& cloud) {
 Result<std::vector<std::int32_t>> relative_times(const std::vector<std::int64_t>& times,
                                                  std::optional<Stamp> stamp) {
   constexpr std::int64_t kLimit = std::numeric_limits<std::int32_t>::max();
-  const auto [low, high] = std::ranges::minmax_element(times);
+  const auto [low_at, high_at] = std::ranges::minmax_element(times);
+  const std::int64_t low = *low_at;
+  const std::int64_t high = *high_at;
   // Absolute times may lie anywhere in 64 bits, so their differences need more.
   __extension__ using Wide = __int128;
-  const auto fits = [&](Wide origin) { return *low - origin >= -kLimit && *high - origin <= kLimit; };
-  const std::int64_t from_stamp = stamp ? stamp->ns : *low;
+  const auto fits = [&](Wide origin) { return low - origin >= -kLimit && high - origin <= kLimit; };
+  const std::int64_t from_stamp = stamp ? stamp->ns : low;
   const std::int64_t origin = fits(0) ? 0 : from_stamp;
   if (!fits(origin)) {
     return fail(
         format("the point times of the sweep span {:.3f} s, more than 2.1 s: wrong time field or unit?",
-               static_cast<double>(Wide{*high} - *low) * 1e-9));
+               static_cast<double>(Wide{high} - low) * 1e-9));
   }
   std::vector<std::int32_t> offsets(times.size());
   std::ranges::transform(times, offsets.begin(),

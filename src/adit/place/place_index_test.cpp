@@ -161,7 +161,7 @@ TEST(PlaceIndex, TiesGoToTheSmallestIdInAnyOrderOfAdding) {
     PlaceIndex index({});
     for (const std::uint32_t i : order) index.add({kOther, i}, same);
     EXPECT_EQ(index.best_match({kSelf, 0}, same, kOther)->match.index, 3U);
-    std::ranges::rotate(order, order.begin() + 3);
+    std::rotate(order.begin(), order.begin() + 3, order.end());
   }
 }
 

@@ -135,7 +135,7 @@ void close_t_junctions(const std::vector<Vector3>& points, std::vector<Loop>& lo
   std::vector<int> ends;
   for (const Edge& edge : open) ends.insert(ends.end(), {edge.first, edge.second});
   std::ranges::sort(ends);
-  ends.erase(std::ranges::unique(ends).begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   for (const int i : ends) grid.add(points[static_cast<std::size_t>(i)], i);
 
   for (Loop& loop : loops) {

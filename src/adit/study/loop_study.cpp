@@ -151,16 +151,18 @@ double tilt_deg(const Pose& T) {
 /// A graph with false loops of its own. Its robots drove on a floor, so a loop that tilts is false.
 Result<> run_as_found(const ListedGraph& listed, const PoseGraph& graph, const LoopStudy& study) {
   LabelledGraph<Pose> labelled{with_every_nth_loop(graph, listed.keep_every), 0};
-  const auto first_false = std::ranges::stable_partition(labelled.graph.edges, [&](const auto& edge) {
-    return edge.kind == EdgeKind::odometry || tilt_deg(edge.T_from_to) <= listed.max_tilt_deg;
-  });
-  labelled.num_true = labelled.graph.edges.size() - first_false.size();
+  const auto first_false =
+      std::stable_partition(labelled.graph.edges.begin(), labelled.graph.edges.end(), [&](const auto& edge) {
+        return edge.kind == EdgeKind::odometry || tilt_deg(edge.T_from_to) <= listed.max_tilt_deg;
+      });
+  labelled.num_true = static_cast<std::size_t>(first_false - labelled.graph.edges.begin());
+  const std::size_t num_false = labelled.graph.edges.size() - labelled.num_true;
   PoseGraph clean = labelled.graph;
   clean.edges.resize(labelled.num_true);
   const Result<Reference<Pose>> reference = solved(clean, study.gnc.optimizer);
   if (!reference) return fail(listed.path, reference.error());
   const std::size_t loops = std::max<std::size_t>(1, num_loops(labelled.graph));
-  const double share = static_cast<double>(first_false.size()) / static_cast<double>(loops);
+  const double share = static_cast<double>(num_false) / static_cast<double>(loops);
   take(run_methods(labelled, *reference, listed, study), static_cast<int>(std::lround(100.0 * share)), study);
   return {};
 }

@@ -33,9 +33,9 @@ Result<> LoopbackBus::meet(RobotId a, RobotId b) {
     queue_.pop_front();
     const Result<Message> message = decode(bytes);
     const auto agent = agents_.find(receiver);
-    const auto note_failure = [&](const std::string& why) {
+    const auto note_failure = [this, to = receiver.value](const std::string& why) {
       ++num_lost_;
-      failures_.push_back(format("message to robot {}: {}", receiver.value, why));
+      failures_.push_back(format("message to robot {}: {}", to, why));
     };
     if (!message) {
       note_failure(message.error().message);

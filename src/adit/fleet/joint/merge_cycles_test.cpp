@@ -190,7 +190,7 @@ TEST(MergeCycles, TwoWrongMergesGoAndTheOrderOfArrivalMakesNoDifference) {
     EXPECT_EQ(std::set<Pair>(found.begin(), found.end()), wrong) << "seed " << seed;
     std::ranges::reverse(fleet.merges);
     EXPECT_EQ(fleet.taken_back(), found);
-    std::ranges::rotate(fleet.merges, fleet.merges.begin() + 3);
+    std::rotate(fleet.merges.begin(), fleet.merges.begin() + 3, fleet.merges.end());
     EXPECT_EQ(fleet.taken_back(), found);
   }
 }
