@@ -48,7 +48,7 @@ foreach(flags adit_flags adit_test_flags)
 endforeach()
 if(CMAKE_BUILD_TYPE STREQUAL "Release")
   target_compile_options(adit_flags INTERFACE -O3)
-  # Tests run for seconds, on a library that has its own optimization: -O1 halves the time to compile them.
+  # Tests run for seconds, on a library that has its own optimization.
   target_compile_options(adit_test_flags INTERFACE -O1)
 endif()
 

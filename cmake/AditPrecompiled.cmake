@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The adit authors
 # SPDX-License-Identifier: MIT
-# Precompiled headers: two thirds of the time of a compilation went into reading Eigen and the standard library
+# Precompiled headers: reading Eigen and the standard library takes one to two seconds per file
 # (docs/decisions/0023-quick-to-build.md). They are read once for each set of flags: the library and the
 # program, its kernels, and, with GoogleTest, the tests. They save time only: each file includes what it uses, and
 # -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds the same program without them.

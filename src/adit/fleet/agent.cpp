@@ -189,7 +189,7 @@ Agent::Replies Agent::register_clouds(RobotId peer, const Clouds& clouds) {
   const std::vector<PeerSession::Arrived> arrived = session.take_arrived(clouds);
   if (arrived.empty()) return {};
   const std::size_t num_before = ledger_.num_own_loops();
-  for (LoopClosure& loop : registration_.with_clouds(arrived, clouds)) ledger_.add_own(std::move(loop));
+  for (const LoopClosure& loop : registration_.with_clouds(arrived, clouds)) ledger_.add_own(loop);
   Replies replies = ledger_.loops_since(map_->id, num_before);
   const bool is_done = session.state() != PeerState::awaiting_clouds;
   append(replies, is_adaptive() && is_done ? begin_check(peer) : request_of(session));

@@ -66,6 +66,8 @@ ADIT_WIDE_VECTORS void move_block(const SweepTransform::Knot* knots, const std::
 
 ADIT_WIDE_VECTORS void move_all(const SweepTransform::Matrix34& T, std::size_t n, const float* __restrict in,
                                 float* __restrict out) {
+  // A copy that `out` cannot overlap stays in registers.
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
   const SweepTransform::Matrix34 A = T;
   for (std::size_t i = 0; i < n; ++i) {
     const float x = in[3 * i];

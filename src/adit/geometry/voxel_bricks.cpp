@@ -19,7 +19,7 @@ std::uint32_t VoxelBricks::position_of(VoxelKey key) {
 void VoxelBricks::clear(VoxelKey key) {
   const auto number = table_.find(brick_of(key));
   if (!number) return;
-  const auto brick = values_.begin() + static_cast<std::ptrdiff_t>(*number * kBrickVoxels);
+  const auto brick = values_.begin() + static_cast<std::ptrdiff_t>(std::size_t{*number} * kBrickVoxels);
   brick[place_in_brick(key)] = 0;
   if (!std::all_of(brick, brick + kBrickVoxels, [](std::uint32_t value) { return value == 0; })) return;
   table_.erase(brick_of(key));

@@ -24,7 +24,7 @@ class VoxelBricks {
       if (const VoxelKey brick = brick_of(key); brick != brick_) {
         brick_ = brick;
         const auto number = bricks_.table_.find(brick);
-        values_ = number ? &bricks_.values_[*number * kBrickVoxels] : nullptr;
+        values_ = number ? &bricks_.values_[std::size_t{*number} * kBrickVoxels] : nullptr;
       }
       return values_ == nullptr ? 0 : values_[place_in_brick(key)];
     }

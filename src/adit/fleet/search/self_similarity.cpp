@@ -28,7 +28,7 @@ SelfSimilarity::SelfSimilarity(std::shared_ptr<const RobotMap> map, const Odomet
     : map_(std::move(map)),
       chain_(chain),
       path_m_(path_lengths(chain_)),
-      index_(ranking_all(std::move(place), config.matches)),
+      index_(ranking_all(place, config.matches)),
       config_(config) {
   for (std::uint32_t k = 0; k < map_->places.size(); ++k) index_.add({map_->id, k}, map_->places[k]);
 }

@@ -49,9 +49,9 @@ std::size_t FleetLedger::num_nodes_of(RobotId robot) const {
 std::size_t FleetLedger::num_own_loops() const { return size_of(loops_by_, self_); }
 std::size_t FleetLedger::num_own_checks() const { return size_of(checks_by_, self_); }
 
-void FleetLedger::add_own(LoopClosure loop) {
+void FleetLedger::add_own(const LoopClosure& loop) {
   const KeyframePair ends{loop.from, loop.to};
-  if (known_.loops.try_emplace(ends, std::move(loop)).second) loops_by_[self_].push_back(ends);
+  if (known_.loops.try_emplace(ends, loop).second) loops_by_[self_].push_back(ends);
 }
 
 void FleetLedger::add_own(MergeCheck check) {

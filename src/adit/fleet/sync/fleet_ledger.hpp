@@ -23,7 +23,7 @@ class FleetLedger {
   [[nodiscard]] std::size_t num_own_checks() const;
 
   /// What this robot registered or decided itself. A loop that is known already is left as it is.
-  void add_own(LoopClosure loop);
+  void add_own(const LoopClosure& loop);
   void add_own(MergeCheck check);
 
   /// What a message brought. Nothing changes, and false is returned, where a part before it was lost (the
