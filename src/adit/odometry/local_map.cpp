@@ -69,6 +69,8 @@ struct NearestOfLanes {
 // out = T p for `n` points of three coordinates each.
 ADIT_WIDE_VECTORS void transform(const Eigen::Matrix<double, 3, 4>& T, std::size_t n,
                                  const float* __restrict p, float* __restrict out) {
+  // A copy that the output cannot overlap stays in registers.
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
   const Eigen::Matrix<double, 3, 4> A = T;
   for (std::size_t i = 0; i < n; ++i) {
     const auto x = static_cast<double>(p[3 * i]);

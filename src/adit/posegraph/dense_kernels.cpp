@@ -18,7 +18,7 @@ template <std::size_t kWidth>
 using VectorOf = simd::Unaligned<double, kWidth>;
 
 // Written once, compiled for several vector widths: always inlined into a function of each instruction set.
-#define ADIT_INLINE [[gnu::always_inline]] static inline
+#define ADIT_INLINE [[gnu::always_inline]] inline
 
 // C -= A B^T for one strip of kStrip rows and kColumns columns. `b` points at the first of the columns inside
 // its strip. The sums stay in registers: kStrip * kColumns / kWidth of them, eight for each instruction set,

@@ -156,8 +156,8 @@ class PairCounter {
     Counts& own = counts_[i];
     for (std::size_t k = 0; k < size_; ++k) {
       Counts& other = counts_[indices_[k]];
-      for (int part = 0; part < 3; ++part) {
-        const auto bin = static_cast<std::size_t>(kPart * part + columns_.bins[part][k]);
+      for (std::size_t part = 0; part < 3; ++part) {
+        const std::size_t bin = std::size_t{kPart} * part + static_cast<std::size_t>(columns_.bins[part][k]);
         ++own[bin];
         ++other[bin];
       }
@@ -180,7 +180,7 @@ class PairCounter {
   }
 
  private:
-  using Counts = std::array<std::uint32_t, 3 * kPart>;
+  using Counts = std::array<std::uint32_t, 3 * std::size_t{kPart}>;
 
   /// The neighbours that take part.
   void gather(std::span<const Neighbor> neighbors) {
@@ -236,8 +236,9 @@ Descriptor quantized(const Histogram& histogram) {
     float sum = 0.0F;
     for (int b = 0; b < kBins; ++b) sum += bins[b];
     if (!(sum > 0.0F)) continue;
-    for (std::size_t b = 0; b < kBins; ++b)
-      out[part * kBins + b] = static_cast<std::uint8_t>(bins[b] * (100.0F / sum) + 0.5F);
+    // Never negative. NOLINTNEXTLINE(bugprone-incorrect-roundings)
+    const auto rounded = [&](float bin) { return static_cast<std::uint8_t>(bin * (100.0F / sum) + 0.5F); };
+    for (std::size_t b = 0; b < kBins; ++b) out[part * kBins + b] = rounded(bins[b]);
   }
   return out;
 }

@@ -75,11 +75,11 @@ constexpr std::array<FateStyle, 3> kFates = {{{LoopFate::weak, "refused, weak al
 std::vector<LegendItem> legend_of(const LoopMap& map) {
   std::vector<LegendItem> items;
   for (std::size_t i = 0; i < map.robots.size(); ++i) items.push_back({map.robots[i].name, robot_color(i)});
-  for (auto style = kFates.rbegin(); style != kFates.rend(); ++style) {
-    const auto count = std::ranges::count(map.loops, style->fate, &LoopMap::Loop::fate);
-    items.push_back({format("{}: {}", style->label, count), fate_color(style->fate), LegendItem::Mark::dash,
-                     style->dash});
-  }
+  std::for_each(kFates.rbegin(), kFates.rend(), [&](const FateStyle& style) {
+    const auto count = std::ranges::count(map.loops, style.fate, &LoopMap::Loop::fate);
+    items.push_back(
+        {format("{}: {}", style.label, count), fate_color(style.fate), LegendItem::Mark::dash, style.dash});
+  });
   return items;
 }
 

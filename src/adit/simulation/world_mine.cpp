@@ -43,8 +43,9 @@ Network draw_network(Rng& rng) {
 /// A winding line between two nodes that leaves both straight; the same line whichever end comes first.
 Polyline drift_line(const Network& nodes, int from, int to, const WorldConfig& config) {
   if (from > to) return reversed_line(drift_line(nodes, to, from, config));
-  Rng rng(mix64(config.seed, static_cast<std::uint64_t>(100 * from + to)));
-  const Vector3 begin = nodes[static_cast<std::size_t>(from)];
+  const int drift = 100 * from + to;
+  Rng rng(mix64(config.seed, static_cast<std::uint64_t>(drift)));
+  const Vector3& begin = nodes[static_cast<std::size_t>(from)];
   const Vector3 path = nodes[static_cast<std::size_t>(to)] - begin;
   const double amplitude = config.curvature_factor * 0.05 * path.norm() * rng.uniform(-1.0, 1.0);
   const double waves = rng.uniform() < 0.5 ? 1.0 : 2.0;

@@ -116,8 +116,9 @@ Result<RobotRun> run_robot(const Recording& recording, RobotId id, const RunConf
   run.truth = recording.truth;
   run.result = robot_facts(*run.map, run.truth);
   comparison.add_result(run.truth, run.result.odometry);
-  for (auto drive = drives.rbegin(); drive != drives.rend(); ++drive)  // the paper's first
-    run.result.odometry.push_back(drive->result(run.truth));
+  std::for_each(drives.rbegin(), drives.rend(), [&run](Drive& drive) {  // the paper's first
+    run.result.odometry.push_back(drive.result(run.truth));
+  });
   return run;
 }
 
