@@ -9,11 +9,11 @@
 namespace adit::app {
 
 void add_config(Program& program) {
-  struct Options {
+  struct ConfigOptions {
     bool markdown = false;
     std::string lidar;
   };
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ConfigOptions>();
   const Command command = program.add_command(
       "config", "Print every configuration field as TOML; every command takes it with --config",
       [options](const Common& common) -> Result<> {

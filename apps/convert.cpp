@@ -73,7 +73,7 @@ Result<> convert_poses(const Recording& recording, const std::string& in, const 
   return fail(in + ": neither ground truth nor wheel odometry in it; 'adit odometry' computes poses");
 }
 
-struct Options {
+struct ConvertOptions {
   std::string in;
   std::string out;
   std::string clouds = "pcd";
@@ -83,7 +83,7 @@ struct Options {
 const std::map<std::string, CloudFormat> kCloudFormats = {
     {"pcd", CloudFormat::pcd}, {"ply", CloudFormat::ply}, {"bin", CloudFormat::kitti}};
 
-Result<> convert_recording(const Options& options, const RecordingConfig& config) {
+Result<> convert_recording(const ConvertOptions& options, const RecordingConfig& config) {
   const fs::path out = options.out;
   return open_input(options.in, config).and_then([&](const Recording& recording) -> Result<> {
     if (kind_of(options.out) == Kind::trajectory) return convert_poses(recording, options.in, out);
@@ -92,7 +92,7 @@ Result<> convert_recording(const Options& options, const RecordingConfig& config
   });
 }
 
-Result<> convert(const Options& options, const Common& common) {
+Result<> convert(const ConvertOptions& options, const Common& common) {
   const std::string& in = options.in;
   const std::string& out = options.out;
   const Kind from = kind_of(in);
@@ -112,7 +112,7 @@ Result<> convert(const Options& options, const Common& common) {
 }  // namespace
 
 void add_convert(Program& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ConvertOptions>();
   const Command command =
       program.add_command("convert", "Convert between recording, cloud, mesh, trajectory and graph formats",
                           [options](const Common& common) { return convert(*options, common); });

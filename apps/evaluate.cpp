@@ -12,7 +12,7 @@
 namespace adit::app {
 namespace {
 
-struct Options {
+struct EvaluateOptions {
   std::string session;
   std::vector<std::string> truths;
 };
@@ -28,7 +28,7 @@ Result<std::vector<GivenTruth>> read_truths(const std::vector<std::string>& file
   return given;
 }
 
-Result<> evaluate_command(const Options& options, const Common& common) {
+Result<> evaluate_command(const EvaluateOptions& options, const Common& common) {
   const Result<SavedSession> session = read_session(options.session);
   if (!session) return tl::unexpected(session.error());
   const Result<std::vector<GivenTruth>> given = read_truths(options.truths);
@@ -52,7 +52,7 @@ Result<> evaluate_command(const Options& options, const Common& common) {
 }  // namespace
 
 void add_evaluate(Program& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<EvaluateOptions>();
   const Command command = program.add_command(
       "evaluate", "Compute ATE, RPE and loop precision of a session from the true trajectories",
       [options](const Common& common) { return evaluate_command(*options, common); });

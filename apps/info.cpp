@@ -28,11 +28,11 @@ void print_text(const nlohmann::ordered_json& info) {
 }  // namespace
 
 void add_info(Program& program) {
-  struct Options {
+  struct InfoOptions {
     std::string input;
     RecordingConfig recording;
   };
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InfoOptions>();
   const Command command = program.add_command(
       "info", "Show what a recording, cloud, mesh, trajectory, graph, routes file or session holds",
       [options](const Common& common) {

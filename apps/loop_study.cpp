@@ -14,9 +14,9 @@
 namespace adit::app {
 namespace {
 
-constexpr const char* kSection = "false loops";
+constexpr const char* kLoopStudySection = "false loops";
 
-struct Options {
+struct LoopStudyOptions {
   std::string graphs;
   std::string data;
   std::string out;
@@ -26,7 +26,7 @@ struct Options {
 };
 
 /// Every run of every chosen graph; prints one line of text per run, to stderr if JSON goes to stdout.
-Result<std::vector<FalseLoopRun>> run_all(const Options& options, const Common& common,
+Result<std::vector<FalseLoopRun>> run_all(const LoopStudyOptions& options, const Common& common,
                                           const BackEndConfig& back_end) {
   const Result<std::vector<ListedGraph>> list = read_graph_list(options.graphs, options.data);
   if (!list) return tl::unexpected(list.error());
@@ -46,7 +46,7 @@ Result<std::vector<FalseLoopRun>> run_all(const Options& options, const Common& 
   return runs;
 }
 
-Result<> loop_study(const Options& options, const Common& common) {
+Result<> loop_study(const LoopStudyOptions& options, const Common& common) {
   const Result<RunConfig> config = configured(common);
   if (!config) return tl::unexpected(config.error());
   if (const Result<> made = make_folder(options.out); !made) return made;
@@ -55,7 +55,7 @@ Result<> loop_study(const Options& options, const Common& common) {
   const std::string json = json_of(*runs);
   const std::vector<Table> tables = false_loop_tables(*runs);
   Result<> done = write_bytes(std::filesystem::path(options.out) / "false_loops.json", json);
-  if (done && !options.page.empty()) done = write_tables(options.page, kSection, tables);
+  if (done && !options.page.empty()) done = write_tables(options.page, kLoopStudySection, tables);
   if (done && common.json) std::printf("%s", json.c_str());
   if (done && !common.json)
     for (const Table& table : tables) std::printf("\n%s", text_of(table).c_str());
@@ -65,7 +65,7 @@ Result<> loop_study(const Options& options, const Common& common) {
 }  // namespace
 
 void add_loop_study(Program& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<LoopStudyOptions>();
   const Command command = program.add_command(
       "loop-study",
       "Measure which false loops plain GNC, PCM and adit's own search find, over a list of pose graphs",

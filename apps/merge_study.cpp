@@ -15,9 +15,9 @@
 namespace adit::app {
 namespace {
 
-constexpr const char* kSection = "merging";
+constexpr const char* kMergeStudySection = "merging";
 
-struct Options {
+struct MergeStudyOptions {
   std::string worlds;
   std::string out;
   std::string page;
@@ -37,7 +37,7 @@ Result<> print(const std::filesystem::path& results, const std::vector<Table>& t
 }
 
 /// The study under the options. It prints one line of text per run, to stderr if JSON goes to stdout.
-Result<MergeStudy> study_of(const Options& options, const Common& common) {
+Result<MergeStudy> study_of(const MergeStudyOptions& options, const Common& common) {
   const Result<RunConfig> config = configured(common, options.lidar);
   if (!config) return tl::unexpected(config.error());
   std::FILE* lines = common.json ? stderr : stdout;
@@ -48,7 +48,7 @@ Result<MergeStudy> study_of(const Options& options, const Common& common) {
   return MergeStudy{*config, policies_of(options.keyframes), options.variant, options.out, print_line};
 }
 
-Result<> merge_study(const Options& options, const Common& common) {
+Result<> merge_study(const MergeStudyOptions& options, const Common& common) {
   const Result<MergeStudy> study = study_of(options, common);
   if (!study) return tl::unexpected(study.error());
   const Result<std::vector<ListedWorld>> list = read_world_list(options.worlds);
@@ -66,7 +66,7 @@ Result<> merge_study(const Options& options, const Common& common) {
   const std::vector<Table> tables = merge_tables(*runs);
   Result<> done = write_merge_runs(results, *runs);
   if (done) done = write_merge_csv(study->folder / "results.csv", *runs);
-  if (done && !options.page.empty()) done = write_tables(options.page, kSection, tables);
+  if (done && !options.page.empty()) done = write_tables(options.page, kMergeStudySection, tables);
   if (done) done = print(results, tables, common.json);
   return done;
 }
@@ -74,7 +74,7 @@ Result<> merge_study(const Options& options, const Common& common) {
 }  // namespace
 
 void add_merge_study(Program& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MergeStudyOptions>();
   const Command command = program.add_command(
       "merge-study",
       "Measure which robots' maps are merged, refused or merged wrongly, over a list of worlds",

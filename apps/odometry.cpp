@@ -18,7 +18,7 @@
 namespace adit::app {
 namespace {
 
-struct Options {
+struct OdometryOptions {
   RecordingConfig recording;
   std::string input;
   std::string method;
@@ -59,7 +59,7 @@ std::string status_line(const std::map<StepStatus, int>& statuses) {
   return line;
 }
 
-Result<> odometry(const Options& options, const Common& common) {
+Result<> odometry(const OdometryOptions& options, const Common& common) {
   Result<RunConfig> config = configured(common);
   if (!config) return tl::unexpected(config.error());
   OdometryConfig& method = config->slam.robot.odometry;
@@ -96,7 +96,7 @@ Result<> odometry(const Options& options, const Common& common) {
 }  // namespace
 
 void add_odometry(Program& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<OdometryOptions>();
   const Command command =
       program.add_command("odometry", "Compute the odometry of one robot",
                           [options](const Common& common) { return odometry(*options, common); });

@@ -16,7 +16,7 @@
 namespace adit::app {
 namespace {
 
-struct Options {
+struct RegisterOptions {
   std::string cloud_a;
   std::string cloud_b;
 };
@@ -79,7 +79,7 @@ void print_text(const Registration& r, double time_s) {
   std::printf("time %.3f s\n", time_s);
 }
 
-Result<> register_files(const Options& options, const Common& common) {
+Result<> register_files(const RegisterOptions& options, const Common& common) {
   const Result<RunConfig> config = configured(common);
   if (!config) return tl::unexpected(config.error());
   const Result<PointCloud> a = read_cloud(options.cloud_a);
@@ -100,7 +100,7 @@ Result<> register_files(const Options& options, const Common& common) {
 }  // namespace
 
 void add_register(Program& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RegisterOptions>();
   const Command command = program.add_command(
       "register",
       "Compute the relative pose of two clouds without a guess (fields loops.adaptive.registration.*)",

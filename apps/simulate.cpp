@@ -20,7 +20,7 @@
 namespace adit::app {
 namespace {
 
-struct Options {
+struct SimulateOptions {
   std::string world;
   std::string routes;
   std::string out;
@@ -29,11 +29,11 @@ struct Options {
   std::optional<std::uint64_t> seed;
 };
 
-std::filesystem::path recording_file(const Options& options, const Recording& recording) {
+std::filesystem::path recording_file(const SimulateOptions& options, const Recording& recording) {
   return std::filesystem::path(options.out) / (recording.name + ".mcap");
 }
 
-std::filesystem::path truth_file(const Options& options, const Recording& recording) {
+std::filesystem::path truth_file(const SimulateOptions& options, const Recording& recording) {
   return std::filesystem::path(options.out) / (recording.name + "_truth.tum");
 }
 
@@ -64,7 +64,7 @@ class RemoveIfEmpty {
 };
 
 /// Each scan that is read is a step of `phase`.
-Result<> write(const Options& options, Recording recording, const Phase& phase) {
+Result<> write(const SimulateOptions& options, Recording recording, const Phase& phase) {
   recording.read_scan = [&, read = std::move(recording.read_scan)](std::size_t i) {
     phase.advance();
     return read(i);
@@ -74,7 +74,7 @@ Result<> write(const Options& options, Recording recording, const Phase& phase) 
   });
 }
 
-Result<> write_all(const Options& options, const std::vector<Recording>& recordings) {
+Result<> write_all(const SimulateOptions& options, const std::vector<Recording>& recordings) {
   std::error_code error;
   std::filesystem::create_directories(options.out, error);
   if (error) return fail(options.out + ": cannot make this folder: " + error.message());
@@ -89,7 +89,7 @@ Result<> write_all(const Options& options, const std::vector<Recording>& recordi
   return failed == written.end() ? Result<>() : *failed;
 }
 
-void print(const Options& options, const std::vector<Recording>& recordings, const Common& common) {
+void print(const SimulateOptions& options, const std::vector<Recording>& recordings, const Common& common) {
   nlohmann::ordered_json report;
   for (const Recording& recording : recordings) {
     const std::string file = recording_file(options, recording).string();
@@ -107,7 +107,7 @@ void print(const Options& options, const std::vector<Recording>& recordings, con
   if (common.json) std::printf("%s\n", report.dump().c_str());
 }
 
-Result<> simulate_command(const Options& options, const Common& common) {
+Result<> simulate_command(const SimulateOptions& options, const Common& common) {
   Result<RunConfig> config = configured(common, options.lidar);
   if (!config) return tl::unexpected(config.error());
   if (options.seed) config->simulation.seed = *options.seed;
@@ -125,7 +125,7 @@ Result<> simulate_command(const Options& options, const Common& common) {
 }  // namespace
 
 void add_simulate(Program& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SimulateOptions>();
   const Command command = program.add_command(
       "simulate", "Drive robots through a mesh: one recording per robot, with ground truth",
       [options](const Common& common) { return simulate_command(*options, common); });

@@ -18,7 +18,7 @@
 namespace adit::app {
 namespace {
 
-struct Options {
+struct SlamOptions {
   RecordingConfig recording;
   std::vector<std::string> inputs;
   std::string out;
@@ -33,7 +33,7 @@ struct Job {
   Provenance provenance;
 };
 
-Result<Job> job_of(const Options& options, const Common& common) {
+Result<Job> job_of(const SlamOptions& options, const Common& common) {
   if (options.inputs.empty()) usage_error("give recordings, folders of scans, one routes.yaml, or --rerun");
   Result<RunConfig> config = configured(common, options.lidar);
   if (!config) return tl::unexpected(config.error());
@@ -52,7 +52,7 @@ Result<Job> job_of(const Options& options, const Common& common) {
 }
 
 /// The job of an earlier session, from the provenance in its session.toml.
-Result<Job> job_again(const Options& options, const Common& common) {
+Result<Job> job_again(const SlamOptions& options, const Common& common) {
   if (!options.inputs.empty() || !options.lidar.empty() || !options.keyframes.empty() ||
       !options.recording.mount.empty() || !options.recording.points.empty() || !common.sets.empty() ||
       !common.config_file.empty() || common.profile != Profile::standard)
@@ -107,7 +107,7 @@ Result<> without_failures(const SlamRun& run, const std::string& out) {
                      run.failed.size() + run.session.maps.size(), out, reasons));
 }
 
-Result<> slam_command(const Options& options, const Common& common) {
+Result<> slam_command(const SlamOptions& options, const Common& common) {
   Result<Job> job = options.rerun.empty() ? job_of(options, common) : job_again(options, common);
   if (!job) return tl::unexpected(job.error());
   Result<Inputs> inputs = open_inputs(job->provenance.inputs, job->config);
@@ -137,7 +137,7 @@ Result<> slam_command(const Options& options, const Common& common) {
 }  // namespace
 
 void add_slam(Program& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SlamOptions>();
   const Command command =
       program.add_command("slam", "Map each robot, merge the maps decentrally, write one session",
                           [options](const Common& common) { return slam_command(*options, common); });

@@ -18,7 +18,7 @@
 namespace adit::app {
 namespace {
 
-struct Options {
+struct StudyOptions {
   std::string world;
   std::string routes;
   std::string out;
@@ -32,13 +32,13 @@ double peak_rss_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-Result<World> world_of(const Options& options, const WorldConfig& built_in) {
+Result<World> world_of(const StudyOptions& options, const WorldConfig& built_in) {
   if (options.routes.empty() && options.world.empty()) return make_world(built_in);
   if (options.routes.empty()) usage_error("--world needs --routes FILE, the routes of the robots in it");
   return load_world(options.world, options.routes);
 }
 
-Provenance provenance_of(const Options& options, const Common& common, RunConfig config, const World& world) {
+Provenance provenance_of(const StudyOptions& options, const Common& common, RunConfig config, const World& world) {
   Provenance provenance;
   provenance.command = common.command;
   if (!options.routes.empty()) provenance.inputs = {options.routes};
@@ -50,13 +50,13 @@ Provenance provenance_of(const Options& options, const Common& common, RunConfig
   return provenance;
 }
 
-void print(const StudyResult& result, const std::vector<Table>& tables, const Options& options) {
+void print(const StudyResult& result, const std::vector<Table>& tables, const StudyOptions& options) {
   for (const Table& table : tables) std::printf("%s\n", text_of(table).c_str());
   std::printf("%.0f s, %.0f MB at most; report: %s\n", result.wall_s, result.peak_rss_mb,
               (std::filesystem::path(options.out) / "report.html").c_str());
 }
 
-Result<> study(const Options& options, const Common& common) {
+Result<> study(const StudyOptions& options, const Common& common) {
   const auto start = std::chrono::steady_clock::now();
   const Result<RunConfig> config = configured(common, options.lidar);
   if (!config) return tl::unexpected(config.error());
@@ -84,7 +84,7 @@ Result<> study(const Options& options, const Common& common) {
 }  // namespace
 
 void add_study(Program& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<StudyOptions>();
   const Command command =
       program.add_command("study", "Run the paper's whole experiment on one world",
                           [options](const Common& common) { return study(*options, common); });

@@ -16,7 +16,7 @@
 namespace adit::app {
 namespace {
 
-struct Options {
+struct WorldOptions {
   std::string preset;
   std::string seed;
   std::string arrangement;
@@ -25,7 +25,7 @@ struct Options {
 };
 
 /// The configuration from --config and --set (keys `world.*`), then the command's own options.
-Result<WorldConfig> config_of(const Options& options, const Common& common) {
+Result<WorldConfig> config_of(const WorldOptions& options, const Common& common) {
   Result<RunConfig> run_config = configured(common);
   if (!run_config) return tl::unexpected(run_config.error());
   WorldConfig& config = run_config->world;
@@ -76,7 +76,7 @@ void print_json(const World& world) {
   std::puts(all.dump().c_str());
 }
 
-Result<> run(const Options& options, const Common& common) {
+Result<> run(const WorldOptions& options, const Common& common) {
   const Result<WorldConfig> config = config_of(options, common);
   if (!config) return tl::unexpected(config.error());
   const Result<World> world = make_world(*config);
@@ -89,7 +89,7 @@ Result<> run(const Options& options, const Common& common) {
 }  // namespace
 
 void add_world(Program& program) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<WorldOptions>();
   const Command command =
       program.add_command("world", "Make a procedural tunnel network with the routes of four robots",
                           [options](const Common& common) { return run(*options, common); });
