@@ -38,7 +38,8 @@ Result<World> world_of(const StudyOptions& options, const WorldConfig& built_in)
   return load_world(options.world, options.routes);
 }
 
-Provenance provenance_of(const StudyOptions& options, const Common& common, RunConfig config, const World& world) {
+Provenance provenance_of(const StudyOptions& options, const Common& common, RunConfig config,
+                         const World& world) {
   Provenance provenance;
   provenance.command = common.command;
   if (!options.routes.empty()) provenance.inputs = {options.routes};

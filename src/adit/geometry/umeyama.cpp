@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "adit/geometry/umeyama.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "adit/core/check.hpp"
 #include "adit/core/decompositions.hpp"
@@ -55,12 +57,25 @@ CrossCovariance cross_covariance(std::span<const Vector3> source, std::span<cons
   return covariance;
 }
 
+/// The rotation by the smallest angle that turns unit vector `from` into `to`. Eigen has one that decomposes
+/// a matrix where they are opposite, and takes ten seconds to compile.
+Matrix3 smallest_rotation(const Vector3& from, const Vector3& to) {
+  const double cosine = to.dot(from);
+  const bool opposite = cosine < -1.0 + Eigen::NumTraits<double>::dummy_precision();
+  if (opposite) return Eigen::AngleAxisd(std::numbers::pi, from.unitOrthogonal()).toRotationMatrix();
+  const double twice_w = std::sqrt(2.0 * (1.0 + cosine));
+  Eigen::Quaterniond q;
+  q.vec() = from.cross(to) / twice_w;
+  q.w() = 0.5 * twice_w;
+  return q.toRotationMatrix();
+}
+
 /// Umeyama's equation 40 (R = U S V^T), with the degenerate ranks taken apart.
 Matrix3 best_rotation(const CrossCovariance& covariance) {
   const auto [u, singular_values, v] = svd(covariance.matrix);
   if (singular_values(0) <= covariance.rounding) return Matrix3::Identity();
   if (singular_values(1) <= covariance.rounding) {
-    return Eigen::Quaterniond::FromTwoVectors(v.col(0), u.col(0)).toRotationMatrix();
+    return smallest_rotation(v.col(0), u.col(0));
   }
   const double handedness = (u * v.transpose()).determinant() < 0.0 ? -1.0 : 1.0;
   return u * Vector3(1.0, 1.0, handedness).asDiagonal() * v.transpose();

@@ -3,7 +3,6 @@
 #include "adit/posegraph/optimizer.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "adit/core/check.hpp"
+#include "adit/core/decompositions.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/posegraph/chordal.hpp"
@@ -63,8 +63,8 @@ bool is_indefinite(const Matrix& information) {
   if (!information.allFinite()) return true;
   if ((information - information.transpose()).norm() > 1e-9 * information.norm()) return true;
   if (information.llt().info() == Eigen::Success) return false;
-  const Eigen::SelfAdjointEigenSolver<Matrix> solver(information, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues().minCoeff() < -1e-9 * solver.eigenvalues().cwiseAbs().maxCoeff();
+  const auto eigenvalues = symmetric_eigen(information).values;
+  return eigenvalues.minCoeff() < -1e-9 * eigenvalues.cwiseAbs().maxCoeff();
 }
 
 std::vector<double> damped(const BlockPattern& pattern, std::vector<double> values, std::size_t d,
