@@ -17,7 +17,7 @@ if [ -n "$record" ] && [ -n "$(git status --porcelain)" ]; then
 fi
 tools/setup.sh bench
 build() {  # SOURCE BUILD
-  cmake -S "$1" -B "$2" -G Ninja -DCMAKE_BUILD_TYPE=Release -DADIT_BUILD_BENCH=ON -DADIT_BUILD_TESTS=OFF >/dev/null
+  cmake -S "$1" -B "$2" -G Ninja -DCMAKE_BUILD_TYPE=Release -DADIT_BUILD_BENCH=ON -DADIT_BUILD_TESTS=OFF -DADIT_UNITY_BUILD=ON >/dev/null
   cmake --build "$2" --target adit_bench adit_program
 }
 build . build/bench
