@@ -3,11 +3,9 @@
 // `adit merge-study` on a world of two short drives: what it keeps, what it redoes and what it writes.
 #include <gtest/gtest.h>
 
-#include "adit/io/mesh_files.hpp"
-#include "adit/io/routes_yaml.hpp"
-#include "adit/simulation/world.hpp"
 #include "support/files.hpp"
 #include "support/program.hpp"
+#include "support/two_drives.hpp"
 
 namespace adit {
 namespace {
@@ -17,24 +15,9 @@ using test::expect_refused;
 using test::get_file;
 using test::put_file;
 
-/// Metres `begin` to `end` of a route, for a robot of another name.
-Route part_of(const Route& route, std::ptrdiff_t begin, std::ptrdiff_t end, const std::string& name) {
-  return {name, route.speed_mps,
-          std::vector<Vector3>(route.waypoints.begin() + begin, route.waypoints.begin() + end)};
-}
-
 /// A list of one world in which two robots follow one another around a corner, and of one that is absent.
 void put_list(const test::TemporaryFolder& folder) {
-  WorldConfig config;
-  config.preset = "mine";
-  config.facet_factor = 4.0;
-  const Result<World> world = make_world(config);
-  ASSERT_TRUE(world);
-  ASSERT_TRUE(write_mesh(folder / "world.ply", world->mesh));
-  const Route& route = world->routes[0];
-  ASSERT_TRUE(
-      write_routes(folder / "routes.yaml",
-                   {"world.ply", {part_of(route, 0, 50, "ahead"), part_of(route, 10, 60, "behind")}}));
+  test::put_two_drives(folder.path());
   put_file(folder / "list.toml",
            "[[world]]\nname = 'short'\ngroup = 'check'\nroutes_file = 'routes.yaml'\n"
            "[[world]]\nname = 'absent'\nroutes_file = 'nowhere.yaml'\n");

@@ -7,12 +7,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "adit/io/mesh_files.hpp"
-#include "adit/io/routes_yaml.hpp"
 #include "adit/io/session_dir.hpp"
-#include "adit/simulation/world.hpp"
 #include "support/files.hpp"
 #include "support/program.hpp"
+#include "support/two_drives.hpp"
 
 namespace adit {
 namespace {
@@ -23,26 +21,8 @@ using test::expect_done;
 using test::expect_refused;
 using test::get_file;
 using test::put_file;
+using test::put_two_drives;
 using test::run_adit;
-
-Route part_of(const Route& route, std::ptrdiff_t begin, std::ptrdiff_t end, const std::string& name) {
-  return {name, route.speed_mps,
-          std::vector<Vector3>(route.waypoints.begin() + begin, route.waypoints.begin() + end)};
-}
-
-/// world.ply and routes.yaml: robot `behind` follows `ahead` through the same tunnel.
-void put_world(const fs::path& folder) {
-  WorldConfig config;
-  config.preset = "mine";
-  config.facet_factor = 4.0;
-  const Result<World> world = make_world(config);
-  ASSERT_TRUE(world);
-  ASSERT_TRUE(write_mesh(folder / "world.ply", world->mesh));
-  const Route& route = world->routes[0];
-  ASSERT_TRUE(
-      write_routes(folder / "routes.yaml",
-                   {"world.ply", {part_of(route, 0, 50, "ahead"), part_of(route, 10, 60, "behind")}}));
-}
 
 /// Every file below the folder, by its path within it.
 std::map<std::string, std::string> files_of(const fs::path& folder) {
@@ -65,7 +45,7 @@ void expect_same_files(const fs::path& a, const fs::path& b) {
 
 TEST(Session, IsMadeAgainByteForByteFromItsProvenance) {
   const test::TemporaryFolder folder;
-  put_world(folder.path());
+  put_two_drives(folder.path());
   const std::string routes = (folder / "routes.yaml").string();
   const std::string first = (folder / "a").string();
   expect_done("slam " + routes + " --lidar os2-32 --set robot.keyframes.distance_m=1 --keyframes all --out " +
@@ -95,7 +75,7 @@ TEST(Session, IsMadeAgainByteForByteFromItsProvenance) {
 
 TEST(Session, IsEvaluatedByNameInAnyOrder) {
   const test::TemporaryFolder folder;
-  put_world(folder.path());
+  put_two_drives(folder.path());
   const std::string routes = (folder / "routes.yaml").string();
   const std::string session = (folder / "session").string();
   const std::string recordings = (folder / "recordings").string();
@@ -142,7 +122,7 @@ TEST(Session, IsEvaluatedByNameInAnyOrder) {
 
 TEST(Session, RobotsOfOneNameGetDifferentNames) {
   const test::TemporaryFolder folder;
-  put_world(folder.path());
+  put_two_drives(folder.path());
   const std::string recordings = (folder / "recordings").string();
   expect_done("simulate --routes " + (folder / "routes.yaml").string() +
               " --robot ahead --lidar os2-32 --set simulation.lidar.columns=256 --out " + recordings);
@@ -162,7 +142,7 @@ TEST(Session, RobotsOfOneNameGetDifferentNames) {
 
 TEST(Study, RunsThePapersExperimentAndSaysWhatRan) {
   const test::TemporaryFolder folder;
-  put_world(folder.path());
+  put_two_drives(folder.path());
   const std::string command = "study --world " + (folder / "world.ply").string() + " --routes " +
                               (folder / "routes.yaml").string() + " --lidar os2-32 --keyframes all,adaptive";
   const test::ProgramRun run = run_adit(command + " --json --out " + (folder / "out").string());
@@ -201,7 +181,7 @@ TEST(Study, RunsThePapersExperimentAndSaysWhatRan) {
 
 TEST(Config, EveryCommandTakesWhatItPrintsAndDoesTheSame) {
   const test::TemporaryFolder folder;
-  put_world(folder.path());
+  put_two_drives(folder.path());
   const test::ProgramRun printed = run_adit("config");
   ASSERT_EQ(printed.exit_code, 0) << printed.err;
   put_file(folder / "adit.toml", printed.out);
