@@ -184,13 +184,14 @@ TEST_P(Writing, IsInterruptedWithinASecondInEveryPhase) {
   ASSERT_EQ(uninterrupted.exit_code, 0) << test::get_file(log());
   Words words = whole;
   words.back() = target().string();
-  put_old_output(target());
-  const std::map<std::string, std::string> before = tree_of(target_folder());
   int num_interrupted = 0;
   for (const double share : {0.1, 0.3, 0.5, 0.7, 0.85}) {
+    std::filesystem::remove_all(target());
+    put_old_output(target());
+    const std::map<std::string, std::string> before = tree_of(target_folder());
     const int signal = share == 0.5 ? SIGTERM : SIGINT;
     const Ended ended = test::Process(words, log()).signal_after(share * uninterrupted.cpu_s, signal);
-    if (ended.exit_code == 0) continue;  // It was quicker than last time, and than the signal.
+    if (ended.exit_code == 0) continue;  // it was quicker than last time and has replaced the old output
     ++num_interrupted;
     EXPECT_EQ(ended.exit_code, 128 + signal) << "after " << share << ": " << test::get_file(log());
     EXPECT_LT(ended.cpu_after_signal_s, kSlowdown) << "after " << share;

@@ -32,19 +32,19 @@ ADIT_WIDE_VECTORS std::pair<std::int32_t, std::int32_t> bounds_of(const std::int
 
 // Where each offset lies: position of the knot before it, and how far it is on the way to the next.
 ADIT_WIDE_VECTORS void locate(const std::int32_t* offsets_ns, std::size_t n, std::int32_t first_ns,
-                              float knots_per_step, std::int32_t* knot, float* way) {
+                              float knots_per_step, std::int32_t* knot, float* fraction) {
   for (std::size_t i = 0; i < n; ++i) {
     const auto steps =
         (static_cast<std::uint32_t>(offsets_ns[i]) - static_cast<std::uint32_t>(first_ns)) >> 1U;
     const float s = static_cast<float>(static_cast<std::int32_t>(steps)) * knots_per_step;
     knot[i] = static_cast<std::int32_t>(s);
-    way[i] = s - static_cast<float>(knot[i]);
+    fraction[i] = s - static_cast<float>(knot[i]);
   }
 }
 
-// out = (value + way * slope) * in, for runs of points between the same two knots.
+// out = (value + fraction * slope) * in, for runs of points between the same two knots.
 ADIT_WIDE_VECTORS void move_block(const SweepTransform::Knot* knots, const std::int32_t* knot,
-                                  const float* way, std::size_t n, const float* __restrict in,
+                                  const float* fraction, std::size_t n, const float* __restrict in,
                                   float* __restrict out) {
   for (std::size_t begin = 0; begin < n;) {
     std::size_t end = begin + 1;
@@ -52,7 +52,7 @@ ADIT_WIDE_VECTORS void move_block(const SweepTransform::Knot* knots, const std::
     const SweepTransform::Matrix34 A = knots[knot[begin]].value;
     const SweepTransform::Matrix34 B = knots[knot[begin]].slope;
     for (std::size_t i = begin; i < end; ++i) {
-      const float s = way[i];
+      const float s = fraction[i];
       const float x = in[3 * i];
       const float y = in[3 * i + 1];
       const float z = in[3 * i + 2];
@@ -109,11 +109,11 @@ void SweepTransform::apply(std::span<const std::int32_t> offsets_ns,
                            std::span<const Eigen::Vector3f> p_sensor,
                            std::span<Eigen::Vector3f> p_body) const {
   std::array<std::int32_t, kBlock> knot;
-  std::array<float, kBlock> way;
+  std::array<float, kBlock> fraction;
   for (std::size_t begin = 0; begin < offsets_ns.size(); begin += kBlock) {
     const std::size_t n = std::min(kBlock, offsets_ns.size() - begin);
-    locate(&offsets_ns[begin], n, first_ns_, knots_per_step_, knot.data(), way.data());
-    move_block(knots_.data(), knot.data(), way.data(), n, p_sensor[begin].data(), p_body[begin].data());
+    locate(&offsets_ns[begin], n, first_ns_, knots_per_step_, knot.data(), fraction.data());
+    move_block(knots_.data(), knot.data(), fraction.data(), n, p_sensor[begin].data(), p_body[begin].data());
   }
 }
 

@@ -8,6 +8,7 @@
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/log_gamma.hpp"
+#include "adit/core/progress.hpp"
 #include "adit/core/robust_kernel.hpp"
 #include "adit/posegraph/loop_clusters.hpp"
 
@@ -109,12 +110,14 @@ class Search {
     inner.max_iterations = std::min(inner.max_iterations, 5);
     std::vector<double> costs = edge_costs(graph_, s.poses);
     mu = std::max(mu, first_mu(largest_loop_cost(graph_, costs), bound_));
+    const Phase phase("graduating", steps_from(mu));
     for (int outer = 0; s.ok() && outer < config_.max_outer_iterations; ++outer, mu *= config_.mu_step) {
       const auto weights =
           weights_of(graph_, costs, [&](double chi2) { return tls_weight(chi2, bound_, mu); });
       if (mu >= kLargestMu || all_binary(weights)) break;
       s = continued(s, s.poses, inner, weights);
       costs = edge_costs(graph_, s.poses);
+      phase.advance();
     }
     return s;
   }
@@ -195,7 +198,10 @@ class Search {
   // false. With a whole group back in use the stretch straightens, if the group is true; the objective
   // decides.
   [[nodiscard]] Solution<P> reconsider(Solution<P> s, const LoopClusters& clusters) const {
-    for (const std::vector<std::size_t>& group : rejected_groups(s, clusters)) {
+    const auto groups = rejected_groups(s, clusters);
+    if (groups.empty()) return s;
+    const Phase phase("reconsidering loops", groups.size());
+    for (const std::vector<std::size_t>& group : groups) {
       std::vector<double> weights = s.edge_weights;
       for (const std::size_t e : group) weights[e] = 1.0;
       Solution<P> other = continued(s, s.poses, warm(), weights);
@@ -203,6 +209,7 @@ class Search {
       const int iterations = other.iterations;
       if (other.ok() && objective(other) < objective(s)) s = std::move(other);
       s.iterations = iterations;
+      phase.advance();
     }
     return s;
   }
@@ -266,6 +273,13 @@ class Search {
                       [&](double chi2) { return chi2 <= bound_ ? 1.0 : 0.0; });
   }
 
+  // Of a graduation, at most.
+  [[nodiscard]] std::size_t steps_from(double mu) const {
+    const double steps = std::ceil(std::log(kLargestMu / mu) / std::log(config_.mu_step));
+    return static_cast<std::size_t>(
+        std::clamp(steps, 1.0, static_cast<double>(config_.max_outer_iterations)));
+  }
+
   [[nodiscard]] static std::size_t largest_of(const LoopClusters& clusters) {
     return clusters.sizes.empty() ? 0 : *std::ranges::max_element(clusters.sizes);
   }
@@ -326,8 +340,11 @@ class Search {
 template <class P>
 Solution<P> best_of_all(const BasicPoseGraph<P>& graph, const GncConfig& config, const Solution<P>& given,
                         Search<P>& search) {
+  // The starts, most of which a clear answer makes needless, and the loops that are reconsidered.
+  const Phase phase("searching for false loops", 3 + kMaxRestarts + 1);
   const LoopClusters clusters = loop_clusters(graph);
   Solution<P> best = search.grow(search.from(clusters));
+  phase.advance();
   const auto improve_from = [&](Solution<P> start) {
     Solution<P> other = start.ok() ? search.run(std::move(start)) : std::move(start);
     other.iterations += best.iterations;
@@ -338,12 +355,15 @@ Solution<P> best_of_all(const BasicPoseGraph<P>& graph, const GncConfig& config,
   };
   const auto is_fine = [&] { return search.is_clearly_fine(best, clusters); };
   if (!is_fine()) improve_from(given);
+  phase.advance();
   if (!is_fine()) improve_from(optimize(graph, config.optimizer));
+  phase.advance();
   // Loops that hold only together are found from where the others have brought the poses.
   for (int i = 0; i < kMaxRestarts && best.ok() && !is_fine(); ++i) {
     Solution<P> again = best;
     again.iterations = 0;
     if (!improve_from(std::move(again))) break;
+    phase.advance();
   }
   if (best.ok()) best = search.reconsider(std::move(best), clusters);
   return best;

@@ -6,8 +6,10 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "adit/core/parallel.hpp"
+#include "adit/core/progress.hpp"
 #include "support/graphs.hpp"
 
 namespace adit {
@@ -218,6 +220,43 @@ TEST(Gnc, KeepsTheFrameOfAGoodGuessThatLeastSquaresWouldSpoil) {
                                 Matrix6::Identity() / (kSigma * kSigma), EdgeKind::loop});
   }
   expect_recovered(made, 0);
+}
+
+// Expects of every phase that its number of steps is known and not exceeded.
+class StepCounter : public ProgressObserver {
+ public:
+  PhaseId begin(std::string_view /*name*/, std::size_t total, PhaseId /*parent*/) override {
+    EXPECT_GT(total, 0U);
+    left_[++last_] = total;
+    return last_;
+  }
+  void advance(PhaseId phase, std::size_t steps) override {
+    EXPECT_GE(left_.at(phase), steps);
+    left_.at(phase) -= steps;
+    num_steps_ += steps;
+  }
+  void end(PhaseId /*phase*/) noexcept override {}
+  [[nodiscard]] bool cancelled() const noexcept override { return false; }
+  [[nodiscard]] std::size_t num_steps() const { return num_steps_; }
+
+ private:
+  std::map<PhaseId, std::size_t> left_;
+  PhaseId last_ = 0;
+  std::size_t num_steps_ = 0;
+};
+
+TEST(Gnc, TellsHowFarItIs) {
+  Rng rng(21);
+  Spoiled<Pose2> made = grid_in_the_plane(rng, 9);
+  add_random_false_loops(rng, 0.6, made);
+  for (const bool plain : {false, true}) {
+    GncConfig config;
+    config.plain = plain;
+    StepCounter counter;
+    const ObserverScope scope(counter);
+    ASSERT_TRUE(optimize_gnc(made.graph, config).ok());
+    EXPECT_GT(counter.num_steps(), 3U);
+  }
 }
 
 TEST(Gnc, LosesNothingWithoutFalseLoops) {

@@ -12,7 +12,7 @@ namespace {
 constexpr double kChance = 0.5;  ///< Share of equal signs that noise gives.
 
 /// The probability of this share or a larger one.
-double chance_of_at_least(const StandingShare& found, const SameWalls& walls) {
+double chance_of_at_least(const EqualSignShare& found, const SameWalls& walls) {
   return 0.5 *
          std::erfc((found.share - walls.mean) / std::hypot(walls.sigma, found.sigma) / std::numbers::sqrt2);
 }
@@ -21,12 +21,12 @@ double normal_density(double off, double sigma) {
   return std::exp(-0.5 * off * off / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
 }
 
-double density(const StandingShare& found, const SameWalls& walls) {
+double density(const EqualSignShare& found, const SameWalls& walls) {
   return normal_density(found.share - walls.mean, std::hypot(walls.sigma, found.sigma));
 }
 
 /// Averages over the distribution of `walls` by steps in its standard deviation.
-double density(const StandingShare& found, const OtherWalls& walls) {
+double density(const EqualSignShare& found, const OtherWalls& walls) {
   constexpr double kStep = 0.1;  // sigmas
   constexpr int kSteps = 60;     // to each side
   double sum = 0.0;
@@ -85,14 +85,14 @@ std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& 
   return out;
 }
 
-void StandingOffsets::add(const std::vector<PatchOffset>& of_a_pair) {
+void WallOffsets::add(const std::vector<PatchOffset>& of_a_pair) {
   for (const PatchOffset& offset : of_a_pair) {
     Sides& sides = patches_[offset.patch];
     ++(offset.metres > 0.0 ? sides.num_in_front : sides.num_behind);
   }
 }
 
-StandingShare StandingOffsets::counted() const {
+EqualSignShare WallOffsets::counted() const {
   // A patch weighs as much as the pairs beyond the first that saw it.
   struct OfPatch {
     double weight;
@@ -111,7 +111,7 @@ StandingShare StandingOffsets::counted() const {
     agreeing += all.back().agreeing;
   }
   if (all.empty()) return {};
-  StandingShare out{all.size(), agreeing / weight, 0.0};
+  EqualSignShare out{all.size(), agreeing / weight, 0.0};
   double squares = 0.0;
   for (const OfPatch& one : all) squares += std::pow(one.agreeing - out.share * one.weight, 2);
   // Even where all agree, count one that might not have.
@@ -119,15 +119,15 @@ StandingShare StandingOffsets::counted() const {
   return out;
 }
 
-bool StandingOffsets::are_of_other_walls(const StandingShares& shares, double rate) const {
-  const StandingShare found = counted();
+bool WallOffsets::are_of_other_walls(const EqualSignShares& shares, double rate) const {
+  const EqualSignShare found = counted();
   const auto needed = static_cast<std::size_t>(shares.config().min_patches_to_refute);
   return found.num_patches >= needed && chance_of_at_least(found, shares.same()) < rate;
 }
 
-double StandingOffsets::evidence(const StandingShares& shares) const {
+double WallOffsets::evidence(const EqualSignShares& shares) const {
   const std::optional<OtherWalls> other = shares.other();
-  StandingShare found = counted();
+  EqualSignShare found = counted();
   if (!other || found.num_patches < static_cast<std::size_t>(shares.config().min_patches)) return 0.0;
   found.share = std::max(found.share, kChance);  // less than chance is chance
   constexpr double kLeast = 1e-300;              // for the logarithm
@@ -135,29 +135,29 @@ double StandingOffsets::evidence(const StandingShares& shares) const {
          std::log(std::max(density(found, *other), kLeast));
 }
 
-void StandingShares::set_same(const StandingShare& share) { same_ = share; }
+void EqualSignShares::set_same(const EqualSignShare& share) { same_ = share; }
 
-void StandingShares::add_other(const StandingShare& share) {
+void EqualSignShares::add_other(const EqualSignShare& share) {
   if (share.num_patches >= static_cast<std::size_t>(config_.min_patches)) others_.push_back(share);
 }
 
-SameWalls StandingShares::same() const {
+SameWalls EqualSignShares::same() const {
   SameWalls walls{config_.same_share, config_.same_sigma};
   if (same_.num_patches >= static_cast<std::size_t>(config_.min_patches_to_refute))
     walls.mean = std::max(walls.mean, same_.share);
   return walls;
 }
 
-std::optional<OtherWalls> StandingShares::other() const {
+std::optional<OtherWalls> EqualSignShares::other() const {
   if (others_.empty()) return {};
   const auto num = static_cast<double>(others_.size());
   double mean = 0.0;
-  for (const StandingShare& one : others_) {
+  for (const EqualSignShare& one : others_) {
     if (chance_of_at_least(one, same()) > config_.may_be_same) return {};
     mean += std::log(one.share - kChance) / num;
   }
   double beyond_chance = config_.prior_stretches * config_.prior_sigma * config_.prior_sigma;
-  for (const StandingShare& one : others_) {
+  for (const EqualSignShare& one : others_) {
     const double beyond_half = one.share - kChance;
     beyond_chance +=
         std::max(0.0, std::pow(std::log(beyond_half) - mean, 2) - std::pow(one.sigma / beyond_half, 2));

@@ -37,7 +37,7 @@ struct PatchOffset {
 
 /// The share of equal signs: how often two pairs of scans that saw a patch put the wall on the same side.
 /// 0.5, as by chance, where no patch was seen twice.
-struct StandingShare {
+struct EqualSignShare {
   std::size_t num_patches = 0;  ///< Over which it was counted.
   double share = 0.5;
   double sigma = 0.5;  ///< Standard deviation of the share, from counting.
@@ -58,15 +58,15 @@ struct OtherWalls {
 };
 
 /// The shares that a robot found in its own map.
-class StandingShares {
+class EqualSignShares {
  public:
-  StandingShares() = default;
-  explicit StandingShares(const ReliefConfig& config) : config_(config) {}
+  EqualSignShares() = default;
+  explicit EqualSignShares(const ReliefConfig& config) : config_(config) {}
 
   /// The share of the robot's own walls, seen twice.
-  void set_same(const StandingShare& share);
+  void set_same(const EqualSignShare& share);
   /// The share of a stretch of wall that only looks like another one.
-  void add_other(const StandingShare& share);
+  void add_other(const EqualSignShare& share);
 
   /// A little more than half even for one wall, because where the beams fall on an edge is not random.
   [[nodiscard]] SameWalls same() const;
@@ -77,23 +77,23 @@ class StandingShares {
 
  private:
   ReliefConfig config_;
-  StandingShare same_;
-  std::vector<StandingShare> others_;  ///< Of each stretch that was seen well.
+  EqualSignShare same_;
+  std::vector<EqualSignShare> others_;  ///< Of each stretch that was seen well.
 };
 
 /// Offsets from several pairs of scans, no scan in two pairs. For each patch seen by two or more pairs it
 /// counts the pairs whose offsets have equal sign. Noise gives equal signs as often as not, whatever the
 /// number of pairs.
-class StandingOffsets {
+class WallOffsets {
  public:
   void add(const std::vector<PatchOffset>& of_a_pair);
   /// Over the patches that two pairs or more saw.
-  [[nodiscard]] StandingShare counted() const;
+  [[nodiscard]] EqualSignShare counted() const;
   /// True if P(share >= observed, same wall) < `rate`; needs `min_patches_to_refute` patches.
-  [[nodiscard]] bool are_of_other_walls(const StandingShares& shares, double rate) const;
+  [[nodiscard]] bool are_of_other_walls(const EqualSignShares& shares, double rate) const;
   /// Log likelihood ratio, same walls to different ones. 0 if the share of different walls is not known or
   /// fewer than `min_patches` patches were seen.
-  [[nodiscard]] double evidence(const StandingShares& shares) const;
+  [[nodiscard]] double evidence(const EqualSignShares& shares) const;
 
  private:
   struct Sides {

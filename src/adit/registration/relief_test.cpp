@@ -44,8 +44,8 @@ SeenSurface seen(std::uint64_t tunnel, double x, std::uint64_t noise) {
 
 // One robot drove through `first`, the other through `second`, which coincide except for the rock; the second
 // robot stands `ahead` metres of the first each time.
-StandingOffsets driven(std::uint64_t first, std::uint64_t second, int num_pairs = 8, double ahead = 1.0) {
-  StandingOffsets offsets;
+WallOffsets driven(std::uint64_t first, std::uint64_t second, int num_pairs = 8, double ahead = 1.0) {
+  WallOffsets offsets;
   for (int i = 0; i < num_pairs; ++i) {
     const double x = 3.0 * i;
     const auto noise = static_cast<std::uint64_t>(2 * i + 100);
@@ -55,27 +55,27 @@ StandingOffsets driven(std::uint64_t first, std::uint64_t second, int num_pairs 
   return offsets;
 }
 
-StandingShare found(double share, std::size_t num_patches = 1000) {
+EqualSignShare found(double share, std::size_t num_patches = 1000) {
   return {num_patches, share, 0.5 / std::sqrt(static_cast<double>(num_patches))};
 }
 
-StandingShares where_others_stand(double share, int num_stretches = 5) {
-  StandingShares shares;
+EqualSignShares where_others_agree(double share, int num_stretches = 5) {
+  EqualSignShares shares;
   for (int i = 0; i < num_stretches; ++i) shares.add_other(found(share));
   return shares;
 }
 
-// A thousand patches that two pairs saw, `num_standing` of them with equal signs.
-StandingOffsets of_a_thousand(int num_standing) {
-  StandingOffsets offsets;
+// A thousand patches that two pairs saw, `num_equal` of them with equal signs.
+WallOffsets of_a_thousand(int num_equal) {
+  WallOffsets offsets;
   for (int i = 0; i < 1000; ++i)
-    for (const double metres : {0.01, i < num_standing ? 0.01 : -0.01}) offsets.add({{{i, 0, 0, 0}, metres}});
+    for (const double metres : {0.01, i < num_equal ? 0.01 : -0.01}) offsets.add({{{i, 0, 0, 0}, metres}});
   return offsets;
 }
 
 TEST(Relief, OffsetsOfTheSameWallsHaveRandomSigns) {
   for (const std::uint64_t tunnel : {1U, 2U, 3U}) {
-    const StandingOffsets offsets = driven(tunnel, tunnel);
+    const WallOffsets offsets = driven(tunnel, tunnel);
     ASSERT_GT(offsets.counted().num_patches, 200U);
     EXPECT_NEAR(offsets.counted().share, 0.5, 0.06);
     EXPECT_FALSE(offsets.are_of_other_walls({}, 0.01));
@@ -85,7 +85,7 @@ TEST(Relief, OffsetsOfTheSameWallsHaveRandomSigns) {
 TEST(Relief, OffsetsOfOtherWallsHaveEqualSignsInAllScansThoughNoiseIsLarger) {
   static_assert(kRelief < 0.5 * kNoise);
   for (const std::uint64_t tunnel : {1U, 2U, 3U}) {
-    const StandingOffsets offsets = driven(tunnel, tunnel + 10);
+    const WallOffsets offsets = driven(tunnel, tunnel + 10);
     EXPECT_GT(offsets.counted().share, 0.6);
     EXPECT_TRUE(offsets.are_of_other_walls({}, 1e-4));
   }
@@ -93,22 +93,22 @@ TEST(Relief, OffsetsOfOtherWallsHaveEqualSignsInAllScansThoughNoiseIsLarger) {
 
 // The share does not depend on how many scans saw a patch, so short stretches compare with long ones.
 TEST(Relief, TheShareIsTheSameForFewPairsOfScansAndForMany) {
-  const StandingOffsets few = driven(1, 11, 3);
-  const StandingOffsets many = driven(1, 11, 12);
+  const WallOffsets few = driven(1, 11, 3);
+  const WallOffsets many = driven(1, 11, 12);
   EXPECT_NEAR(few.counted().share, many.counted().share, 0.08);
   EXPECT_LT(many.counted().sigma, 0.6 * few.counted().sigma);
 }
 
 TEST(Relief, SpeaksForOneTunnelAndAgainstTheOther) {
-  EXPECT_GT(driven(1, 1).evidence(where_others_stand(0.65)), 3.0);
-  EXPECT_LT(driven(1, 11).evidence(where_others_stand(0.65)), -3.0);
+  EXPECT_GT(driven(1, 1).evidence(where_others_agree(0.65)), 3.0);
+  EXPECT_LT(driven(1, 11).evidence(where_others_agree(0.65)), -3.0);
 }
 
 TEST(Relief, OnePairOfScansSaysNothing) {
-  const StandingOffsets offsets = driven(1, 11, 1);
+  const WallOffsets offsets = driven(1, 11, 1);
   EXPECT_EQ(offsets.counted().num_patches, 0U);
   EXPECT_FALSE(offsets.are_of_other_walls({}, 0.5));
-  EXPECT_EQ(offsets.evidence(where_others_stand(0.65)), 0.0);
+  EXPECT_EQ(offsets.evidence(where_others_agree(0.65)), 0.0);
 }
 
 TEST(Relief, LargeOffsetsAreNotRelief) {
@@ -150,15 +150,15 @@ TEST(Relief, PatchesStayWhereTheyAreInTheMap) {
   }
 }
 
-TEST(StandingOffsets, EveryTwoPairsThatSawAPatchAreCompared) {
-  StandingOffsets offsets;
-  const WallPatch stands{0, 0, 0, 0}, wavers{1, 0, 0, 0}, once{2, 0, 0, 0};
-  offsets.add({{stands, 0.01}, {wavers, 0.01}});
+TEST(WallOffsets, EveryTwoPairsThatSawAPatchAreCompared) {
+  WallOffsets offsets;
+  const WallPatch lasting{0, 0, 0, 0}, changing{1, 0, 0, 0}, once{2, 0, 0, 0};
+  offsets.add({{lasting, 0.01}, {changing, 0.01}});
   EXPECT_EQ(offsets.counted().num_patches, 0U);
-  offsets.add({{stands, 0.02}, {wavers, -0.01}, {once, 0.01}});
+  offsets.add({{lasting, 0.02}, {changing, -0.01}, {once, 0.01}});
   EXPECT_EQ(offsets.counted().num_patches, 2U);
   EXPECT_DOUBLE_EQ(offsets.counted().share, 0.5);
-  offsets.add({{stands, -0.005}});  // one of three combinations still agrees; the patch weighs as two
+  offsets.add({{lasting, -0.005}});  // one of three combinations still agrees; the patch weighs as two
   EXPECT_DOUBLE_EQ(offsets.counted().share, (2.0 / 3.0 + 0.0) / (2.0 + 1.0));
 }
 
@@ -178,20 +178,20 @@ TEST(Relief, SmallOffsetsAreLeftOut) {
   EXPECT_LT(found.size(), offsets(0.0).size());
 }
 
-TEST(StandingOffsets, TheShareOfOneWallAndTheNumberOfPatchesAreSettings) {
+TEST(WallOffsets, TheShareOfOneWallAndTheNumberOfPatchesAreSettings) {
   EXPECT_TRUE(of_a_thousand(600).are_of_other_walls({}, 0.01));
-  EXPECT_FALSE(of_a_thousand(600).are_of_other_walls(StandingShares({.same_share = 0.6}), 0.01));
-  EXPECT_FALSE(of_a_thousand(600).are_of_other_walls(StandingShares({.min_patches_to_refute = 1001}), 0.01));
+  EXPECT_FALSE(of_a_thousand(600).are_of_other_walls(EqualSignShares({.same_share = 0.6}), 0.01));
+  EXPECT_FALSE(of_a_thousand(600).are_of_other_walls(EqualSignShares({.min_patches_to_refute = 1001}), 0.01));
 }
 
-TEST(StandingOffsets, TheShareIsAsUncertainAsTheTossOfACoin) {
+TEST(WallOffsets, TheShareIsAsUncertainAsTheTossOfACoin) {
   Rng rng(3);
   std::vector<double> off;  // in sigmas
   for (int trial = 0; trial < 200; ++trial) {
-    StandingOffsets offsets;
+    WallOffsets offsets;
     for (int i = 0; i < 200; ++i)
       for (int pair = 0; pair < 2 + i % 4; ++pair) offsets.add({{{i, 0, 0, 0}, rng.normal()}});
-    const StandingShare counted = offsets.counted();
+    const EqualSignShare counted = offsets.counted();
     off.push_back((counted.share - 0.5) / counted.sigma);
   }
   double squares = 0.0;
@@ -199,27 +199,27 @@ TEST(StandingOffsets, TheShareIsAsUncertainAsTheTossOfACoin) {
   EXPECT_NEAR(squares, 1.0, 0.3);
 }
 
-TEST(StandingOffsets, AreOfOtherWallsWhenMoreSignsAreEqualThanOnTheSame) {
+TEST(WallOffsets, AreOfOtherWallsWhenMoreSignsAreEqualThanOnTheSame) {
   EXPECT_FALSE(of_a_thousand(560).are_of_other_walls({}, 0.01));
   EXPECT_TRUE(of_a_thousand(600).are_of_other_walls({}, 0.01));
-  StandingShares cluttered;  // at edges signs are equal even of one place
+  EqualSignShares cluttered;  // at edges signs are equal even of one place
   cluttered.set_same(found(0.6));
   EXPECT_FALSE(of_a_thousand(600).are_of_other_walls(cluttered, 0.01));
   EXPECT_TRUE(of_a_thousand(680).are_of_other_walls(cluttered, 0.01));
 }
 
-TEST(StandingOffsets, WhereAllAgreeTheEvidenceIsFinite) {
-  EXPECT_LT(of_a_thousand(1000).evidence(where_others_stand(0.65)), -100.0);
-  EXPECT_TRUE(std::isfinite(of_a_thousand(1000).evidence(where_others_stand(0.65))));
+TEST(WallOffsets, WhereAllAgreeTheEvidenceIsFinite) {
+  EXPECT_LT(of_a_thousand(1000).evidence(where_others_agree(0.65)), -100.0);
+  EXPECT_TRUE(std::isfinite(of_a_thousand(1000).evidence(where_others_agree(0.65))));
 }
 
-TEST(StandingOffsets, AShareBelowHalfCountsAsChance) {
-  EXPECT_NEAR(of_a_thousand(400).evidence(where_others_stand(0.65)),
-              of_a_thousand(500).evidence(where_others_stand(0.65)), 0.5);
+TEST(WallOffsets, AShareBelowHalfCountsAsChance) {
+  EXPECT_NEAR(of_a_thousand(400).evidence(where_others_agree(0.65)),
+              of_a_thousand(500).evidence(where_others_agree(0.65)), 0.5);
 }
 
-TEST(StandingShares, UseWhatWasMeasuredOrElseTheSetting) {
-  StandingShares shares;
+TEST(EqualSignShares, UseWhatWasMeasuredOrElseTheSetting) {
+  EqualSignShares shares;
   const double believed = shares.same().mean;
   EXPECT_GT(believed, 0.5);
   EXPECT_FALSE(shares.other());
@@ -231,19 +231,19 @@ TEST(StandingShares, UseWhatWasMeasuredOrElseTheSetting) {
   EXPECT_EQ(shares.same().mean, 0.6);
 }
 
-TEST(StandingShares, MoreLookAlikesSharpenThePredictionForOtherWalls) {
-  const auto one = where_others_stand(0.65, 1).other();
-  const auto many = where_others_stand(0.65, 20).other();
+TEST(EqualSignShares, MoreLookAlikesSharpenThePredictionForOtherWalls) {
+  const auto one = where_others_agree(0.65, 1).other();
+  const auto many = where_others_agree(0.65, 20).other();
   ASSERT_TRUE(one && many);
   EXPECT_NEAR(one->mean_log, std::log(0.15), 1e-12);
   EXPECT_LT(many->sigma_log, 0.6 * one->sigma_log);
-  StandingShares uneven;
+  EqualSignShares uneven;
   for (const double share : {0.58, 0.62, 0.7, 0.8}) uneven.add_other(found(share));
-  EXPECT_GT(uneven.other()->sigma_log, where_others_stand(0.65, 4).other()->sigma_log);
+  EXPECT_GT(uneven.other()->sigma_log, where_others_agree(0.65, 4).other()->sigma_log);
 }
 
-TEST(StandingShares, WhereOneLookAlikeMayHaveTheSameWallsNothingIsKnown) {
-  StandingShares shares = where_others_stand(0.65);
+TEST(EqualSignShares, WhereOneLookAlikeMayHaveTheSameWallsNothingIsKnown) {
+  EqualSignShares shares = where_others_agree(0.65);
   EXPECT_GT(of_a_thousand(500).evidence(shares), 5.0);
   shares.add_other(found(0.9, 50));  // hardly seen: not counted
   EXPECT_GT(of_a_thousand(500).evidence(shares), 5.0);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "adit/core/parallel.hpp"
+#include "adit/core/progress.hpp"
 #include "adit/fleet/merge/discernment.hpp"
 #include "adit/fleet/search/path.hpp"
 #include "adit/fleet/sync/fleet_graph.hpp"
@@ -48,8 +49,8 @@ Result<Seen> seen_by(const RobotRun& run, const SlamConfig& config) {
 
 std::vector<std::uint32_t> sampled(const Seen& seen) {
   std::vector<std::uint32_t> out;
-  const std::vector<double> way = path_lengths(chain_of(graph_of(*seen.map)));
-  for (double metres = 0.5 * kEvery; const auto k = keyframe_at(way, metres); metres += kEvery)
+  const std::vector<double> lengths = path_lengths(chain_of(graph_of(*seen.map)));
+  for (double metres = 0.5 * kEvery; const auto k = keyframe_at(lengths, metres); metres += kEvery)
     out.push_back(*k);
   return out;
 }
@@ -114,7 +115,7 @@ bool are_alike(const Seen& a, std::uint32_t i, const Seen& b, std::uint32_t j,
 
 /// The sampled places of `all[robot]` that are distinctive, as positions in the world frame.
 std::vector<Vector3> distinctive_in(std::vector<Seen>& all, std::size_t robot, const MostAlike& most_alike,
-                                    const RegistrationConfig& config) {
+                                    const RegistrationConfig& config, const Phase& phase) {
   struct Place {
     std::uint32_t keyframe;
     std::vector<LoopCandidate> others;
@@ -147,6 +148,7 @@ std::vector<Vector3> distinctive_in(std::vector<Seen>& all, std::size_t robot, c
       place.has_equal = are_alike(all[robot], place.keyframe, all[other.robot.value], other.index, config);
     });
     std::erase_if(open, [](const Place& place) { return place.has_equal; });
+    phase.advance();
   }
   std::vector<Vector3> positions;
   for (const Place& place : open) positions.push_back(all[robot].positions[place.keyframe]);
@@ -168,10 +170,11 @@ Result<DistinctivePlaces> distinctive_places(const std::vector<RobotRun>& runs, 
     if (!seen) return tl::unexpected(seen.error());
     all.push_back(std::move(*seen));
   }
+  const Phase phase("looking for distinctive places", all.size() * kMostAlike);
   const MostAlike most_alike(all, config);
   std::vector<std::vector<Vector3>> places;
   for (std::size_t robot = 0; robot < all.size(); ++robot)
-    places.push_back(distinctive_in(all, robot, most_alike, config.loops.adaptive.registration));
+    places.push_back(distinctive_in(all, robot, most_alike, config.loops.adaptive.registration, phase));
   DistinctivePlaces shared(all.size(), std::vector<int>(all.size(), 0));
   for (std::size_t a = 0; a < all.size(); ++a)
     for (std::size_t b = a + 1; b < all.size(); ++b)

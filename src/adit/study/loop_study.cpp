@@ -106,7 +106,8 @@ FalseLoopRun run_methods(const LabelledGraph<P>& labelled, const Reference<P>& r
   run.num_nodes = static_cast<int>(labelled.graph.nodes.size());
   run.num_false = static_cast<int>(labelled.graph.edges.size() - labelled.num_true);
   run.num_true = static_cast<int>(num_loops(labelled.graph)) - run.num_false;
-  for (std::size_t m = 0; m < kLoopMethods.size(); ++m) {
+  const Phase phase(listed.name, kLoopMethods.size());
+  for (std::size_t m = 0; m < kLoopMethods.size(); ++m, phase.advance()) {
     if (listed.large && kLoopMethods[m] != LoopMethod::adit) {
       run.reasons[m] = "left out, as it takes too long on a graph that is listed as large";
       continue;

@@ -14,6 +14,7 @@
 #include "adit/io/config_toml.hpp"
 #include "adit/io/crc32.hpp"
 #include "adit/io/robot_map_file.hpp"
+#include "adit/io/routes_yaml.hpp"
 #include "adit/io/tum.hpp"
 #include "adit/io/world_files.hpp"
 #include "adit/slam/mapping.hpp"
@@ -47,13 +48,28 @@ Result<> check(const std::deque<ListedWorld>& worlds) {
   return {};
 }
 
+/// Of the routes and the mesh that they name; 0 for a world that is generated.
+Result<std::uint32_t> checksum_of_files(const ListedWorld& world) {
+  if (world.routes_file.empty()) return 0U;
+  const Result<RoutesFile> routes = read_routes(world.routes_file);
+  if (!routes) return tl::unexpected(routes.error());
+  std::uint32_t checksum = 0;
+  for (const std::filesystem::path& file : {std::filesystem::path(world.routes_file), routes->world}) {
+    if (file.empty()) continue;  // what a drive needs is said there
+    const Result<std::string> bytes = read_bytes(file);
+    if (!bytes) return tl::unexpected(bytes.error());
+    checksum = crc32(*bytes, checksum);
+  }
+  return checksum;
+}
+
 /// Everything that decides what the robots record; a world may change its group.
-std::string key_of(ListedWorld world, ScenarioConfig simulation, RobotSlamConfig robot) {
+std::string key_of(ListedWorld world, std::uint32_t files, ScenarioConfig simulation, RobotSlamConfig robot) {
   world.group = ListedWorld{}.group;
   Fields fields = fields_of(world);
   append(fields, "simulation", adit::fields_of(simulation));
   append(fields, "robot", adit::fields_of(robot));
-  return format("{:08x}", crc32(std::string(version()) + to_toml(fields)));
+  return format("{:08x}", crc32(std::string(version()) + to_toml(fields), files));
 }
 
 Result<World> world_of(const ListedWorld& world) {
@@ -165,6 +181,8 @@ Result<std::vector<RobotRun>> driven_robots(const ListedWorld& world, RunConfig 
                                             const std::vector<KeyframeSelection>& selections,
                                             const std::filesystem::path& cache) {
   config.simulation.seed = world.noise_seed;
+  const Result<std::uint32_t> files = checksum_of_files(world);
+  if (!files) return tl::unexpected(files.error());
   std::vector<Drives> drives;
   std::vector<Drives> missing;
   for (const bool papers : {false, true}) {
@@ -173,7 +191,8 @@ Result<std::vector<RobotRun>> driven_robots(const ListedWorld& world, RunConfig 
     if (selection == selections.end()) continue;
     const RobotSlamConfig robot = with_policy(*selection, config).slam.robot;
     if (!drives.empty() && drives.front().config.odometry.method == robot.odometry.method) continue;
-    drives.push_back({robot, cache / format("{}-{}", world.name, key_of(world, config.simulation, robot))});
+    const std::string key = key_of(world, *files, config.simulation, robot);
+    drives.push_back({robot, cache / format("{}-{}", world.name, key)});
     if (!std::filesystem::exists(drives.back().folder)) missing.push_back(drives.back());
   }
   if (!missing.empty()) {

@@ -30,10 +30,10 @@ Result<std::vector<ListedWorld>> read_world_list(const std::filesystem::path& li
 [[nodiscard]] bool is_available(const ListedWorld& world);
 
 /// The robots' maps, by the odometries that those policies are studied under, and their ground truth. They
-/// come from `cache`, a folder that exists, if the world was driven before with the same configuration of
-/// simulation and robots; otherwise they are simulated, stored there and read back. The key covers neither
-/// the code nor what a routes file and its mesh hold: after a change of those, remove the cache. Fails on a
-/// world with fewer than two robots.
+/// come from `cache`, a folder that exists, if the world was driven before with the same routes, mesh and
+/// configuration of simulation and robots; otherwise they are simulated, stored there and read back. The key
+/// does not cover the code: after a change of that, remove the cache. Fails on a world with fewer than two
+/// robots.
 Result<std::vector<RobotRun>> driven_robots(const ListedWorld& world, RunConfig config,
                                             const std::vector<KeyframeSelection>& selections,
                                             const std::filesystem::path& cache);

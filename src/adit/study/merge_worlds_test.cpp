@@ -133,6 +133,13 @@ TEST(DrivenRobots, AreNotDrivenAgainWhereTheCacheHasThem) {
   ASSERT_TRUE(other) << other.error().message;
   EXPECT_EQ(kept(folder / "cache").size(), 2U) << "other noise is another drive";
   EXPECT_NE(tum_text(other->at(0).map->odometry), tum_text(again->at(0).map->odometry));
+
+  for (const std::string& changed : {world.routes_file, (folder / "hall.ply").string()}) {
+    const std::size_t before = kept(folder / "cache").size();
+    std::ofstream(changed, std::ios::app) << "\n";
+    EXPECT_TRUE(drive({KeyframeSelection::all}));
+    EXPECT_EQ(kept(folder / "cache").size(), before + 1) << changed;
+  }
 }
 
 TEST(DrivenRobots, ADamagedCacheIsRefusedWithTheRemedy) {

@@ -29,7 +29,7 @@ const Measured& Discernment::measured() {
   if (measured_) return *measured_;
   const DiscernmentConfig& config = config_.merge_check.discernment;
   Measured measured{LookAlikes(config.prior_chance, config.prior_steps),
-                    StandingShares(config_.registration.relief)};
+                    EqualSignShares(config_.registration.relief)};
   measured.walls.set_same(compare_own_walls().counted());
   LookAlikeWalks walks(*this, chain_, *features_, config_);
   walks.start(find_look_alikes_());
@@ -82,7 +82,7 @@ double Discernment::usual_difference() {
 
 /// Compares each sampled place twice, as maps are compared: by scans that are part of one comparison only,
 /// and so far apart that the beams fall elsewhere.
-StandingOffsets Discernment::compare_own_walls() {
+WallOffsets Discernment::compare_own_walls() {
   constexpr double kStep = 1.5;  // metres between two scans that are compared, and to the next two
   std::vector<OwnComparison> pairs;
   for (const std::uint32_t k : sampled()) {
@@ -95,7 +95,7 @@ StandingOffsets Discernment::compare_own_walls() {
     }
   }
   const std::vector<LocalFit> found = compare(pairs, FitFrom::guess);
-  StandingOffsets offsets;
+  WallOffsets offsets;
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (!differ(found[i].agreement))
       offsets.add(patch_offsets(surfaces_.at(pairs[i].a), surfaces_.at(pairs[i].b), found[i].T_a_b,

@@ -57,7 +57,7 @@ class Discernment {
                                               double good_enough);
   [[nodiscard]] std::vector<std::uint32_t> sampled() const;
   [[nodiscard]] double usual_difference();
-  [[nodiscard]] StandingOffsets compare_own_walls();
+  [[nodiscard]] WallOffsets compare_own_walls();
   [[nodiscard]] double measure_reach();
 
   AdaptiveConfig config_;

@@ -9,38 +9,13 @@
 #include <algorithm>
 
 #include "adit/fleet/sync/fleet_graph.hpp"
-#include "support/box_world.hpp"
-#include "support/synthetic_scan.hpp"
+#include "support/tube_drive.hpp"
 
 namespace adit {
 namespace {
 
-constexpr double kStep = 0.5;
-
-// A drive of 60 m along x through what `scan_at` sees.
-template <class ScanAt>
-std::shared_ptr<const RobotMap> driven(const ScanAt& scan_at) {
-  auto map = std::make_shared<RobotMap>();
-  for (std::uint32_t k = 0; k <= 120; ++k) {
-    const double x = kStep * k;
-    auto cloud = std::make_shared<const PointCloud>(scan_at(x, k));
-    map->places.push_back(describe(*cloud, ScanContextConfig{.max_radius_m = 25.0}));
-    map->keyframes.push_back({{{0}, k}, {k}, Pose::translation_of(x, 0, 0), std::move(cloud)});
-    map->step_covariances.push_back(k == 0 ? Matrix6::Zero() : odometry_covariance({}, kStep));
-  }
-  return map;
-}
-
-std::shared_ptr<const RobotMap> in_a_tube(const std::vector<test::Box>& boxes) {
-  test::Scene scene = test::smooth_tube();
-  scene.boxes = boxes;
-  return driven([&](double x, std::uint32_t k) {
-    test::Lidar lidar{32, 256, 0.6, 40.0, 0.01};
-    lidar.jitter = 0.5;
-    lidar.seed = k;
-    return test::scan_of(scene, lidar, Pose(), {Pose::planar(x, 0.0, 0.0), Vector6::Zero()}, 0).cloud;
-  });
-}
+using test::in_a_tube;
+using test::kTubeStep;
 
 std::vector<LoopCandidate> similar_places(const std::shared_ptr<const RobotMap>& map) {
   const SelfSimilarity others(map, chain_of(graph_of(*map)), {});
@@ -109,7 +84,7 @@ TEST(Discernment, AHeadingThatWandersLeadsLessFar) {
   Rng rng(5);
   Pose T_odom_base;
   for (std::size_t k = 0; k < wandering->keyframes.size(); ++k) {
-    if (k > 0) T_odom_base = T_odom_base * Pose::planar(kStep, 0.0, 0.004 * rng.normal());
+    if (k > 0) T_odom_base = T_odom_base * Pose::planar(kTubeStep, 0.0, 0.004 * rng.normal());
     wandering->keyframes[k].T_odom_base = T_odom_base;
   }
   const double reach = OnAMap(wandering).discernment.reach_m();
@@ -122,7 +97,7 @@ TEST(SelfSimilarity, NamesThePlaceThatLooksAlikeAndNoneNearBy) {
   const SelfSimilarity others(map, chain_of(graph_of(*map)), {});
   const auto match = others.most_similar(30);
   ASSERT_TRUE(match.has_value());
-  EXPECT_NEAR(kStep * match->match.index, 45.0, 4.0);  // 30 m farther, at the other block
+  EXPECT_NEAR(kTubeStep * match->match.index, 45.0, 4.0);  // 30 m farther, at the other block
   const std::vector<double> distances = others.distances();
   ASSERT_EQ(distances.size(), map->keyframes.size());
   EXPECT_EQ(distances[30], match->distance);

@@ -28,7 +28,7 @@ struct Hypothesis {
   std::vector<PlannedComparison> plan;                         ///< Places of the claimed overlap.
   std::vector<std::optional<PlannedComparison>> second_looks;  ///< Of each place of the plan, until taken.
   std::vector<ComparedPlace> compared;  ///< Of the first places of the plan, without their offsets.
-  StandingOffsets offsets;              ///< Of all compared walls.
+  WallOffsets offsets;                  ///< Of all compared walls.
   std::vector<double> apart_m;  ///< To each hypothesis before this one: where they put the other robot.
   double known_before = 0.0;    ///< Evidence that does not come from comparing scans.
 

@@ -77,7 +77,7 @@ std::vector<OwnComparison> LookAlikeWalks::next_places() {
 }
 
 void LookAlikeWalks::follow(Measured& measured) {
-  std::vector<StandingOffsets> offsets(walks_.size());  // of each look-alike
+  std::vector<WallOffsets> offsets(walks_.size());  // of each look-alike
   while (!walks_.empty()) {
     Step step;
     step.asked = next_places();
@@ -101,7 +101,7 @@ void LookAlikeWalks::follow(Measured& measured) {
     }
     std::erase_if(walks_, [](const Walk& walk) { return walk.is_over; });
   }
-  for (const StandingOffsets& of_one : offsets) measured.walls.add_other(of_one.counted());
+  for (const WallOffsets& of_one : offsets) measured.walls.add_other(of_one.counted());
 }
 
 std::optional<OwnComparison> LookAlikeWalks::place_at(const Walk& walk, double path_m, double apart_m) const {

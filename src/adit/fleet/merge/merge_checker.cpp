@@ -48,7 +48,7 @@ bool MergeChecker::has_other_walls(const Hypothesis& h) const {
   const double rate = h.is_finished() ? config_.refusal_rate : config_.refusal_rate / kStricterBeforeTheEnd;
   // What was measured only raises the share that one wall may have: without it the answer is often known
   // already.
-  return config_.relief && h.offsets.are_of_other_walls(StandingShares(own_.relief), rate) &&
+  return config_.relief && h.offsets.are_of_other_walls(EqualSignShares(own_.relief), rate) &&
          h.offsets.are_of_other_walls(own_.measured().walls, rate);
 }
 

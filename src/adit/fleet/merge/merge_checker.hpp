@@ -10,7 +10,7 @@
 ///
 /// The decision is Wald's sequential probability ratio test ("Sequential tests of statistical hypotheses",
 /// 1945): log likelihood ratios add up over the distinctive places and have to reach log(1 / error_rate),
-/// together with those of the relief of walls (StandingOffsets) and the prior, the share of all loops that
+/// together with those of the relief of walls (WallOffsets) and the prior, the share of all loops that
 /// speak for this alignment. It is one-sided against copies: scans that differ may not be more than true
 /// places would leave, nor walls stand apart more often than one wall does from itself. And every other
 /// hypothesis has to stay behind by as much. `MergeChecker::decide` reads in that order; docs/decisions/0010

@@ -31,7 +31,7 @@ LookAlikes look_alikes(double chance_to_go_on) {
 }
 
 // What was measured beforehand.
-MeasuredWhenAsked measured(const LookAlikes& look_alikes, const StandingShares& walls = {}) {
+MeasuredWhenAsked measured(const LookAlikes& look_alikes, const EqualSignShares& walls = {}) {
   return [all = Measured{look_alikes, walls}]() -> const Measured& { return all; };
 }
 
@@ -96,21 +96,21 @@ TEST(MergeChecker, SoManyLoopsHaveToAgreeWhateverThePlacesSay) {
   EXPECT_NE(too_few.reason.find("2 loops agree, 3 are needed"), std::string::npos) << too_few.reason;
 }
 
-// Patches of its own for each place, seen there twice; of so many in a hundred both stand off on one side.
-ComparedPlace with_offsets(std::uint32_t theirs, int standing) {
+// Patches of its own for each place, seen there twice; of so many in a hundred both offsets lie on one side.
+ComparedPlace with_offsets(std::uint32_t theirs, int num_equal) {
   ComparedPlace place = kAgrees;
   for (int i = 0; i < 100; ++i)
-    for (const double metres : {0.01, i < standing ? 0.01 : -0.01})
+    for (const double metres : {0.01, i < num_equal ? 0.01 : -0.01})
       place.offsets.push_back({{static_cast<int>(theirs), i, 0, 0}, metres});
   return place;
 }
 
-TEST(MergeChecker, WallsThatStandOffInAllScansAreOfOtherTunnels) {
+TEST(MergeChecker, WallsOnOneSideInAllScansAreOfOtherTunnels) {
   MergeCheckConfig without;
   without.relief = false;
-  const auto check = [](int standing, const MergeCheckConfig& config) {
+  const auto check = [](int num_equal, const MergeCheckConfig& config) {
     MergeChecker checker = a_check(kTrueLoops, 0.5, config);
-    return run(checker, [&](const PlannedComparison& c) { return with_offsets(c.theirs, standing); });
+    return run(checker, [&](const PlannedComparison& c) { return with_offsets(c.theirs, num_equal); });
   };
   EXPECT_TRUE(check(50, {}).accepted);
   const MergeCheck built_alike = check(62, {});
@@ -121,10 +121,10 @@ TEST(MergeChecker, WallsThatStandOffInAllScansAreOfOtherTunnels) {
 }
 
 TEST(MergeChecker, WallsCountWhereOwnLookAlikesHaveOthers) {
-  StandingShares shares;
-  const auto check = [&](int standing) {
+  EqualSignShares shares;
+  const auto check = [&](int num_equal) {
     MergeChecker checker = checker_of(kTrueLoops, measured(look_alikes(0.95), shares));
-    return run(checker, [&](const PlannedComparison& c) { return with_offsets(c.theirs, standing); });
+    return run(checker, [&](const PlannedComparison& c) { return with_offsets(c.theirs, num_equal); });
   };
   EXPECT_FALSE(check(50).accepted);  // look-alikes go on for long: places alone cannot do it
   for (int i = 0; i < 10; ++i) shares.add_other({1000, 0.62, 0.015});

@@ -29,7 +29,7 @@ std::string MergeChecker::reason(MergeDecision decision, const std::vector<std::
   const std::size_t num_agreeing = h.compared.size() - h.num_differing();
   switch (decision) {
     case MergeDecision::other_walls: {
-      const StandingShare walls = h.offsets.counted();
+      const EqualSignShare walls = h.offsets.counted();
       return format(
           "the walls differ: of the pairs of scans that saw one of {} patches, {:.0f} % found the other "
           "robot's wall on the same side, where noise alone would leave half: two tunnels built alike; drive "
