@@ -22,7 +22,8 @@ TEST(LargeBuffer, HoldsWhatIsWrittenAtEverySize) {
     std::iota(buffer.data(), buffer.data() + size, 0.0);
     const LargeBuffer moved = std::move(buffer);
     EXPECT_EQ(moved.data()[size - 1], static_cast<double>(size - 1));
-    EXPECT_EQ(moved.data()[size / 2], static_cast<double>(size / 2));
+    const std::size_t middle = size / 2;
+    EXPECT_EQ(moved.data()[middle], static_cast<double>(middle));
   }
 }
 

@@ -140,7 +140,7 @@ std::vector<Histogram> naive_fpfh(const BumpyCloud& cloud, double radius) {
       const double distance = (cloud.points[i] - cloud.points[j]).cast<double>().norm();
       out[i] += simplified[j] / distance / num_neighbors[i];
     }
-    for (int part = 0; part < 3; ++part) {
+    for (Eigen::Index part = 0; part < 3; ++part) {
       const double sum = out[i].segment<11>(11 * part).sum();
       if (sum > 0.0) out[i].segment<11>(11 * part) *= 100.0 / sum;
     }

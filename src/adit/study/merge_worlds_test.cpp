@@ -111,7 +111,7 @@ TEST(DrivenRobots, AreNotDrivenAgainWhereTheCacheHasThem) {
   const test::TemporaryFolder folder;
   std::filesystem::create_directories(folder / "cache");
   ListedWorld world = test::put_short_drives(folder.path());
-  const auto drive = [&](std::vector<KeyframeSelection> selections) {
+  const auto drive = [&](const std::vector<KeyframeSelection>& selections) {
     return driven_robots(world, quick_config(), selections, folder / "cache");
   };
   ASSERT_TRUE(drive({KeyframeSelection::all}));
