@@ -110,7 +110,7 @@ class Search {
     inner.max_iterations = std::min(inner.max_iterations, 5);
     std::vector<double> costs = edge_costs(graph_, s.poses);
     mu = std::max(mu, first_mu(largest_loop_cost(graph_, costs), bound_));
-    const Phase phase("graduating", steps_from(mu));
+    const Phase phase("graduated search", steps_from(mu));
     for (int outer = 0; s.ok() && outer < config_.max_outer_iterations; ++outer, mu *= config_.mu_step) {
       const auto weights =
           weights_of(graph_, costs, [&](double chi2) { return tls_weight(chi2, bound_, mu); });
@@ -273,7 +273,7 @@ class Search {
                       [&](double chi2) { return chi2 <= bound_ ? 1.0 : 0.0; });
   }
 
-  // Of a graduation, at most.
+  // The largest number of steps of a graduation from `mu` on.
   [[nodiscard]] std::size_t steps_from(double mu) const {
     const double steps = std::ceil(std::log(kLargestMu / mu) / std::log(config_.mu_step));
     return static_cast<std::size_t>(
@@ -340,7 +340,8 @@ class Search {
 template <class P>
 Solution<P> best_of_all(const BasicPoseGraph<P>& graph, const GncConfig& config, const Solution<P>& given,
                         Search<P>& search) {
-  // The starts, most of which a clear answer makes needless, and the loops that are reconsidered.
+  // One step per start, most of which a clear answer makes needless, and one for the loops that are
+  // reconsidered.
   const Phase phase("searching for false loops", 3 + kMaxRestarts + 1);
   const LoopClusters clusters = loop_clusters(graph);
   Solution<P> best = search.grow(search.from(clusters));

@@ -48,14 +48,14 @@ Result<> check(const std::deque<ListedWorld>& worlds) {
   return {};
 }
 
-/// Of the routes and the mesh that they name; 0 for a world that is generated.
+/// CRC-32 of the routes file and of the mesh that it names; 0 for a world that is generated.
 Result<std::uint32_t> checksum_of_files(const ListedWorld& world) {
   if (world.routes_file.empty()) return 0U;
   const Result<RoutesFile> routes = read_routes(world.routes_file);
   if (!routes) return tl::unexpected(routes.error());
   std::uint32_t checksum = 0;
   for (const std::filesystem::path& file : {std::filesystem::path(world.routes_file), routes->world}) {
-    if (file.empty()) continue;  // what a drive needs is said there
+    if (file.empty()) continue;  // routes without a mesh are refused where the world is loaded
     const Result<std::string> bytes = read_bytes(file);
     if (!bytes) return tl::unexpected(bytes.error());
     checksum = crc32(*bytes, checksum);

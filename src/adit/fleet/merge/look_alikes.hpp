@@ -43,7 +43,7 @@ class LookAlikes {
 /// What a robot has measured on its own map, to judge what it shares with others.
 struct Measured {
   LookAlikes look_alikes;  ///< What became of places that only look alike, followed along the path.
-  EqualSignShares walls;   ///< Of its own walls seen twice, and of those of look-alikes.
+  EqualSignShares walls;   ///< Measured on its own walls seen twice, and on walls of places that look alike.
 };
 /// The same each time it is called; the first call measures, which takes seconds.
 using MeasuredWhenAsked = std::function<const Measured&()>;
