@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # A thin front: each target installs what it needs (tools/setup.sh does nothing where all is there) and builds.
 .DEFAULT_GOAL := build
-.PHONY: build demo test bench bench-merge lint docs clean
+.PHONY: build demo test bench bench-merge bench-uncertainty lint docs clean
 
 build:
 	@tools/build.sh release adit_program
@@ -19,6 +19,9 @@ bench:
 
 bench-merge:
 	@tools/bench_merge.sh $(BENCH)
+
+bench-uncertainty:
+	@tools/bench_uncertainty.sh $(BENCH)
 
 lint:
 	@tools/lint.sh

@@ -93,9 +93,10 @@ class Program {
 [[noreturn]] void usage_error(const std::string& message);
 
 /// The configuration of a command, the one tree of keys that `adit config` prints: the profile, then
-/// --config, then the LiDAR of that name (`--lidar`; "": as it is), then --set. A file with an unknown key or
-/// a bad value is an error; a wrong --set, profile or LiDAR is wrong usage.
-Result<RunConfig> configured(const Common& common, const std::string& lidar = "");
+/// --config, then the simulated LiDAR and IMU of these names ("": as they are), then --set. A file with an
+/// unknown key or a bad value is an error; a wrong --set, profile, LiDAR or IMU is wrong usage.
+Result<RunConfig> configured(const Common& common, const std::string& lidar = "",
+                             const std::string& imu = "");
 
 /// Prints the lines on stderr, where they do not mix with results.
 void print_notes(const std::string& command, const std::vector<std::string>& notes);
@@ -108,6 +109,7 @@ void add_slam(Program& program);
 void add_study(Program& program);
 void add_merge_study(Program& program);
 void add_loop_study(Program& program);
+void add_uncertainty_study(Program& program);
 void add_evaluate(Program& program);
 void add_register(Program& program);
 void add_solve(Program& program);

@@ -8,7 +8,7 @@
 
 namespace adit::app {
 
-Result<RunConfig> configured(const Common& common, const std::string& lidar) {
+Result<RunConfig> configured(const Common& common, const std::string& lidar, const std::string& imu) {
   RunConfig config = config_of(common.profile);
   const Fields fields = fields_of(config);
   if (!common.config_file.empty()) {
@@ -17,6 +17,10 @@ Result<RunConfig> configured(const Common& common, const std::string& lidar) {
   }
   if (!lidar.empty()) {
     if (const Result<> chosen = choose_lidar(lidar, config.simulation); !chosen)
+      usage_error(chosen.error().message);
+  }
+  if (!imu.empty()) {
+    if (const Result<> chosen = choose_imu(imu, config.simulation); !chosen)
       usage_error(chosen.error().message);
   }
   for (const std::string& entry : common.sets) {

@@ -27,6 +27,11 @@ Result<Inputs> simulated(const std::string& routes_file, const ScenarioConfig& s
       });
 }
 
+std::string mount_fault(const std::string& text) {
+  const Result<Pose> mount = parse_mount(text);
+  return mount ? std::string() : mount.error().message;
+}
+
 }  // namespace
 
 void add_recording_options(const Command& command, RecordingConfig& config) {
@@ -35,11 +40,11 @@ void add_recording_options(const Command& command, RecordingConfig& config) {
           "--mount", config.mount,
           "Pose of the LiDAR on the robot, X,Y,Z[,ROLL,PITCH,YAW] in metres and degrees; overrides what "
           "recordings say")
-      .check([](const std::string& text) {
-        const Result<Pose> mount = parse_mount(text);
-        return mount ? std::string() : mount.error().message;
-      });
+      .check(mount_fault);
   command.add_option("--points", config.points, "Topic of the clouds, for recordings with several");
+  command.add_option("--imu", config.imu, "Topic of the IMU, for recordings with several; none: without");
+  command.add_option("--imu-mount", config.imu_mount, "Pose of the IMU on the robot, as --mount")
+      .check(mount_fault);
 }
 
 Result<Recording> open_input(const std::string& input, const RecordingConfig& config) {
@@ -53,12 +58,17 @@ Result<Recording> open_input(const std::string& input, const RecordingConfig& co
 RecordingConfig recording_config(RecordingConfig config, const RecordingConfig& options) {
   if (!options.mount.empty()) config.mount = options.mount;
   if (!options.points.empty()) config.points = options.points;
+  if (!options.imu.empty()) config.imu = options.imu;
+  if (!options.imu_mount.empty()) config.imu_mount = options.imu_mount;
   return config;
 }
 
 Result<Inputs> open_inputs(const std::vector<std::string>& inputs, const RunConfig& config) {
-  if (inputs.size() == 1 && is_routes_file(inputs.front()))
-    return simulated(inputs.front(), config.simulation);
+  if (inputs.size() == 1 && is_routes_file(inputs.front())) {
+    ScenarioConfig simulation = config.simulation;
+    if (config.recording.imu == kNoImu) simulation.imu.on = false;
+    return simulated(inputs.front(), simulation);
+  }
   Inputs opened;
   for (const std::string& input : inputs) {
     if (is_routes_file(input))
@@ -84,6 +94,12 @@ Result<> choose_lidar(const std::string& name, ScenarioConfig& config) {
     lidar.mount_height = config.lidar.mount_height;
     config.lidar = lidar;
   });
+}
+
+Result<> choose_imu(const std::string& name, ScenarioConfig& config) {
+  config.imu.on = name != kNoImu;
+  if (!config.imu.on) return {};
+  return imu_preset(name).map([&](const ImuConfig& imu) { config.imu = imu; });
 }
 
 }  // namespace adit::app

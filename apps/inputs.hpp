@@ -15,7 +15,7 @@
 
 namespace adit::app {
 
-/// The options --mount and --points of a command that opens recordings.
+/// The options --mount, --points, --imu and --imu-mount of a command that opens recordings.
 void add_recording_options(const Command& command, RecordingConfig& config);
 
 /// A recording (see open_recording). What had to be assumed to read it goes to stderr, one line per
@@ -41,5 +41,8 @@ std::pair<std::string, std::string> name_and_path(const std::string& input);
 
 /// The simulated LiDAR of that name (`--lidar`) put into `config`; its mount stays as it was.
 Result<> choose_lidar(const std::string& name, ScenarioConfig& config);
+
+/// The simulated IMU of that name put into `config`; "none": no IMU.
+Result<> choose_imu(const std::string& name, ScenarioConfig& config);
 
 }  // namespace adit::app

@@ -8,6 +8,7 @@
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/folders.hpp"
 #include "adit/report/text_tables.hpp"
+#include "adit/study/incremental_study.hpp"
 #include "adit/study/page_tables.hpp"
 #include "command_line.hpp"
 
@@ -23,6 +24,7 @@ struct LoopStudyOptions {
   std::string page;
   std::vector<int> shares = LoopStudy{}.shares;
   std::vector<std::string> only;
+  bool incremental = false;
 };
 
 /// Every run of every chosen graph; prints one line of text per run, to stderr if JSON goes to stdout.
@@ -62,6 +64,30 @@ Result<> loop_study(const LoopStudyOptions& options, const Common& common) {
   return done;
 }
 
+/// Step by step instead of at once.
+Result<> incremental_study(const LoopStudyOptions& options, const Common& common) {
+  if (const Result<> made = make_folder(options.out); !made) return made;
+  const Result<std::vector<ListedGraph>> list = read_graph_list(options.graphs, options.data);
+  if (!list) return tl::unexpected(list.error());
+  const Result<ChosenGraphs> chosen = chosen_graphs(options.graphs, *list, options.only);
+  if (!chosen) return tl::unexpected(chosen.error());
+  print_notes("loop-study", chosen->notes);
+  std::vector<IncrementalRun> runs;
+  for (const ListedGraph& graph : chosen->graphs) {
+    for (const int share : options.shares) {
+      const auto run = run_incremental(graph, RobustIncrementalConfig{}, {share});
+      if (!run) return tl::unexpected(run.error());
+      runs.push_back(run->front());
+      std::fprintf(common.json ? stderr : stdout, "%s\n", summary_line(runs.back()).c_str());
+      std::fflush(common.json ? stderr : stdout);
+    }
+  }
+  const std::string json = json_of(runs);
+  Result<> done = write_bytes(std::filesystem::path(options.out) / "incremental.json", json);
+  if (done && common.json) std::printf("%s", json.c_str());
+  return done;
+}
+
 }  // namespace
 
 void add_loop_study(Program& program) {
@@ -69,15 +95,23 @@ void add_loop_study(Program& program) {
   const Command command = program.add_command(
       "loop-study",
       "Measure which false loops plain GNC, PCM and adit's own search find, over a list of pose graphs",
-      [options](const Common& common) { return loop_study(*options, common); });
+      [options](const Common& common) {
+        return options->incremental ? incremental_study(*options, common) : loop_study(*options, common);
+      });
   command.add_option("--graphs", options->graphs, "The list (TOML, as bench/merge/graphs.toml)").required();
   command.add_option("--data", options->data,
                      "Folder that the paths of the list are relative to (default: the list's own)");
-  command.add_option("--out", options->out, "Folder that takes the results (false_loops.json)").required();
+  command
+      .add_option("--out", options->out,
+                  "Folder that takes the results (false_loops.json or incremental.json)")
+      .required();
   command.add_option("--shares", options->shares, "Per cent of all loops that are false, separated by commas")
       .separated_by_commas()
       .in_range(0, 99)
       .default_shown();
+  command.add_flag("--incremental", options->incremental,
+                   "Keyframe by keyframe, judged at every step, with random false loops (of the incremental "
+                   "solver alone)");
   command.add_option("--only", options->only, "Only the graphs with these names").separated_by_commas();
   command.add_option("--page", options->page,
                      "Markdown file whose section between 'false loops' marks takes the tables");

@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
   add_study(program);
   add_merge_study(program);
   add_loop_study(program);
+  add_uncertainty_study(program);
   add_slam(program);
   add_world(program);
   add_simulate(program);

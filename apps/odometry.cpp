@@ -10,8 +10,9 @@
 #include "adit/evaluation/ate.hpp"
 #include "adit/evaluation/statistics.hpp"
 #include "adit/io/tum.hpp"
-#include "adit/odometry/odometry.hpp"
+#include "adit/odometry/methods.hpp"
 #include "adit/robot/robot_slam.hpp"
+#include "adit/robot/sensor_checks.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
 
@@ -35,12 +36,12 @@ struct Run {
 Result<Run> run(const Recording& recording, const OdometryConfig& config) {
   const Result<> wheels = check_wheels(recording, config, "--method kiss-icp");
   if (!wheels) return tl::unexpected(wheels.error());
-  Odometry odometry(config, recording.T_base_lidar);
+  const std::unique_ptr<Odometry> odometry = make_odometry(config, recording.T_base_lidar);
   const Phase phase("odometry", recording.num_scans());
   Run out;
-  const auto take = [&](const Scan& scan, const std::optional<WheelDelta>& wheel) {
+  const auto take = [&](const Scan& scan, const SensedMotion& motion) {
     const auto start = std::chrono::steady_clock::now();
-    const OdometryStep step = odometry.register_scan(scan, wheel);
+    const OdometryStep step = odometry->register_scan(scan, motion);
     out.scan_ms.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     out.trajectory.push_back({step.stamp, step.T_odom_base});
@@ -59,6 +60,12 @@ std::string status_line(const std::map<StepStatus, int>& statuses) {
   return line;
 }
 
+std::vector<std::string> checked_sensors(Recording& recording) {
+  std::vector<std::string> notes;
+  for (const SensorFinding& finding : use_sound_sensors(recording)) notes.push_back(finding.sentence);
+  return notes;
+}
+
 Result<> odometry(const OdometryOptions& options, const Common& common) {
   Result<RunConfig> config = configured(common);
   if (!config) return tl::unexpected(config.error());
@@ -67,9 +74,10 @@ Result<> odometry(const OdometryOptions& options, const Common& common) {
     if (const Result<> set = set_field(fields_of(method), "method", options.method); !set)
       usage_error(set.error().message);
   }
-  const Result<Recording> recording =
+  Result<Recording> recording =
       open_input(options.input, recording_config(config->recording, options.recording));
   if (!recording) return tl::unexpected(recording.error());
+  if (config->slam.check_sensors) print_notes("odometry", checked_sensors(*recording));
   Result<Trajectory> truth = recording->truth;
   if (!options.truth.empty()) truth = read_tum(options.truth);
   if (!truth) return tl::unexpected(truth.error());

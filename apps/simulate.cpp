@@ -10,6 +10,7 @@
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/progress.hpp"
+#include "adit/io/atomic_file.hpp"
 #include "adit/io/mcap.hpp"
 #include "adit/io/tum.hpp"
 #include "adit/io/world_files.hpp"
@@ -25,6 +26,7 @@ struct SimulateOptions {
   std::string routes;
   std::string out;
   std::string lidar;
+  std::string imu;
   std::string robot;
   std::optional<std::uint64_t> seed;
 };
@@ -63,15 +65,30 @@ class RemoveIfEmpty {
   std::filesystem::path folder_;
 };
 
+std::filesystem::path faults_file(const SimulateOptions& options, const Recording& recording) {
+  return std::filesystem::path(options.out) / (recording.name + "_faults.csv");
+}
+
+/// What sensors were made to do wrong, to judge by: no file where that is nothing.
+Result<> write_faults(const SimulateOptions& options, const Recording& recording) {
+  if (recording.faults.empty()) return {};
+  std::string text = "sensor,kind,begin_s,end_s,amount\n";
+  for (const SensorFault& fault : recording.faults) {
+    text += format("{},{},{},{},{}\n", fault.sensor, fault.kind, stamp_text(fault.begin),
+                   stamp_text(fault.end), fault.amount);
+  }
+  return write_bytes(faults_file(options, recording), text);
+}
+
 /// Each scan that is read is a step of `phase`.
 Result<> write(const SimulateOptions& options, Recording recording, const Phase& phase) {
   recording.read_scan = [&, read = std::move(recording.read_scan)](std::size_t i) {
     phase.advance();
     return read(i);
   };
-  return write_recording(recording_file(options, recording), recording).and_then([&] {
-    return write_tum(truth_file(options, recording), recording.truth);
-  });
+  return write_recording(recording_file(options, recording), recording)
+      .and_then([&] { return write_tum(truth_file(options, recording), recording.truth); })
+      .and_then([&] { return write_faults(options, recording); });
 }
 
 Result<> write_all(const SimulateOptions& options, const std::vector<Recording>& recordings) {
@@ -108,7 +125,7 @@ void print(const SimulateOptions& options, const std::vector<Recording>& recordi
 }
 
 Result<> simulate_command(const SimulateOptions& options, const Common& common) {
-  Result<RunConfig> config = configured(common, options.lidar);
+  Result<RunConfig> config = configured(common, options.lidar, options.imu);
   if (!config) return tl::unexpected(config.error());
   if (options.seed) config->simulation.seed = *options.seed;
   auto recordings =
@@ -132,8 +149,14 @@ void add_simulate(Program& program) {
   command.add_option("--world", options->world,
                      "Mesh: PLY, OBJ, STL, DAE, GLB (default: the one the routes name)");
   command.add_option("--routes", options->routes, "routes.yaml").required();
-  command.add_option("--out", options->out, "Folder for ROBOT.mcap and ROBOT_truth.tum").required();
+  command
+      .add_option("--out", options->out,
+                  "Folder for ROBOT.mcap, ROBOT_truth.tum and, where sensors fail, ROBOT_faults.csv")
+      .required();
   command.add_option("--lidar", options->lidar, "Simulated LiDAR (default: os2-128)");
+  command.add_option(
+      "--imu", options->imu,
+      format("Simulated IMU: {}, or none (default: icm-20948)", fmt::join(imu_presets(), ", ")));
   command.add_option("--robot", options->robot, "Only the robot of this name");
   command.add_option("--seed", options->seed, "Noise seed; overrides --set and --config");
 }

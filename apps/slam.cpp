@@ -3,11 +3,13 @@
 #include "adit/slam/slam.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
 #include "adit/core/format.hpp"
 #include "adit/core/version.hpp"
+#include "adit/fleet/joint/merge_accuracy.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/config_toml.hpp"
 #include "adit/io/session_toml.hpp"
@@ -71,6 +73,12 @@ Result<Job> job_again(const SlamOptions& options, const Common& common) {
   return job;
 }
 
+std::string slips_of(const RobotMap& map) {
+  double metres = 0.0;
+  for (const SlipStretch& slip : map.slips) metres += std::abs(slip.counted_m);
+  return map.slips.empty() ? "" : format(", wheels slipped {} times by {:.1f} m", map.slips.size(), metres);
+}
+
 void print_robots(const SlamRun& run) {
   const Session& session = run.session;
   for (std::size_t i = 0; i < session.maps.size(); ++i) {
@@ -79,10 +87,10 @@ void print_robots(const SlamRun& run) {
       return loop.in_use() && loop.loop.from.robot == map.id && loop.loop.to.robot == map.id;
     });
     std::printf(
-        "%s: %zu scans, %zu keyframes, %td loops of its own, %d degenerate and %d refused steps, %.2f MB "
+        "%s: %zu scans, %zu keyframes, %td loops of its own, %d degenerate and %d refused steps%s, %.2f MB "
         "sent\n",
         map.name.c_str(), map.odometry.size(), map.keyframes.size(), own_loops, map.num_degenerate,
-        map.num_refused, static_cast<double>(run.bytes_sent[i]) * 1e-6);
+        map.num_refused, slips_of(map).c_str(), static_cast<double>(run.bytes_sent[i]) * 1e-6);
   }
 }
 
@@ -93,7 +101,9 @@ void print_pairs(const Session& session) {
     for (const LoopOutcome& loop : session.solution.loops)
       in_use += loop.in_use() && loop.loop.from.robot == pair.a && loop.loop.to.robot == pair.b ? 1 : 0;
     std::printf("%s and %s: %s\n", name(pair.a).c_str(), name(pair.b).c_str(),
-                pair.merged ? format("merged by {} of {} loops", in_use, pair.num_loops).c_str()
+                pair.merged ? format("merged by {} of {} loops{}", in_use, pair.num_loops,
+                                     pair.accuracy ? ", " + to_string(*pair.accuracy) : "")
+                                  .c_str()
                             : ("not merged: " + pair.refused_reason).c_str());
   }
 }

@@ -2,15 +2,20 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/g2o.hpp"
+#include "adit/io/jrl.hpp"
+#include "adit/posegraph/certificate.hpp"
 #include "adit/posegraph/gnc.hpp"
+#include "adit/study/graph_judgement.hpp"
 #include "command_line.hpp"
 
 namespace adit::app {
@@ -20,9 +25,39 @@ struct SolveOptions {
   std::vector<std::string> graphs;
   bool gnc = false;
   bool chordal = false;
+  bool no_certificate = false;
   std::string out;
   std::string repair;
 };
+
+// A graph of either format.
+struct GraphFile {
+  std::variant<PoseGraph, PoseGraph2> graph;
+  std::vector<std::string> edge_places;  // "line 7"; one per edge that the file has
+  std::vector<std::string> notes;
+  std::optional<JrlFile> jrl;
+};
+
+GraphFile graph_of(G2oFile file) {
+  GraphFile out{std::move(file.graph), {}, std::move(file.notes), {}};
+  for (const std::size_t line : file.edge_lines) out.edge_places.push_back(format("line {}", line));
+  return out;
+}
+
+GraphFile graph_of(JrlFile file) {
+  GraphFile out;
+  std::visit([&](const auto& jrl) { out.graph = with_priors_as_edges(jrl); }, file.content);
+  out.edge_places = std::move(file.edge_places);
+  out.notes = std::move(file.notes);
+  out.jrl = std::move(file);
+  return out;
+}
+
+Result<GraphFile> read_graph(const std::filesystem::path& path) {
+  const bool is_log = path.extension() == ".jrl" || path.extension() == ".cbor" || path.extension() == ".jrr";
+  if (is_log) return read_jrl(path).map([](JrlFile file) { return graph_of(std::move(file)); });
+  return read_g2o(path).map([](G2oFile file) { return graph_of(std::move(file)); });
+}
 
 template <class P>
 void zero_cross_blocks(BasicPoseGraph<P>& graph, const std::vector<std::size_t>& edges) {
@@ -38,11 +73,11 @@ void zero_cross_blocks(BasicPoseGraph<P>& graph, const std::vector<std::size_t>&
 // Refuses indefinite information matrices, or repairs them all where --repair asks for it.
 template <class P>
 Result<> check_information(const std::string& name, const SolveOptions& options, BasicPoseGraph<P>& graph,
-                           G2oFile& file) {
+                           GraphFile& file) {
   const std::vector<std::size_t> bad = indefinite_edges(graph);
   if (bad.empty()) return {};
-  const std::string found = format("{} of {} information matrices are indefinite, the first on line {}",
-                                   bad.size(), graph.edges.size(), file.edge_lines[bad.front()]);
+  const std::string found = format("{} of {} information matrices are indefinite, the first on {}",
+                                   bad.size(), graph.edges.size(), file.edge_places[bad.front()]);
   if (options.repair.empty()) {
     return fail(
         format("{}: {}; --repair zero-cross-blocks zeroes the translation-rotation blocks", name, found));
@@ -56,27 +91,102 @@ Result<> check_information(const std::string& name, const SolveOptions& options,
   return fail(format("{}: {}, and still are with their translation-rotation blocks zeroed", name, found));
 }
 
-Result<> replace_file(const std::filesystem::path& path, const G2oFile& file) {
+Result<> replace_file(const std::filesystem::path& path, const GraphFile& file) {
   Result<AtomicFile> output = AtomicFile::create(path);
   if (!output) return tl::unexpected(output.error());
   std::visit([&](const auto& graph) { write_g2o(output->stream(), graph); }, file.graph);
   return output->commit();
 }
 
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Replaces the solution by a better one where the certificate's search finds it.
+template <class P>
+nlohmann::json certify_solution(const BasicPoseGraph<P>& graph, const OptimizerConfig& config,
+                                Solution<P>& s) {
+  const auto start = std::chrono::steady_clock::now();
+  Certified<P> found = certified(graph, std::move(s));
+  const double seconds = seconds_since(start);
+  const auto search = std::chrono::steady_clock::now();
+  found = improved(graph, std::move(found), config);
+  const Certificate& c = found.certificate;
+  const double eigenvalue = c.smallest_eigenvalue;
+  nlohmann::json out{
+      {"status", std::string(to_string(c.optimality))},
+      {"reason", c.reason},
+      {"gap", c.gap},
+      {"lower_bound", c.lower_bound},
+      {"smallest_eigenvalue", std::isfinite(eigenvalue) ? nlohmann::json(eigenvalue) : nlohmann::json()},
+      {"given", std::string(to_string(found.given))},
+      {"descents", found.descents},
+      {"time_s", seconds},
+      {"search_time_s", seconds_since(search)}};
+  s = std::move(found.solution);
+  return out;
+}
+
+nlohmann::json error_json(const std::optional<PositionError>& error) {
+  if (!error) return {};
+  return {{"ate_rmse_m", error->rmse_m}, {"ate_max_m", error->max_m}};
+}
+
+nlohmann::json share_json(const std::optional<double>& share) {
+  return share ? nlohmann::json(*share) : nlohmann::json();
+}
+
+nlohmann::json judgement_json(const GraphJudgement& judgement) {
+  nlohmann::json robots = nlohmann::json::array();
+  for (const auto& robot : judgement.robots)
+    robots.push_back({{"name", robot.name}, {"poses", robot.num_poses}, {"error", error_json(robot.error)}});
+  nlohmann::json maps = nlohmann::json::array();
+  for (const auto& map : judgement.maps)
+    maps.push_back({{"robots", map.robots}, {"error", error_json(map.error)}});
+  nlohmann::json out{{"robots", robots}, {"maps", maps}, {"loops", nlohmann::json()}};
+  if (const auto& loops = judgement.loops)
+    out["loops"] = {{"precision", share_json(loops->precision())},
+                    {"recall", share_json(loops->recall())},
+                    {"true_kept", loops->true_kept},
+                    {"true_lost", loops->true_lost},
+                    {"false_kept", loops->false_kept},
+                    {"false_rejected", loops->false_rejected}};
+  return out;
+}
+
+// Takes the priors out of the solution, and compares it with what the file knows of the truth.
+template <class P>
+GraphJudgement judge(const JrlFile& file, BasicPoseGraph<P>& graph, Solution<P>& s) {
+  const auto& jrl = std::get<JrlGraph<P>>(file.content);
+  s.poses = in_frame_of_priors(jrl, std::move(s.poses));
+  s.edge_weights.resize(jrl.graph.edges.size());
+  graph = jrl.graph;
+  return judged(jrl, file.robots, s);
+}
+
 template <class P>
 Result<nlohmann::json> solve(const std::string& name, const SolveOptions& options, const GncConfig& config,
-                             BasicPoseGraph<P>& graph, G2oFile& file) {
+                             BasicPoseGraph<P>& graph, GraphFile& file) {
   if (const Result<> sound = check_information(name, options, graph, file); !sound) {
     return tl::unexpected(sound.error());
   }
   const auto start = std::chrono::steady_clock::now();
-  const Solution<P> s = options.gnc ? optimize_gnc(graph, config) : optimize(graph, config.optimizer);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  Solution<P> s = options.gnc ? optimize_gnc(graph, config) : optimize(graph, config.optimizer);
+  const double seconds = seconds_since(start);
   if (!s.ok()) return fail(format("{}: {}: {}", name, to_string(s.status), s.reason));
+  const double found = s.cost_final;
+  nlohmann::json certificate;
+  if (!options.no_certificate) certificate = certify_solution(graph, config.optimizer, s);
+  std::optional<GraphJudgement> judgement;
+  if (file.jrl) judgement = judge(*file.jrl, graph, s);
   for (std::size_t i = 0; i < s.poses.size(); ++i) graph.nodes[i].pose = s.poses[i];
   file.notes.insert(file.notes.end(), s.notes.begin(), s.notes.end());
+  if (s.cost_final < found) {
+    file.notes.push_back(format(
+        "the first minimum, of cost {:.6f}, was not optimal; the certificate led to a lower one", found));
+  }
   const auto rejected = std::ranges::count_if(s.edge_weights, [](double w) { return w < 0.5; });
-  return nlohmann::json{{"file", name},
+  nlohmann::json result{{"file", name},
                         {"cost_initial", s.cost_initial},
                         {"cost_final", s.cost_final},
                         {"iterations", s.iterations},
@@ -84,15 +194,34 @@ Result<nlohmann::json> solve(const std::string& name, const SolveOptions& option
                         {"status", std::string(to_string(s.status))},
                         {"loops_rejected", rejected},
                         {"notes", file.notes}};
+  if (!options.no_certificate) result["certificate"] = std::move(certificate);
+  if (judgement) {
+    result["judgement"] = judgement_json(*judgement);
+    result["judgement"]["sentences"] = sentences(*judgement);
+  }
+  return result;
+}
+
+// ", globally optimal (gap 0.0012 %)", or what else is known.
+std::string verdict(const nlohmann::json& r) {
+  if (!r.contains("certificate")) return {};
+  const nlohmann::json& c = r["certificate"];
+  const std::string gap = format("{:.2g} %", 100.0 * c["gap"].get<double>());
+  if (c["status"] == to_string(Optimality::globally_optimal))
+    return format(", globally optimal (gap {})", gap);
+  return format(", cannot tell whether globally optimal (gap at most {})", gap);
 }
 
 void print_line(const nlohmann::json& r, bool gnc) {
   const std::string loops =
       gnc ? format(", {} loops rejected", r["loops_rejected"].get<int>()) : std::string();
-  std::puts(format("{}: cost {:.6f} -> {:.6f}, {} iterations, {:.3f} s, {}{}", r["file"].get<std::string>(),
+  std::puts(format("{}: cost {:.6f} -> {:.6f}, {} iterations, {:.3f} s, {}{}{}", r["file"].get<std::string>(),
                    r["cost_initial"].get<double>(), r["cost_final"].get<double>(), r["iterations"].get<int>(),
-                   r["time_s"].get<double>(), r["status"].get<std::string>(), loops)
+                   r["time_s"].get<double>(), r["status"].get<std::string>(), loops, verdict(r))
                 .c_str());
+  if (r.contains("judgement"))
+    for (const auto& line : r["judgement"]["sentences"])
+      std::puts(format("  {}", line.get<std::string>()).c_str());
   for (const auto& note : r["notes"]) std::fprintf(stderr, "  note: %s\n", note.get<std::string>().c_str());
 }
 
@@ -105,7 +234,7 @@ Result<> run(const SolveOptions& options, const Common& common) {
   if (options.chordal) config.optimizer.initialization = SolveStart::chordal;
   nlohmann::json all = nlohmann::json::array();
   for (const std::string& name : options.graphs) {
-    Result<G2oFile> file = read_g2o(std::filesystem::path(name));
+    Result<GraphFile> file = read_graph(name);
     if (!file) return tl::unexpected(file.error());
     const auto result =
         std::visit([&](auto& graph) { return solve(name, options, config, graph, *file); }, file->graph);
@@ -124,13 +253,17 @@ Result<> run(const SolveOptions& options, const Common& common) {
 
 void add_solve(Program& program) {
   auto options = std::make_shared<SolveOptions>();
-  const Command command =
-      program.add_command("solve", "Optimize 2-D or 3-D pose graphs in g2o files (fields back_end.gnc.*)",
-                          [options](const Common& common) { return run(*options, common); });
-  command.add_option("GRAPH", options->graphs, "g2o files").required();
+  const Command command = program.add_command(
+      "solve", "Optimize 2-D or 3-D pose graphs, g2o or JRL files (fields back_end.gnc.*)",
+      [options](const Common& common) { return run(*options, common); });
+  command
+      .add_option("GRAPH", options->graphs, "g2o files, or JSON Robot Logs (.jrl, .cbor) of several robots")
+      .required();
   command.add_flag("--gnc", options->gnc, "Find and reject false loops (graduated non-convexity)");
   command.add_flag("--chordal", options->chordal, "Start from chordal relaxation whatever the file's poses");
-  command.add_option("--out", options->out, "Write the optimized graph here");
+  command.add_flag("--no-certificate", options->no_certificate,
+                   "Do not test whether the solution is globally optimal, nor search for a better one");
+  command.add_option("--out", options->out, "Write the optimized graph here (g2o)");
   command.add_option("--repair", options->repair, "Repair indefinite information matrices")
       .one_of({"zero-cross-blocks"});
 }

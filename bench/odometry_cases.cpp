@@ -12,7 +12,7 @@
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
-#include "adit/odometry/odometry.hpp"
+#include "adit/odometry/methods.hpp"
 #include "harness/bench_case.hpp"
 #include "odometry_scenes.hpp"
 
@@ -30,13 +30,13 @@ OdometryConfig config_of(const std::string& method, double voxel_size) {
 
 // Errors are distances from the truth with both first poses laid on one another, without alignment.
 Figures driven(const OdometryConfig& config, const RecordedDrive& input) {
-  Odometry odometry(config, input.T_base_lidar);
+  const auto odometry = make_odometry(config, input.T_base_lidar);
   double squares = 0.0;
   double largest = 0.0;
   double iterations = 0.0;
   for (std::size_t i = 0; i < input.scans.size(); ++i) {
     const auto wheels = input.wheels.empty() ? std::nullopt : std::optional(input.wheels[i]);
-    const OdometryStep step = odometry.register_scan(input.scans[i], wheels);
+    const OdometryStep step = odometry->register_scan(input.scans[i], {wheels});
     const double error = (step.T_odom_base.translation() - input.truth[i]).norm();
     squares += error * error;
     largest = std::max(largest, error);
@@ -127,13 +127,13 @@ const auto registered = [] {
 Work later_scan(double scans) {
   constexpr int kLater = 10;
   const TubeDrive tube(64, 512);
-  Odometry odometry(config_of("kiss-icp", 1.0), Pose());
+  KissIcp odometry(config_of("kiss-icp", 1.0).kiss_icp, Pose());
   const int first = static_cast<int>(scans);
-  for (int i = 0; i < first; ++i) odometry.register_scan(tube.scan(i), tube.wheels(i));
+  for (int i = 0; i < first; ++i) odometry.register_scan(tube.scan(i), {});
   std::vector<Scan> later;
   for (int i = 0; i < kLater; ++i) later.push_back(tube.scan(first + i));
   return [odometry, later] {
-    Odometry from_here = odometry;
+    KissIcp from_here = odometry;
     for (const Scan& scan : later) from_here.register_scan(scan, {});
     return Figures{};
   };

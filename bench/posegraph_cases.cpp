@@ -171,7 +171,7 @@ Work feeding(std::size_t num_keyframes) {
                    {"iterations", static_cast<double>(update.iterations)},
                    {"keyframes", static_cast<double>(feed->optimizer.poses().size())},
                    {"supernodes_renewed", static_cast<double>(update.num_renewed)},
-                   {"linearized_anew", update.all_renewed ? 1.0 : 0.0}};
+                   {"edges_evaluated", static_cast<double>(update.num_evaluated)}};
   };
 }
 

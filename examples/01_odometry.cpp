@@ -5,7 +5,7 @@
 
 #include "adit/evaluation/ate.hpp"
 #include "adit/io/recording_files.hpp"
-#include "adit/odometry/odometry.hpp"
+#include "adit/odometry/methods.hpp"
 #include "adit/robot/scan_loop.hpp"
 #include "simulated.hpp"
 
@@ -20,10 +20,10 @@ adit::Result<adit::Recording> input(int argc, char** argv) {
 adit::Result<adit::Trajectory> run_odometry(const adit::Recording& recording) {
   adit::OdometryConfig config;  // every field has a default; docs/configuration.md lists them
   if (recording.wheel.empty()) config.method = adit::OdometryMethod::kiss_icp;
-  adit::Odometry odometry(config, recording.T_base_lidar);
+  const auto odometry = adit::make_odometry(config, recording.T_base_lidar);
   adit::Trajectory trajectory;
-  const auto done = adit::for_each_scan(recording, [&](const adit::Scan& scan, const auto& wheel) {
-    const adit::OdometryStep step = odometry.register_scan(scan, wheel);
+  const auto done = adit::for_each_scan(recording, [&](const adit::Scan& scan, const auto& motion) {
+    const adit::OdometryStep step = odometry->register_scan(scan, motion);
     trajectory.push_back({step.stamp, step.T_odom_base});
     return true;
   });

@@ -51,7 +51,9 @@ TEST(EndToEnd, UnderThePapersPolicyTwoRobotsMergeByCorrectLoopsIntoAnAccurateMap
   ASSERT_TRUE(errors.has_value()) << errors.error().message;
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_GT(path_length(estimates[i]), 50.0);
-    EXPECT_LT((*errors)[i].max_m, 0.0025 * path_length(estimates[i])) << recordings[i].name;
+    // Odometry is now stated to be ten times as good as the loops, which are all taken for 0.1 m and 0.6
+    // degrees: these leave the frame between the robots to half a per cent.
+    EXPECT_LT((*errors)[i].max_m, 0.005 * path_length(estimates[i])) << recordings[i].name;
   }
 
   // The same bytes with another number of threads.
@@ -76,7 +78,9 @@ TEST(EndToEnd, ByDefaultRobotsMergeByEvidenceAndSaySo) {
   const auto errors = joint_ate(estimates, std::vector{recordings[0].truth, recordings[1].truth});
   ASSERT_TRUE(errors.has_value()) << errors.error().message;
   for (std::size_t i = 0; i < 2; ++i)
-    EXPECT_LT((*errors)[i].max_m, 0.0025 * path_length(estimates[i])) << recordings[i].name;
+    // Odometry is now stated to be ten times as good as the loops, which are all taken for 0.1 m and 0.6
+    // degrees: these leave the frame between the robots to half a per cent.
+    EXPECT_LT((*errors)[i].max_m, 0.005 * path_length(estimates[i])) << recordings[i].name;
 }
 
 std::size_t num_lines_with(const std::string& text, const std::string& start) {

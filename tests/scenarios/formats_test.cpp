@@ -56,7 +56,7 @@ TEST(Convert, AFolderOfScansToARecordingAndBack) {
 std::string hall_recording(const test::TemporaryFolder& folder) {
   test::put_hall(folder.path());
   test::put_route(folder / "routes.yaml", 3, 8);
-  expect_done("simulate --routes " + (folder / "routes.yaml").string() + " --lidar vlp-16 --out " +
+  expect_done("simulate --routes " + (folder / "routes.yaml").string() + " --lidar vlp-16 --imu none --out " +
               (folder / "recordings").string());
   return (folder / "recordings/alpha.mcap").string();
 }

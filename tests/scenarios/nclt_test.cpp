@@ -29,10 +29,10 @@ TEST(Nclt, KissIcpFollowsUnevenStepsUnasked) {
   ADIT_NEED_DATA("scans/nclt/groundtruth.tum");
   const Recording recording = nclt("");
   ASSERT_EQ(recording.num_scans(), 300U);
-  Odometry odometry(lidar_alone().odometry, recording.T_base_lidar);
+  KissIcp odometry(lidar_alone().odometry.kiss_icp, recording.T_base_lidar);
   Trajectory estimate;
   for (std::size_t i = 0; i < recording.num_scans(); ++i) {
-    const OdometryStep step = odometry.register_scan(recording.read_scan(i).value(), std::nullopt);
+    const OdometryStep step = odometry.register_scan(recording.read_scan(i).value(), {});
     estimate.push_back({step.stamp, step.T_odom_base});
   }
   const Result<AteResult> error = ate(estimate, recording.truth);

@@ -41,7 +41,7 @@ Trajectory odometry_of(const Recording& recording) {
   Trajectory trajectory;
   for (std::size_t i = 0; i < recording.num_scans(); ++i) {
     trajectory.push_back(
-        {recording.scan_stamps[i], odometry.register_scan(recording.read_scan(i).value()).T_odom_base});
+        {recording.scan_stamps[i], odometry.register_scan(recording.read_scan(i).value(), {}).T_odom_base});
   }
   return trajectory;
 }

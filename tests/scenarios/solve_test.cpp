@@ -57,6 +57,8 @@ TEST_P(SolveShared, ReachesTheBestKnownCost) {
   EXPECT_EQ(r["status"], "converged");
   EXPECT_NEAR(r["cost_final"].get<double>(), cost, 1e-4 * cost);
   EXPECT_LE(r["iterations"].get<int>(), 20);
+  EXPECT_EQ(r["certificate"]["status"], "globally optimal") << r["certificate"];
+  EXPECT_LT(r["certificate"]["gap"].get<double>(), 1e-4);
 }
 
 // MIT has hardly any loops, so that its minimum is flat: another start must end in the same one.
@@ -84,6 +86,8 @@ TEST(SolveSharedGraphs, CubicleIsRefusedAndRepairedOnRequest) {
   const nlohmann::json r = solved(single("cubicle") + " --repair zero-cross-blocks");
   EXPECT_NEAR(r["cost_final"].get<double>(), 2729.399, 1e-4 * 2729.399);
   EXPECT_FALSE(r["notes"].empty());
+  // Rotations that are known about one axis only are beyond the certificate.
+  EXPECT_EQ(r["certificate"]["status"], "cannot tell") << r["certificate"];
 }
 
 struct FleetGraph {
@@ -161,6 +165,35 @@ TEST_F(SolveFile, PlaneIsSolved) {
   EXPECT_NEAR(solved(path())["cost_final"].get<double>(), 2.0, 1e-9);
 }
 
+// A ring of 12 nodes that the file's poses wind twice around: each joint bent by 30 degrees, which no small
+// step unbends.
+TEST_F(SolveFile, WoundRingIsUnwound) {
+  std::string bytes;
+  const auto pose = [](double heading, double x, double y) {
+    return std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(heading);
+  };
+  constexpr double kTurn = 2.0 * 3.14159265358979 / 12.0;
+  double x = 0.0;
+  double y = 0.0;
+  for (int i = 0; i < 12; ++i) {
+    bytes += "VERTEX_SE2 " + std::to_string(i) + " " + pose(2.0 * kTurn * i, x, y) + "\n";
+    bytes += "EDGE_SE2 " + std::to_string(i) + " " + std::to_string((i + 1) % 12) + " " +
+             pose(kTurn, 1.0, 0.0) + " 0.01 0 0 0.01 0 1\n";
+    x += std::cos(2.0 * kTurn * i);
+    y += std::sin(2.0 * kTurn * i);
+  }
+  test::put_file(folder_ / "graph.g2o", bytes);
+  const std::string given = path() + " --set back_end.gnc.optimizer.initialization=none";
+  const nlohmann::json stuck = solved(given + " --no-certificate");
+  EXPECT_GT(stuck["cost_final"].get<double>(), 1.0);
+  EXPECT_FALSE(stuck.contains("certificate"));
+  const nlohmann::json r = solved(given);
+  EXPECT_LT(r["cost_final"].get<double>(), 1e-6) << r;
+  EXPECT_EQ(r["certificate"]["given"], "not optimal") << r;
+  EXPECT_EQ(r["certificate"]["status"], "globally optimal") << r;
+  EXPECT_NE(r["notes"].dump().find("was not optimal"), std::string::npos) << r;
+}
+
 TEST_F(SolveFile, PartsThatNoEdgeLinksAreNoted) {
   test::put_file(folder_ / "graph.g2o", edge(0, 1) + edge(10, 11));
   const nlohmann::json r = solved(path());
@@ -202,6 +235,81 @@ TEST_F(SolveFile, FalseLoopIsRejected) {
   const nlohmann::json r = solved("--gnc " + path());
   EXPECT_EQ(r["loops_rejected"], 1);
   EXPECT_NEAR(r["cost_final"].get<double>(), 0.0, 1e-9);
+}
+
+/// A JSON Robot Log of two robots that drive the same square, each in a frame of its own. Of the ten loops
+/// between them the last two are false.
+nlohmann::json two_robots_on_a_square() {
+  using Json = nlohmann::json;
+  const auto key = [](int robot, int index) {
+    return (static_cast<std::uint64_t>('a' + robot) << 56U) | static_cast<std::uint64_t>(index);
+  };
+  const auto pose = [](const Pose2& T) {
+    return Json{
+        {"type", "Pose2"}, {"x", T.translation().x()}, {"y", T.translation().y()}, {"theta", T.theta()}};
+  };
+  const auto factor = [&](std::uint64_t from, std::uint64_t to, const Pose2& T) {
+    return Json{{"type", "BetweenFactorPose2"},
+                {"key1", from},
+                {"key2", to},
+                {"measurement", pose(T)},
+                {"covariance", {0.01, 0, 0, 0, 0.01, 0, 0, 0, 0.001}}};
+  };
+  const Pose2 step(1.0, 0.0, std::acos(-1.0) / 20.0);
+  Json file{{"name", "square"}};
+  file["robots"] = Json::array({"a", "b"});
+  for (int robot = 0; robot < 2; ++robot) {
+    const std::string name(1, static_cast<char>('a' + robot));
+    Pose2 T(0.0, 0.2 * robot, 0.0);
+    for (int i = 0; i < 40; ++i, T = T * step) {
+      Json truth = pose(T);
+      truth["key"] = key(robot, i);
+      file["groundtruth"][name].push_back(truth);
+      if (i > 0)
+        file["measurements"][name].push_back(
+            {{"stamp", i}, {"measurements", Json::array({factor(key(robot, i - 1), key(robot, i), step)})}});
+    }
+    file["outlier_factors"][name] = Json::array();
+    file["potential_outlier_factors"][name] = Json::array();
+  }
+  for (int l = 0; l < 10; ++l) {
+    const Pose2 across = Pose2(0, 0, 4 * l * step.theta()).inverse() * Pose2(0.0, 0.2, 0.0) *
+                         Pose2(0, 0, 4 * l * step.theta());
+    const Json loop = factor(key(0, 4 * l), key(1, 4 * l), l < 8 ? across : Pose2(7.0, -5.0 * l, 1.0));
+    file["potential_outlier_factors"]["b"].push_back(Json::array({file["measurements"]["b"].size(), 0}));
+    if (l >= 8) file["outlier_factors"]["b"].push_back(Json::array({file["measurements"]["b"].size(), 0}));
+    file["measurements"]["b"].push_back({{"stamp", 100 + l}, {"measurements", Json::array({loop})}});
+  }
+  return file;
+}
+
+TEST_F(SolveFile, RobotLogIsSolvedMergedAndJudged) {
+  const std::string log = (folder_ / "square.jrl").string();
+  test::put_file(log, two_robots_on_a_square().dump());
+  const nlohmann::json r = solved("--gnc " + log)["judgement"];
+  EXPECT_EQ(r["loops"]["precision"], 1.0) << r;
+  EXPECT_EQ(r["loops"]["recall"], 1.0) << r;
+  EXPECT_EQ(r["loops"]["false_rejected"], 2) << r;
+  ASSERT_EQ(r["maps"].size(), 1U) << r;
+  EXPECT_EQ(r["maps"][0]["robots"], nlohmann::json::array({"a", "b"}));
+  EXPECT_LT(r["maps"][0]["error"]["ate_max_m"].get<double>(), 1e-6) << r;
+  EXPECT_LT(r["robots"][1]["error"]["ate_rmse_m"].get<double>(), 1e-6) << r;
+  // Without --gnc the false loops are kept: precision is 8 of 10, and the map is bent.
+  const nlohmann::json kept = solved(log + " --out " + (folder_ / "out.g2o").string())["judgement"];
+  EXPECT_EQ(kept["loops"]["precision"], 0.8) << kept;
+  EXPECT_GT(kept["maps"][0]["error"]["ate_max_m"].get<double>(), 0.1) << kept;
+  EXPECT_EQ(std::get<PoseGraph2>(read_g2o(folder_ / "out.g2o")->graph).nodes.size(), 80U);
+  const test::ProgramRun run = test::run_adit("solve --gnc " + log);
+  EXPECT_NE(run.out.find("one map of a, b: ATE 0.000 m RMSE"), std::string::npos) << run.out;
+}
+
+TEST_F(SolveFile, WrongRobotLogIsNamed) {
+  const std::string log = (folder_ / "wrong.jrl").string();
+  nlohmann::json file = two_robots_on_a_square();
+  file["measurements"]["a"][3]["measurements"][0]["covariance"][0] = -1.0;
+  test::put_file(log, file.dump());
+  test::expect_refused("solve " + log, 1,
+                       "wrong.jrl: measurements.a[3].measurements[0]: 'covariance' is not positive definite");
 }
 
 }  // namespace

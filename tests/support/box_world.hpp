@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "adit/core/rng.hpp"
+#include "adit/odometry/path_uncertainty.hpp"
 #include "adit/robot/robot_map.hpp"
 
 namespace adit::test {
@@ -78,7 +79,7 @@ inline RobotMap drive(const BoxWorld& world, RobotId id, const std::vector<Pose>
     if (k > 0) {
       const Pose step = T_world_base[k - 1].inverse() * T_world_base[k];
       T_odom_base = T_odom_base * step * Pose::planar(0.0, 0.0, yaw_drift);
-      covariance = odometry_covariance(OdometryNoise{}, step.translation().norm());
+      covariance = random_walk(PathNoise{}, step.translation().norm());
     }
     const Stamp stamp{static_cast<std::int64_t>(k) * 1'000'000'000};
     auto cloud = std::make_shared<PointCloud>(world.seen_from(T_world_base[k], mix64(id.value, k)));
@@ -86,6 +87,7 @@ inline RobotMap drive(const BoxWorld& world, RobotId id, const std::vector<Pose>
     map.tunnel.push_back({});
     map.searchable.push_back(true);
     map.step_covariances.push_back(covariance);
+    map.pose_noise.push_back(Matrix6::Zero());
     map.odometry.push_back({stamp, T_odom_base});
     map.keyframes.push_back({{id, k}, stamp, T_odom_base, std::move(cloud)});
   }

@@ -9,7 +9,9 @@
 #include <string>
 
 #include "adit/fleet/joint/fleet_solution.hpp"
+#include "adit/odometry/path_uncertainty.hpp"
 #include "adit/robot/robot_map.hpp"
+#include "support/loop_information.hpp"
 
 namespace adit::test {
 
@@ -33,7 +35,7 @@ inline FleetGraph robots_without_loops(int num_robots, MergePolicy policy = Merg
       const Pose T_odom_base = true_pose({r}, 0).inverse() * true_pose({r}, k);
       const double step = k == 0 ? 0.0 : 1.2;
       graph.nodes.push_back(
-          {Stamp{k}, T_odom_base, k == 0 ? Matrix6(Matrix6::Zero()) : odometry_covariance({}, step)});
+          {Stamp{k}, T_odom_base, k == 0 ? Matrix6(Matrix6::Zero()) : random_walk({}, step)});
     }
   }
   return fleet;
@@ -44,6 +46,7 @@ inline void add_loop(FleetGraph& fleet, KeyframeId from, KeyframeId to, const Po
   loop.from = from;
   loop.to = to;
   loop.T_from_to = true_pose(from.robot, from.index).inverse() * true_pose(to.robot, to.index) * error;
+  loop.information = loop_information();
   loop.verdict = LoopVerdict::accepted;
   fleet.loops[{from, to}] = loop;
 }

@@ -9,6 +9,7 @@
 
 #include "adit/fleet/sync/fleet_graph.hpp"
 #include "adit/posegraph/pcm.hpp"
+#include "support/loop_information.hpp"
 
 namespace adit::test {
 
@@ -32,7 +33,7 @@ inline Pose T_a_b_true(std::size_t a, std::size_t b, double off_m = 0.0) {
 /// Keyframes that stand side by side, if b is `off_m` farther on than it truly is.
 inline PcmLoop loop_at(std::size_t a, double off_m = 0.0) {
   const auto b = static_cast<std::size_t>(static_cast<double>(kNum - 1 - a) + 2.0 * off_m);
-  return {a, b, T_a_b_true(a, b, off_m), loop_information({})};
+  return {a, b, T_a_b_true(a, b, off_m), loop_information()};
 }
 
 inline const std::vector<PcmLoop> kTrueLoops = {loop_at(80), loop_at(90), loop_at(100)};

@@ -140,6 +140,13 @@ inline Scene furnished_room() {
            {{2.0, -7.0, -1.0}, {3.0, -5.0, 1.0}}}};
 }
 
+/// Scan `index` of a robot that stands in the furnished room.
+inline Scan still_scan(const Pose& T_base_lidar, int index) {
+  Lidar lidar{32, 256, 0.35, 120.0, 0.01};
+  lidar.jitter = 0.5;
+  return scan_of(furnished_room(), lidar, T_base_lidar, {Pose::planar(-3, 0, 0.2), Vector6::Zero()}, index);
+}
+
 /// A smooth tube along x, 4 m in radius, with a floor 2 m below its axis, without end.
 inline Scene smooth_tube() { return {4.0, -2.0, {}, {}}; }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "adit/odometry/path_uncertainty.hpp"
 #include "adit/robot/robot_map.hpp"
 #include "support/synthetic_scan.hpp"
 
@@ -31,7 +32,8 @@ inline std::shared_ptr<const RobotMap> in_a_tube(const std::vector<Box>& boxes, 
     auto cloud = std::make_shared<const PointCloud>(scan.cloud);
     map->places.push_back(describe(*cloud, ScanContextConfig{.max_radius_m = 25.0}));
     map->keyframes.push_back({{robot, k}, {k}, T_odom_base, std::move(cloud)});
-    map->step_covariances.push_back(k == 0 ? Matrix6::Zero() : odometry_covariance({}, kTubeStep));
+    map->step_covariances.push_back(k == 0 ? Matrix6::Zero() : random_walk({}, kTubeStep));
+    map->pose_noise.push_back(Matrix6::Zero());
   }
   return map;
 }

@@ -207,6 +207,7 @@ Matrix3 carry_covariance(const Matrix3& adjoint, const Matrix3& covariance) {
 }
 
 double wrap_angle(double angle) {
+  if (angle > -std::numbers::pi && angle <= std::numbers::pi) return angle;
   const double wrapped = std::remainder(angle, 2.0 * std::numbers::pi);
   return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
 }

@@ -51,6 +51,17 @@ Result<WheelDelta> wheel_delta(const Trajectory& wheel, Stamp from, Stamp to) {
   return delta;
 }
 
+std::vector<ImuSample> imu_between(const std::vector<ImuSample>& imu, Stamp begin, Stamp end,
+                                   Duration longest_gap) {
+  if (imu.empty() || begin < imu.front().stamp || end > imu.back().stamp) return {};
+  const auto first = std::ranges::upper_bound(imu, begin, {}, &ImuSample::stamp) - 1;
+  const auto last = std::lower_bound(first, imu.end(), end,
+                                     [](const ImuSample& sample, Stamp s) { return sample.stamp < s; });
+  const auto is_gap = [&](const ImuSample& a, const ImuSample& b) { return b.stamp - a.stamp > longest_gap; };
+  if (std::adjacent_find(first, last + 1, is_gap) != last + 1) return {};
+  return {first, last + 1};
+}
+
 std::string_view to_string(StepStatus status) {
   switch (status) {
     case StepStatus::ok:

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,8 +47,40 @@ struct WheelDelta {
   Matrix6 covariance = Matrix6::Identity() * 1e-4;
 };
 
+/// One measurement of an IMU, in the IMU's own frame.
+struct ImuSample {
+  Stamp stamp;
+  Vector3 angular_velocity = Vector3::Zero();  ///< Radians per second.
+  Vector3 specific_force = Vector3::Zero();    ///< Metres per second squared; at rest +9.81 upwards.
+};
+
+/// Covariances of one sample's noise, as the IMU's messages state them; zero where they do not.
+struct ImuCovariance {
+  Matrix3 angular_velocity = Matrix3::Zero();  ///< (rad/s)^2
+  Matrix3 specific_force = Matrix3::Zero();    ///< (m/s^2)^2
+};
+
+/// What the robot's other sensors measured from one scan to the next.
+struct SensedMotion {
+  std::optional<WheelDelta> wheel = {};  ///< None without wheels, or where they were silent.
+  /// Covers the interval whole: the first sample is the last one at or before its begin, the last sample the
+  /// first one at or after its end. Empty without an IMU, and where its samples are too far apart or do not
+  /// reach that far.
+  std::vector<ImuSample> imu = {};
+  Pose T_base_imu = {};
+};
+
+/// A stretch in which a simulated sensor did not measure what it should.
+struct SensorFault {
+  std::string sensor;  ///< "wheels", "imu"
+  std::string kind;    ///< "slip", "silent", ... as the sensor's model names them.
+  Stamp begin;
+  Stamp end;
+  double amount = 0.0;
+};
+
 /// All that one robot measured, scan by scan. Scans are read (or cast, by the simulator) when they are asked
-/// for. `truth` is for evaluation alone; no other stage may look at it.
+/// for. `truth` and `faults` are for evaluation alone; no other stage may look at them.
 struct Recording {
   std::string name;          ///< The robot's name.
   std::string lidar;         ///< The sensor's name, "" when unknown.
@@ -57,7 +90,13 @@ struct Recording {
   std::vector<Stamp> scan_stamps;                      ///< Strictly ascending.
   std::function<Result<Scan>(std::size_t)> read_scan;  ///< Thread-safe; scan i has stamp scan_stamps[i].
   Trajectory wheel;                                    ///< T_wheelodom_base; empty when there are no wheels.
-  Trajectory truth;                                    ///< T_world_base; empty when unknown.
+  std::vector<ImuSample> imu;                          ///< Strictly ascending; empty when there is no IMU.
+  Pose T_base_imu;                                     ///< The mount of the IMU.
+  std::string imu_mount_source;                        ///< As mount_source; "" when there is no IMU.
+  std::string imu_name;                                ///< The IMU's model, "" when unknown.
+  ImuCovariance imu_covariance;
+  std::vector<SensorFault> faults;  ///< Of simulated sensors, by begin.
+  Trajectory truth;                 ///< T_world_base; empty when unknown.
 
   [[nodiscard]] std::size_t num_scans() const { return scan_stamps.size(); }
 };
@@ -65,6 +104,11 @@ struct Recording {
 /// Wheel motion from stamp to stamp, interpolated. Covariance from the distance and angle driven: sigma of 2
 /// % along, 1 % across, 0.5 deg per metre plus 2 % of the angle; at least 1 mm and 0.02 deg.
 [[nodiscard]] Result<WheelDelta> wheel_delta(const Trajectory& wheel, Stamp from, Stamp to);
+
+/// The samples that cover `begin` to `end`, see SensedMotion::imu; empty where two of them are more than
+/// `longest_gap` apart.
+[[nodiscard]] std::vector<ImuSample> imu_between(const std::vector<ImuSample>& imu, Stamp begin, Stamp end,
+                                                 Duration longest_gap);
 
 enum class StepStatus {
   ok,
@@ -75,11 +119,29 @@ enum class StepStatus {
 };
 [[nodiscard]] std::string_view to_string(StepStatus status);
 
+/// The uncertainty of the motion since the last scan that entered the map, as it was predicted.
+struct PredictedMotion {
+  Matrix6 covariance = Matrix6::Zero();  ///< Right perturbation, [translation; rotation].
+  /// By how much the step widens the covariance of the path along directions that the scan leaves open. What
+  /// it has in common with earlier steps (errors of the velocity, of the wheels' radius) counts.
+  Matrix6 open_drift = Matrix6::Zero();
+  bool by_imu = false;  ///< An IMU measured the motion, within the sweep too.
+};
+
 /// The answer of an odometry to one scan.
 struct OdometryStep {
   Stamp stamp;
   Pose T_odom_base;
   Matrix6 information = Matrix6::Zero();  ///< Of T_odom_base, right perturbation; zero along open directions.
+  /// What was known of the motion before the scan was looked at, where the method states it.
+  std::optional<PredictedMotion> predicted = {};
+  /// By how much the scan surprised the prediction: the innovation squared, normalised, over its dimension.
+  std::optional<double> innovation = {};
+  /// By how much the scan moved the prediction: the log of T_predicted_base.
+  Vector6 correction = Vector6::Zero();
+  std::optional<Vector3> up = {};  ///< Against gravity, unit length, base frame; where an IMU has felt it.
+  /// Where the wheels are not believed: the metres that they counted and the robot did not drive.
+  std::optional<double> slip = {};
   StepStatus status = StepStatus::no_map;
   int num_correspondences = 0;
   int iterations = 0;

@@ -83,6 +83,39 @@ TEST(WheelDeltaTest, OutsideTheOdometryIsAnError) {
   EXPECT_NE(wheel_delta({}, at(0), at(1)).error().message.find("wheel odometry"), std::string::npos);
 }
 
+std::vector<ImuSample> samples_at(const std::vector<double>& seconds) {
+  std::vector<ImuSample> imu;
+  for (const double s : seconds) imu.push_back({at(s), Vector3(s, 0, 0), Vector3(0, 0, 9.81)});
+  return imu;
+}
+
+std::vector<Stamp> stamps_between(const std::vector<ImuSample>& imu, double begin, double end) {
+  std::vector<Stamp> stamps;
+  for (const ImuSample& sample : imu_between(imu, at(begin), at(end), from_seconds(0.1)))
+    stamps.push_back(sample.stamp);
+  return stamps;
+}
+
+TEST(ImuBetween, CoversTheIntervalAtBothEnds) {
+  const std::vector<ImuSample> imu = samples_at({1.00, 1.05, 1.10, 1.15, 1.20});
+  EXPECT_EQ(stamps_between(imu, 1.06, 1.14), (std::vector{at(1.05), at(1.10), at(1.15)}));
+  EXPECT_EQ(stamps_between(imu, 1.05, 1.15), (std::vector{at(1.05), at(1.10), at(1.15)}));
+  EXPECT_EQ(stamps_between(imu, 1.06, 1.07), (std::vector{at(1.05), at(1.10)}));
+  EXPECT_EQ(stamps_between(imu, 1.00, 1.20).size(), 5U);
+  EXPECT_EQ(stamps_between(imu, 1.20, 1.20), std::vector{at(1.20)});
+}
+
+TEST(ImuBetween, IsEmptyWhereTheImuDoesNotReachOrWasSilent) {
+  const std::vector<ImuSample> imu = samples_at({1.00, 1.05, 1.10, 1.30, 1.35});
+  EXPECT_TRUE(stamps_between({}, 1.0, 1.1).empty());
+  EXPECT_TRUE(stamps_between(imu, 0.99, 1.05).empty());
+  EXPECT_TRUE(stamps_between(imu, 1.30, 1.36).empty());
+  EXPECT_TRUE(stamps_between(imu, 1.05, 1.30).empty());
+  EXPECT_TRUE(stamps_between(imu, 1.15, 1.20).empty());  // all of it within the silence
+  EXPECT_EQ(stamps_between(imu, 1.05, 1.10).size(), 2U);
+  EXPECT_EQ(stamps_between(imu, 1.30, 1.35).size(), 2U);
+}
+
 LoopClosure random_loop(Rng& rng) {
   LoopClosure loop;
   loop.from = {{0}, 3};

@@ -35,11 +35,12 @@ void append_score(std::vector<std::string>& row, const LoopScore& score) {
 
 void append_decision(std::vector<std::string>& row, const std::optional<LoopDecision>& decision) {
   if (!decision) {
-    row.insert(row.end(), 4, "-");
+    row.insert(row.end(), 5, "-");
     return;
   }
   append_score(row, decision->score);
   if (!decision->is_optimal) row.back() += " †";
+  row.push_back(format("{}", decision->refused));
   row.push_back(off_text(*decision));
   row.push_back(format("{:.2f}", decision->time_s));
 }
@@ -103,10 +104,11 @@ Table summary_table(const std::vector<FalseLoopRun>& runs) {
 Table graph_table(const std::vector<FalseLoopRun>& runs) {
   Table table = side_by_side(
       "False loops, each graph",
-      "P and R as above; off: the largest distance in metres of a position from the optimum of the true "
+      "P and R as above; refused: loops that fit, left out because nothing else confirms them; off: the "
+      "largest distance in metres of a position from the optimum of the true "
       "loops, or the number of parts into which the kept loops divide the graph, where that is more than "
       "with the true loops; CPU: time in seconds. † The clique search stopped at its budget.",
-      {"Graph", "Injection", "False (%)", "True loops", "False loops"}, {"P", "R", "off", "CPU"});
+      {"Graph", "Injection", "False (%)", "True loops", "False loops"}, {"P", "R", "refused", "off", "CPU"});
   for (const FalseLoopRun& run : runs) {
     std::vector<std::string> row = {run.graph, run.injection, format("{}", run.share_pct),
                                     format("{}", run.num_true), format("{}", run.num_false)};

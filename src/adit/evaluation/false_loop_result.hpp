@@ -43,6 +43,7 @@ struct LoopDecision {
   double off_m = 0.0;      ///< Largest distance of a position from the optimum of the true loops, metres.
   double time_s = 0.0;     ///< Processor time of all threads.
   bool is_optimal = true;  ///< False where a search stopped at its budget.
+  int refused = 0;         ///< Loops that fit, left out because nothing confirms them; not kept, above.
 };
 
 /// One graph with one set of false loops.

@@ -46,7 +46,7 @@ FalseLoopRun run(const std::string& graph, int share_pct, const std::string& inj
   made.share_pct = share_pct;
   made.decisions[0] = LoopDecision{score(900, 100, 1, 99), 1, 1, 0.25, 2.0, true};
   made.decisions[1] = LoopDecision{score(500, 500, 0, 100), 3, 1, 7.0, 0.5, false};
-  made.decisions[2] = LoopDecision{score(9999, 0, 1, 99), 2, 2, 0.0, 0.125, true};
+  made.decisions[2] = LoopDecision{score(9999, 0, 1, 99), 2, 2, 0.0, 0.125, true, 17};
   return made;
 }
 using Row = std::vector<std::string>;
@@ -54,10 +54,10 @@ using Row = std::vector<std::string>;
 TEST(FalseLoopTables, ShowTheMethodsSideBySide) {
   const std::vector<Table> tables = false_loop_tables({run("a", 50)});
   ASSERT_EQ(tables.size(), 2U);
-  EXPECT_EQ(tables[1].rows.front(), (Row{"a", "random", "50", "1000", "500",  //
-                                         "99.9", "90.0", "0.250", "2.00",     //
-                                         "100", "50.0 †", "3 parts", "0.50",  //
-                                         "99.9", "100", "0.000", "0.12"}));
+  EXPECT_EQ(tables[1].rows.front(), (Row{"a",    "random", "50", "1000",    "500",   //
+                                         "99.9", "90.0",   "0",  "0.250",   "2.00",  //
+                                         "100",  "50.0 †", "0",  "3 parts", "0.50",  //
+                                         "99.9", "100",    "17", "0.000",   "0.12"}));
   for (const Table& table : tables) {
     std::size_t grouped = 0;
     for (const ColumnGroup& group : table.groups) grouped += group.columns;

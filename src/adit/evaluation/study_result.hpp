@@ -94,8 +94,9 @@ enum class LoopFate {
 struct LoopMap {
   struct Robot {
     std::string name;
-    std::size_t map = 0;        ///< Robots with the same number share a frame.
-    std::vector<Vector3> path;  ///< Keyframe positions.
+    std::size_t map = 0;                           ///< Robots with the same number share a frame.
+    std::vector<Vector3> path;                     ///< Keyframe positions.
+    std::vector<std::vector<Vector3>> slips = {};  ///< Stretches of it on which the wheels were not believed.
   };
   struct End {
     std::size_t robot = 0;  ///< Index in `robots`,

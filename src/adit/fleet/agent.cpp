@@ -37,7 +37,10 @@ std::vector<MessageBody> request_of(const PeerSession& session) {
 
 LoopRegistrationConfig registration_of(const AgentConfig& config) {
   LoopRegistrationConfig out{config.registration_in_use()};
-  if (config.policy == MergePolicy::adaptive) out.one_place_m = config.adaptive.one_place_m;
+  if (config.policy == MergePolicy::adaptive)
+    out.one_place_m = config.adaptive.one_place_m;
+  else
+    out.noise = config.loop_noise;
   return out;
 }
 
@@ -47,7 +50,11 @@ Fields fields_of(AgentConfig& c) {
   Fields fields = {{"max_candidates", &c.max_candidates, "", 0, 1e9,
                     "candidates that a robot registers with the peers it meets first"},
                    {"candidates_per_peer", &c.candidates_per_peer, "", 1, 1e6,
-                    "candidates that it registers with each further peer, the most similar ones"}};
+                    "candidates that it registers with each further peer, the most similar ones"},
+                   {"loop_translation", &c.loop_noise.translation, "m", 1e-4, 10.0,
+                    "the paper's policies: sigma of a loop's translation"},
+                   {"loop_rotation_deg", &c.loop_noise.rotation_deg, "deg", 1e-3, 90.0,
+                    "the paper's policies: sigma of a loop's rotation"}};
   append(fields, "place", fields_of(c.place));
   append(fields, "registration", fields_of(c.registration));
   append(fields, "adaptive", fields_of(c.adaptive));

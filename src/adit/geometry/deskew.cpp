@@ -85,16 +85,20 @@ Pose ConstantVelocity::pose_after(Duration offset) const {
   return Pose::exp(to_seconds(offset) / to_seconds(duration) * T_start_end.log());
 }
 
-SweepTransform::SweepTransform(const ConstantVelocity& motion, const Pose& T_body_sensor,
+SweepMotion sweep_of(const ConstantVelocity& motion) {
+  const double seconds = to_seconds(motion.duration);
+  const double turn_rate = seconds > 0.0 ? motion.T_start_end.angle() / seconds : 0.0;
+  return {[motion](Duration offset) { return motion.pose_after(offset); }, turn_rate / kStep};
+}
+
+SweepTransform::SweepTransform(const SweepMotion& motion, const Pose& T_body_sensor,
                                std::span<const std::int32_t> offsets_ns) {
   ADIT_CHECK(!offsets_ns.empty(), "a sweep has at least one point");
-  ADIT_CHECK(motion.duration.count() > 0, "a velocity needs a positive duration");
   const auto [first, last] = bounds_of(offsets_ns.data(), offsets_ns.size());
   first_ns_ = first;
   const std::int64_t span_ns = std::int64_t{last} - first;
-  const double turn =
-      motion.T_start_end.angle() * to_seconds(Duration(span_ns)) / to_seconds(motion.duration);
-  const auto intervals = static_cast<std::int64_t>(std::clamp(std::ceil(turn / kStep), 1.0, kMaxIntervals));
+  const double knots = motion.knots_per_second * to_seconds(Duration(span_ns));
+  const auto intervals = static_cast<std::int64_t>(std::clamp(std::ceil(knots), 1.0, kMaxIntervals));
   if (span_ns > 0) knots_per_step_ = 2.0F * static_cast<float>(intervals) / static_cast<float>(span_ns);
   knots_.resize(static_cast<std::size_t>(intervals) + 1);
   for (std::size_t i = 0; i < knots_.size(); ++i) {
@@ -125,7 +129,7 @@ void transform_points(const SweepTransform::Matrix34& T_a_b, std::span<const Eig
 PointCloud deskewed(PointCloud cloud, const ConstantVelocity& motion) {
   cloud.check();
   if (!cloud.has_times()) return cloud;
-  const SweepTransform sweep(motion, Pose(), cloud.time_offsets_ns);
+  const SweepTransform sweep(sweep_of(motion), Pose(), cloud.time_offsets_ns);
   std::vector<Eigen::Vector3f> points(cloud.size());
   sweep.apply(cloud.time_offsets_ns, cloud.points, points);
   cloud.points = std::move(points);

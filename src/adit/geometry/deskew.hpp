@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,15 @@ struct ConstantVelocity {
   [[nodiscard]] Pose pose_after(Duration offset) const;
 };
 
+/// How a body moved during a sweep.
+struct SweepMotion {
+  /// Its pose `offset` after a moment, in its frame at that moment.
+  std::function<Pose(Duration)> pose_after;
+  double knots_per_second = 0.0;  ///< So often at least its motion is looked at.
+};
+/// Its `pose_after` throws ContractViolation where the duration is not positive.
+[[nodiscard]] SweepMotion sweep_of(const ConstantVelocity& motion);
+
 /// p_body_at_stamp = SweepTransform(offset) * p_sensor_at_offset, for the many points of one sweep. The pose
 /// is exact at knots over the span of offsets, and its matrix is linear between them. There are enough knots
 /// for an error of at most 3e-6 of the range (0.3 mm at 100 m), far below the noise of any sensor.
@@ -37,7 +47,7 @@ class SweepTransform {
   };
 
   /// `offsets_ns` (non-empty) are the points' times less the stamp, as in PointCloud.
-  SweepTransform(const ConstantVelocity& motion, const Pose& T_body_sensor,
+  SweepTransform(const SweepMotion& motion, const Pose& T_body_sensor,
                  std::span<const std::int32_t> offsets_ns);
 
   /// Spans of equal length that do not overlap; offsets are among those given to the constructor. Fast where

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "adit/io/file_info.hpp"
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <variant>
 
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/g2o.hpp"
+#include "adit/io/jrl.hpp"
 #include "adit/io/mcap_reader.hpp"
 #include "adit/io/mesh_files.hpp"
 #include "adit/io/mount.hpp"
@@ -15,6 +17,7 @@
 #include "adit/io/session_dir.hpp"
 #include "adit/io/text.hpp"
 #include "adit/io/tum.hpp"
+#include "adit/robot/sensor_checks.hpp"
 
 namespace adit {
 namespace {
@@ -83,6 +86,23 @@ Result<Json> graph_info(const fs::path& path) {
   });
 }
 
+Result<Json> jrl_info(const fs::path& path) {
+  return read_jrl(path).map([](const JrlFile& file) {
+    return std::visit(
+        [&](const auto& jrl) {
+          return Json{{"kind", "graph"},
+                      {"dimension", std::is_same_v<std::decay_t<decltype(jrl)>, JrlGraph<Pose>> ? 3 : 2},
+                      {"name", file.name},
+                      {"robots", file.robots},
+                      {"nodes", jrl.graph.nodes.size()},
+                      {"edges", jrl.graph.edges.size()},
+                      {"priors", jrl.priors.size()},
+                      {"notes", file.notes}};
+        },
+        file.content);
+  });
+}
+
 Result<Json> routes_info(const fs::path& path) {
   return read_routes(path).map([](const RoutesFile& file) {
     Json robots = Json::array();
@@ -94,6 +114,30 @@ Result<Json> routes_info(const fs::path& path) {
     }
     return Json{{"kind", "routes"}, {"world", file.world.string()}, {"robots", robots}};
   });
+}
+
+/// The rate is that of the median interval, which gaps do not change.
+Json imu_json(const Recording& recording) {
+  const std::vector<ImuSample>& imu = recording.imu;
+  std::vector<Duration> intervals;
+  for (std::size_t i = 1; i < imu.size(); ++i) intervals.push_back(imu[i].stamp - imu[i - 1].stamp);
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  if (!intervals.empty()) std::ranges::nth_element(intervals, middle);
+  return {{"name", recording.imu_name},
+          {"mount", mount_text(recording.T_base_imu)},
+          {"mount_from", recording.imu_mount_source},
+          {"samples", imu.size()},
+          {"rate_hz", intervals.empty() ? 0.0 : 1.0 / to_seconds(*middle)},
+          {"longest_gap_s", intervals.empty() ? 0.0 : to_seconds(*std::ranges::max_element(intervals))},
+          {"first_stamp_s", stamp_text(imu.front().stamp)},
+          {"last_stamp_s", stamp_text(imu.back().stamp)}};
+}
+
+/// What is wrong with wheels and IMU, a sentence each.
+Json findings_json(Recording recording) {
+  Json sentences = Json::array();
+  for (const SensorFinding& finding : use_sound_sensors(recording)) sentences.push_back(finding.sentence);
+  return sentences;
 }
 
 Json recording_json(const Recording& recording) {
@@ -108,6 +152,8 @@ Json recording_json(const Recording& recording) {
             {"last_stamp_s", stamp_text(recording.scan_stamps.back())}};
   if (const Result<Scan> scan = recording.read_scan(0)) info["points_first_scan"] = scan->cloud.size();
   if (!recording.wheel.empty()) info["wheel_odometry"] = trajectory_json(recording.wheel);
+  if (!recording.imu.empty()) info["imu"] = imu_json(recording);
+  info["findings"] = findings_json(recording);
   if (!recording.truth.empty()) info["ground_truth"] = trajectory_json(recording.truth);
   return info;
 }
@@ -176,12 +222,13 @@ Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
     return mesh_info(path);
   if (extension == ".tum" || extension == ".txt") return trajectory_info(path);
   if (extension == ".g2o") return graph_info(path);
+  if (extension == ".jrl" || extension == ".cbor") return jrl_info(path);
   if (extension == ".yaml" || extension == ".yml") return routes_info(path);
   if (fs::is_regular_file(path)) {
     return fail(
         path.string() +
         ": not a kind of file that adit knows; it knows .mcap, clouds and meshes (.pcd .ply .bin .obj .stl "
-        ".dae .glb), .tum, .g2o, routes (.yaml) and folders of scans or of a session");
+        ".dae .glb), .tum, .g2o, .jrl, routes (.yaml) and folders of scans or of a session");
   }
   return open_recording(path.string(), config).map(recording_json);
 }

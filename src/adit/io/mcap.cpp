@@ -9,6 +9,7 @@
 
 #include "adit/core/format.hpp"
 #include "adit/io/frame_tree.hpp"
+#include "adit/io/imu_topic.hpp"
 #include "adit/io/mcap_reader.hpp"
 #include "adit/io/ros_messages.hpp"
 #include "adit/io/text.hpp"
@@ -23,6 +24,7 @@ struct Topics {
   std::vector<mcap::Channel> points;
   std::vector<mcap::Channel> wheel;
   std::vector<mcap::Channel> truth;
+  std::vector<mcap::Channel> imu;
   std::vector<mcap::Channel> transforms;
 };
 
@@ -45,6 +47,7 @@ Topics find_topics(const mcap::Contents& contents) {
     if (schema == contents.schemas.end() || channel.message_encoding != "cdr") continue;
     const std::string& type = schema->second.name;
     if (type == ros::kPointCloud2) topics.points.push_back(channel);
+    if (type == ros::kImu) topics.imu.push_back(channel);
     if (type == ros::kOdometry) (is_truth(channel.topic) ? topics.truth : topics.wheel).push_back(channel);
     if (type == ros::kTransforms && channel.topic.ends_with("tf_static"))
       topics.transforms.push_back(channel);
@@ -63,17 +66,37 @@ Result<> check_single(const std::vector<mcap::Channel>& channels, std::string_vi
   return fail(format("several topics of {}: {}; keep one of them in the file", what, names_of(channels)));
 }
 
-/// Leaves one topic of clouds, the one asked for or the only one; the other kinds must be single too.
-Result<Topics> choose_topics(Topics topics, const std::string& points) {
+/// How people choose one of several topics.
+struct TopicChoice {
+  std::string_view type;    ///< "PointCloud2"
+  std::string_view option;  ///< "--points"
+  std::string topic;        ///< "": the only one.
+};
+
+/// Leaves the topic asked for, or the only one, if there is any.
+Result<> choose_one(std::vector<mcap::Channel>& channels, const TopicChoice& choice) {
+  const std::string all = names_of(channels);
+  if (!choice.topic.empty())
+    std::erase_if(channels, [&](const mcap::Channel& channel) { return channel.topic != choice.topic; });
+  if (channels.empty() && !choice.topic.empty()) {
+    return fail(format("no {} topic '{}'; there {}", choice.type, choice.topic,
+                       all.empty() ? "is none" : "are: " + all));
+  }
+  if (channels.size() < 2) return {};
+  return fail(format("several topics of {}: {}; choose one with {} TOPIC", choice.type, all, choice.option));
+}
+
+/// Leaves one topic of clouds and at most one of each other kind.
+Result<Topics> choose_topics(Topics topics, const RecordingConfig& config) {
   if (topics.points.empty())
     return fail("no topic of sensor_msgs/msg/PointCloud2 in CDR; there are no scans to read");
-  const std::string all = names_of(topics.points);
-  if (!points.empty())
-    std::erase_if(topics.points, [&](const mcap::Channel& channel) { return channel.topic != points; });
-  if (topics.points.empty()) return fail(format("no PointCloud2 topic '{}'; there are: {}", points, all));
-  if (topics.points.size() > 1)
-    return fail(format("several topics of PointCloud2: {}; choose one with --points TOPIC", all));
-  return check_single(topics.wheel, "wheel odometry")
+  if (config.imu == kNoImu) topics.imu.clear();
+  const std::string imu = config.imu == kNoImu ? "" : config.imu;
+  return choose_one(topics.points, {"PointCloud2", "--points", config.points})
+      .and_then([&] {
+        return choose_one(topics.imu, {"Imu", "--imu", imu});
+      })
+      .and_then([&] { return check_single(topics.wheel, "wheel odometry"); })
       .and_then([&] { return check_single(topics.truth, "ground truth"); })
       .map([&] { return std::move(topics); });
 }
@@ -142,6 +165,7 @@ Result<FrameTree> read_frames(const mcap::Reader& reader, const Topics& topics) 
 struct FrameNames {
   std::string base;  ///< As the wheel odometry has it; "" without one.
   std::string lidar;
+  std::string imu;
 };
 
 /// The mount as /tf_static has it; unknown is an error, never the identity.
@@ -164,17 +188,46 @@ Result<> take_linked_mount(Recording& recording, const FrameTree& tree, FrameNam
   return {};
 }
 
-Result<> take_mount(Recording& recording, const mcap::Reader& reader, const Topics& topics,
-                    const FrameNames& names, const RecordingConfig& config) {
-  return mount_of(config).and_then([&](const std::optional<Pose>& given) -> Result<> {
-    if (given) {
-      set_mount(recording, *given);
-      return {};
-    }
-    return read_frames(reader, topics).and_then([&](const FrameTree& tree) {
-      return take_linked_mount(recording, tree, names);
-    });
-  });
+/// The IMU's mount as /tf_static has it, from the robot or, where the user gave the LiDAR's mount, from the
+/// LiDAR. Unknown, it is taken for the LiDAR's.
+void take_linked_imu_mount(Recording& recording, const FrameTree& tree, const FrameNames& names) {
+  const std::string base = names.base.empty() ? tree.body_of(names.lidar) : names.base;
+  const bool is_linked = recording.mount_source != kMountGiven && !base.empty();
+  const std::string& from = is_linked || FrameTree::bare(names.imu) == base ? base : names.lidar;
+  const Result<FrameTree::Chain> chain = tree.between(from, names.imu);
+  recording.T_base_imu = recording.T_base_lidar;
+  if (chain) {
+    recording.T_base_imu = from == base ? chain->T_a_b : recording.T_base_lidar * chain->T_a_b;
+    recording.imu_mount_source = chain->frames.size() == 1
+                                     ? "the IMU is in the frame " + chain->frames.front()
+                                     : format("/tf_static: {}", fmt::join(chain->frames, " -> "));
+    return;
+  }
+  recording.imu_mount_source = "assumed";
+  recording.assumptions.push_back(
+      format("{}the LiDAR's, as no /tf_static links '{}' and '{}'; if the IMU's axes are others, {}",
+             kImuMountAssumption, from, FrameTree::bare(names.imu), kImuMountRemedy));
+}
+
+/// The mounts of the LiDAR and of the IMU, if there is one.
+Result<> take_mounts(Recording& recording, const FrameTree& tree, const FrameNames& names,
+                     const RecordingConfig& config) {
+  const Result<std::optional<Pose>> lidar = mount_of(config);
+  if (!lidar) return tl::unexpected(lidar.error());
+  const Result<std::optional<Pose>> imu = imu_mount_of(config);
+  if (!imu) return tl::unexpected(imu.error());
+  if (*lidar) {
+    set_mount(recording, **lidar);
+  } else if (Result<> linked = take_linked_mount(recording, tree, names); !linked) {
+    return linked;
+  }
+  if (recording.imu.empty()) return {};
+  if (*imu) {
+    set_imu_mount(recording, **imu);
+  } else {
+    take_linked_imu_mount(recording, tree, names);
+  }
+  return {};
 }
 
 Result<ros::CloudMessage> read_cloud_message(const mcap::Reader& reader, const MessageRef& ref) {
@@ -194,6 +247,7 @@ void take_metadata(Recording& recording, const mcap::Contents& contents, const s
     };
     take("robot", recording.name);
     take("lidar", recording.lidar);
+    take("imu", recording.imu_name);
     std::string assumed;
     take("assumed", assumed);
     recording.assumptions = lines_of(assumed);
@@ -219,11 +273,12 @@ std::function<Result<Scan>(std::size_t)> scan_reader(std::shared_ptr<const mcap:
   };
 }
 
-/// Stamps, wheels and ground truth.
+/// Stamps, wheels, ground truth and IMU.
 struct Tracks {
   std::vector<Stamp> scans;
   PoseTrack wheel;
   PoseTrack truth;
+  ImuTrack imu;
 };
 
 Result<Tracks> read_tracks(const mcap::Reader& reader, const Topics& topics) {
@@ -232,16 +287,18 @@ Result<Tracks> read_tracks(const mcap::Reader& reader, const Topics& topics) {
   if (!wheel) return tl::unexpected(wheel.error());
   Result<PoseTrack> truth = read_poses(reader, topics.truth);
   if (!truth) return tl::unexpected(truth.error());
+  Result<ImuTrack> imu = read_imu(reader, messages_of(contents, topics.imu));
+  if (!imu) return tl::unexpected(imu.error());
   return read_stamps(reader, messages_of(contents, topics.points), is_own_file(contents))
       .map([&](std::vector<Stamp> stamps) {
-        return Tracks{std::move(stamps), std::move(*wheel), std::move(*truth)};
+        return Tracks{std::move(stamps), std::move(*wheel), std::move(*truth), std::move(*imu)};
       });
 }
 
 Result<Recording> read_recording(const std::shared_ptr<const mcap::Reader>& reader,
                                  const RecordingConfig& config) {
   const mcap::Contents& contents = reader->contents();
-  const Result<Topics> topics = choose_topics(find_topics(contents), config.points);
+  const Result<Topics> topics = choose_topics(find_topics(contents), config);
   if (!topics) return tl::unexpected(topics.error());
   Result<Tracks> tracks = read_tracks(*reader, *topics);
   if (!tracks) return tl::unexpected(tracks.error());
@@ -250,12 +307,17 @@ Result<Recording> read_recording(const std::shared_ptr<const mcap::Reader>& read
   recording.scan_stamps = std::move(tracks->scans);
   recording.wheel = std::move(tracks->wheel.poses);
   recording.truth = std::move(tracks->truth.poses);
+  recording.imu = std::move(tracks->imu.samples);
+  recording.imu_covariance = tracks->imu.covariance;
+  std::ranges::copy(tracks->imu.remarks, std::back_inserter(recording.assumptions));
   if (Result<> checked = check_fits_mcap(recording); !checked) return tl::unexpected(checked.error());
   const std::vector<MessageRef> scans = messages_of(contents, topics->points);
   recording.read_scan = scan_reader(reader, scans, recording.scan_stamps);
   const Result<> mounted =
       read_cloud_message(*reader, scans.front()).and_then([&](const ros::CloudMessage& first) {
-        return take_mount(recording, *reader, *topics, {tracks->wheel.child, first.frame}, config);
+        return read_frames(*reader, *topics).and_then([&](const FrameTree& tree) {
+          return take_mounts(recording, tree, {tracks->wheel.child, first.frame, tracks->imu.frame}, config);
+        });
       });
   if (!mounted) return tl::unexpected(mounted.error());
   return recording;

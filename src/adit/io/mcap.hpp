@@ -7,10 +7,11 @@
 ///                                                          [t int32, ns from the stamp]
 ///     /ROBOT/wheel_odometry  nav_msgs/msg/Odometry         T_wheelodom_base
 ///     /ROBOT/ground_truth    nav_msgs/msg/Odometry         T_world_base
-///     /tf_static             tf2_msgs/msg/TFMessage        T_base_lidar
+///     /ROBOT/imu             sensor_msgs/msg/Imu           rad/s, m/s^2, in the IMU's frame
+///     /tf_static             tf2_msgs/msg/TFMessage        T_base_lidar, T_base_imu
 ///
-/// A metadata record "adit" holds the robot's name, the LiDAR's, and what was assumed when the recording was
-/// first read. Stamps are integer nanoseconds throughout.
+/// A metadata record "adit" holds the robot's name, the LiDAR's, the IMU's, and what was assumed when the
+/// recording was first read. Stamps are integer nanoseconds throughout.
 #pragma once
 
 #include <filesystem>
@@ -31,7 +32,8 @@ namespace adit {
 /// names; the only Odometry topic that is not ground truth (its name has neither "truth", "groundtruth" nor
 /// "gt" as a whole word) for the wheels; and of /tf_static the chain of links from the wheels' frame to the
 /// LiDAR's, without wheels from base_footprint, base_link, base or the root. Without such a chain the mount
-/// is unknown, an error unless `config.mount` gives it.
+/// is unknown, an error unless `config.mount` gives it. The IMU is the only Imu topic, or the one that
+/// `config.imu` names; without links to it, its mount is taken for the LiDAR's, which `assumptions` says.
 Result<Recording> read_recording(const std::filesystem::path& path, const RecordingConfig& config = {});
 Result<Recording> read_recording(ByteSource source, const RecordingConfig& config = {});
 

@@ -14,21 +14,14 @@
 #include "adit/io/ros_messages.hpp"
 #include "support/data.hpp"
 #include "support/files.hpp"
+#include "support/foreign_mcap.hpp"
 
 namespace adit {
 namespace {
 
-Scan make_scan(std::size_t index, std::size_t num_points) {
-  Rng rng(index + 1);
-  Scan scan{{1'700'000'000'123'456'789 + static_cast<std::int64_t>(index) * 100'000'000}, {}};
-  for (std::size_t i = 0; i < num_points; ++i) {
-    scan.cloud.points.emplace_back(static_cast<float>(rng.uniform(-50, 50)), static_cast<float>(rng.normal()),
-                                   1.5F);
-    scan.cloud.intensities.push_back(static_cast<float>(rng.uniform(0, 255)));
-    scan.cloud.time_offsets_ns.push_back(-static_cast<std::int32_t>(rng.below(100'000'000)));
-  }
-  return scan;
-}
+using test::ForeignFile;
+using test::make_scan;
+using test::plain_file;
 
 Recording make_recording(std::size_t num_scans, std::size_t num_points = 40) {
   Recording recording;
@@ -42,7 +35,12 @@ Recording make_recording(std::size_t num_scans, std::size_t num_points = 40) {
     const Stamp stamp = start + Duration(i * 20'000'001LL);
     recording.wheel.push_back({stamp, Pose::planar(0.04 * i, 0.01 * i, 0.002 * i)});
     recording.truth.push_back({stamp, Pose::planar(0.04 * i, 0.011 * i, 0.003 * i, 0.1)});
+    recording.imu.push_back({stamp + Duration(3), Vector3(0.1 * i, -0.2, 0.3), Vector3(0.5, i, 9.8)});
   }
+  recording.T_base_imu = Pose::planar(-0.1, 0.05, 1.5, 0.4);
+  recording.imu_name = "icm-20948";
+  recording.imu_covariance.angular_velocity = Vector3(1e-4, 2e-4, 3e-4).asDiagonal();
+  recording.imu_covariance.specific_force = Vector3(1e-2, 2e-2, 3e-2).asDiagonal();
   return recording;
 }
 
@@ -61,6 +59,19 @@ void expect_same(const Trajectory& a, const Trajectory& b) {
   }
 }
 
+void expect_same_imu(const Recording& a, const Recording& b) {
+  ASSERT_EQ(a.imu.size(), b.imu.size());
+  for (std::size_t i = 0; i < a.imu.size(); ++i) {
+    EXPECT_EQ(a.imu[i].stamp, b.imu[i].stamp);
+    EXPECT_EQ(a.imu[i].angular_velocity, b.imu[i].angular_velocity);
+    EXPECT_EQ(a.imu[i].specific_force, b.imu[i].specific_force);
+  }
+  EXPECT_LT((a.T_base_imu.inverse() * b.T_base_imu).log().norm(), 1e-12);
+  EXPECT_EQ(a.imu_name, b.imu_name);
+  EXPECT_EQ(a.imu_covariance.angular_velocity, b.imu_covariance.angular_velocity);
+  EXPECT_EQ(a.imu_covariance.specific_force, b.imu_covariance.specific_force);
+}
+
 TEST(Mcap, RecordingRoundTripIsExact) {
   const Recording recording = make_recording(12);
   const Result<Recording> back = read_recording(memory_source(bytes_of(recording)));
@@ -71,6 +82,7 @@ TEST(Mcap, RecordingRoundTripIsExact) {
   EXPECT_EQ(back->scan_stamps, recording.scan_stamps);
   expect_same(back->wheel, recording.wheel);
   expect_same(back->truth, recording.truth);
+  expect_same_imu(*back, recording);
   for (std::size_t i = 0; i < recording.num_scans(); ++i) {
     const Result<Scan> scan = back->read_scan(i);
     ASSERT_TRUE(scan) << scan.error().message;
@@ -84,8 +96,9 @@ TEST(Mcap, RecordingRoundTripIsExact) {
 
 TEST(Mcap, SameRecordingSameBytes) { EXPECT_EQ(bytes_of(make_recording(3)), bytes_of(make_recording(3))); }
 
-TEST(Mcap, WithoutWheelsTruthIntensityOrTimes) {
+TEST(Mcap, WithoutWheelsTruthImuIntensityOrTimes) {
   Recording recording = make_recording(3);
+  recording.imu.clear();
   recording.wheel.clear();
   recording.truth.clear();
   recording.read_scan = [](std::size_t i) -> Result<Scan> {
@@ -98,6 +111,8 @@ TEST(Mcap, WithoutWheelsTruthIntensityOrTimes) {
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_TRUE(back->wheel.empty());
   EXPECT_TRUE(back->truth.empty());
+  EXPECT_TRUE(back->imu.empty());
+  EXPECT_EQ(back->imu_mount_source, "");
   const Result<Scan> scan = back->read_scan(1);
   ASSERT_TRUE(scan) << scan.error().message;
   EXPECT_TRUE(scan->cloud.intensities.empty());
@@ -147,7 +162,7 @@ TEST(Mcap, EveryTruncationIsAnErrorThatSaysWhere) {
     ASSERT_FALSE(read) << "cut at " << size;
     ASSERT_NE(read.error().message.find("byte"), std::string::npos) << read.error().message;
   }
-  EXPECT_ERROR(read_recording(memory_source(bytes.substr(0, bytes.size() - 1))), "23 messages are readable");
+  EXPECT_ERROR(read_recording(memory_source(bytes.substr(0, bytes.size() - 1))), "33 messages are readable");
   EXPECT_ERROR(read_recording(memory_source("garbage!")), "byte 0: not an MCAP file, or truncated");
 }
 
@@ -200,68 +215,6 @@ TEST(Mcap, ADamagedScanIsFoundByItsChecksum) {
   EXPECT_TRUE(damaged.error().message.starts_with("scan 2: chunk at byte ")) << damaged.error().message;
 }
 
-/// The records in front of the summary, put together by hand: no chunks, no index.
-std::string plain_file(const std::vector<std::string>& records) {
-  std::string bytes(mcap::kMagic);
-  bytes += mcap::framed(mcap::Opcode::header, mcap::encode(mcap::Header{"ros2", "hand"}));
-  for (const std::string& record : records) bytes += record;
-  bytes += mcap::framed(mcap::Opcode::data_end, std::string(4, '\0'));
-  bytes += mcap::framed(mcap::Opcode::footer, mcap::encode(mcap::Footer{}));
-  return bytes + std::string(mcap::kMagic);
-}
-
-/// Files of other programs, message by message.
-class ForeignFile {
- public:
-  ForeignFile() {
-    schema(1, ros::kPointCloud2);
-    schema(2, ros::kOdometry);
-    schema(3, ros::kTransforms);
-  }
-  /// Three clouds in the frame `frame`, recorded 5 ms after the scans' own stamps.
-  ForeignFile& clouds(const std::string& topic, const std::string& frame = "os_lidar") {
-    const std::uint16_t id = channel(1, topic);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Scan scan = make_scan(i, 4);
-      message(id, scan.stamp + Duration(5'000'000), ros::encode_cloud(scan, frame));
-    }
-    return *this;
-  }
-  ForeignFile& odometry(const std::string& topic, const std::string& child = "base_link") {
-    const std::uint16_t id = channel(2, topic);
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Stamp stamp = make_scan(i, 0).stamp;
-      message(id, stamp, ros::encode_odometry({"odom", child, {stamp, Pose()}}));
-    }
-    return *this;
-  }
-  ForeignFile& links(const std::vector<ros::TransformMessage>& transforms) {
-    message(channel(3, "/tf_static"), make_scan(0, 0).stamp, ros::encode_transforms(transforms));
-    return *this;
-  }
-  [[nodiscard]] Result<Recording> read(const RecordingConfig& config = {}) const {
-    return read_recording(memory_source(plain_file(records_)), config);
-  }
-
- private:
-  void schema(std::uint16_t id, std::string_view type) {
-    records_.push_back(mcap::framed(mcap::Opcode::schema,
-                                    mcap::encode(mcap::Schema{id, std::string(type), "ros2msg", "..."})));
-  }
-  std::uint16_t channel(std::uint16_t schema, const std::string& topic) {
-    records_.push_back(mcap::framed(mcap::Opcode::channel,
-                                    mcap::encode(mcap::Channel{++num_channels_, schema, topic, "cdr", {}})));
-    return num_channels_;
-  }
-  void message(std::uint16_t channel, Stamp stamp, std::string data) {
-    records_.push_back(mcap::framed(mcap::Opcode::message,
-                                    mcap::encode(mcap::Message{channel, 0, stamp, stamp, std::move(data)})));
-  }
-
-  std::vector<std::string> records_;
-  std::uint16_t num_channels_ = 0;
-};
-
 ros::TransformMessage link(const std::string& frame, const std::string& child, const Pose& T_frame_child) {
   return {frame, child, {{5}, T_frame_child}};
 }
@@ -308,7 +261,7 @@ TEST(Mcap, LinksAreFollowedAgainstTheirDirectionToo) {
 TEST(Mcap, AnUnknownMountIsAnErrorWithARemedy) {
   const ForeignFile bare = ForeignFile().clouds("/os/points");
   EXPECT_ERROR(bare.read(), "no /tf_static links its frame 'os_lidar'; give --mount X,Y,Z[,ROLL,PITCH,YAW]");
-  const Result<Recording> given = bare.read({"0.1 0 0.5", ""});
+  const Result<Recording> given = bare.read({.mount = "0.1 0 0.5"});
   ASSERT_TRUE(given) << given.error().message;
   EXPECT_EQ(given->T_base_lidar.translation(), Vector3(0.1, 0, 0.5));
   EXPECT_EQ(given->mount_source, "given by the user");
@@ -318,7 +271,7 @@ TEST(Mcap, AnUnknownMountIsAnErrorWithARemedy) {
                    .links({link("base", "camera", Pose())})
                    .read(),
                "no links connect 'base_link' and 'os_lidar'; give --mount");
-  EXPECT_ERROR(bare.read({"1 2", ""}), "2 numbers");
+  EXPECT_ERROR(bare.read({.mount = "1 2"}), "2 numbers");
 }
 
 TEST(Mcap, OdometryOfTheLidarsOwnFrameNeedsNoMount) {
@@ -332,7 +285,7 @@ TEST(Mcap, OdometryOfTheLidarsOwnFrameNeedsNoMount) {
 TEST(Mcap, GroundTruthIsNamedByAWholeWord) {
   const auto tracks = [](const std::string& topic) {
     const Result<Recording> read =
-        ForeignFile().clouds("/p", "base_link").odometry(topic).read({"0 0 1", ""});
+        ForeignFile().clouds("/p", "base_link").odometry(topic).read({.mount = "0 0 1"});
     EXPECT_TRUE(read) << read.error().message;
     return std::pair(read->wheel.size(), read->truth.size());
   };
@@ -346,8 +299,8 @@ TEST(Mcap, OneOfSeveralTopicsOfCloudsCanBeChosen) {
   const ForeignFile file =
       ForeignFile().clouds("/front").clouds("/rear").links({link("base", "os_lidar", kSensor)});
   EXPECT_ERROR(file.read(), "several topics of PointCloud2: /front, /rear; choose one with --points TOPIC");
-  EXPECT_ERROR(file.read({"", "/left"}), "no PointCloud2 topic '/left'; there are: /front, /rear");
-  const Result<Recording> rear = file.read({"", "/rear"});
+  EXPECT_ERROR(file.read({.points = "/left"}), "no PointCloud2 topic '/left'; there are: /front, /rear");
+  const Result<Recording> rear = file.read({.points = "/rear"});
   ASSERT_TRUE(rear) << rear.error().message;
   EXPECT_EQ(rear->num_scans(), 3U);
   EXPECT_EQ(rear->name, "rear");
@@ -358,7 +311,8 @@ TEST(Mcap, WhatWasAssumedIsKept) {
   recording.assumptions = {"mount: nobody knows", "stamps: counted"};
   const ByteSource bytes = memory_source(bytes_of(recording));
   EXPECT_EQ(read_recording(bytes)->assumptions, recording.assumptions);
-  EXPECT_EQ(read_recording(bytes, {"0 0 1", ""})->assumptions, std::vector<std::string>{"stamps: counted"});
+  EXPECT_EQ(read_recording(bytes, {.mount = "0 0 1"})->assumptions,
+            std::vector<std::string>{"stamps: counted"});
 }
 
 TEST(Mcap, FilesThatAreNotARecording) {

@@ -60,16 +60,35 @@ std::string mount_text(const Pose& T_base_lidar) {
   return place + format(" {} {} {}", angles.x(), angles.y(), angles.z());
 }
 
-Result<std::optional<Pose>> mount_of(const RecordingConfig& config) {
-  if (config.mount.empty()) return std::optional<Pose>();
-  return parse_mount(config.mount).map([](const Pose& T_base_lidar) { return std::optional(T_base_lidar); });
+namespace {
+
+Result<std::optional<Pose>> optional_mount(const std::string& text) {
+  if (text.empty()) return std::optional<Pose>();
+  return parse_mount(text).map([](const Pose& T_base_sensor) { return std::optional(T_base_sensor); });
+}
+
+void erase_assumption(Recording& recording, std::string_view start) {
+  std::erase_if(recording.assumptions,
+                [&](const std::string& assumption) { return assumption.starts_with(start); });
+}
+
+}  // namespace
+
+Result<std::optional<Pose>> mount_of(const RecordingConfig& config) { return optional_mount(config.mount); }
+Result<std::optional<Pose>> imu_mount_of(const RecordingConfig& config) {
+  return optional_mount(config.imu_mount);
 }
 
 void set_mount(Recording& recording, const Pose& T_base_lidar) {
   recording.T_base_lidar = T_base_lidar;
-  recording.mount_source = "given by the user";
-  std::erase_if(recording.assumptions,
-                [](const std::string& assumption) { return assumption.starts_with(kMountAssumption); });
+  recording.mount_source = kMountGiven;
+  erase_assumption(recording, kMountAssumption);
+}
+
+void set_imu_mount(Recording& recording, const Pose& T_base_imu) {
+  recording.T_base_imu = T_base_imu;
+  recording.imu_mount_source = kMountGiven;
+  erase_assumption(recording, kImuMountAssumption);
 }
 
 }  // namespace adit

@@ -153,7 +153,7 @@ Result<> set_entry(PcdHeader& header, std::string_view key, const Words& values)
   return fail("is not a line of a PCD header");
 }
 
-Result<PcdHeader> read_header(LineReader& lines) {
+Result<PcdHeader> read_pcd_header(LineReader& lines) {
   PcdHeader header;
   while (header.data.empty() && lines.next()) {
     const Words words = split_words(lines.line());
@@ -243,7 +243,7 @@ Result<CloudFile> unpack_fields(const PcdHeader& header, std::string_view bytes,
 
 Result<CloudFile> read_pcd(std::string_view bytes) {
   LineReader lines(bytes);
-  const Result<PcdHeader> header = read_header(lines);
+  const Result<PcdHeader> header = read_pcd_header(lines);
   if (!header) return tl::unexpected(header.error());
   const std::string_view body = bytes.substr(lines.offset());
   if (header->data == "ascii") {

@@ -94,7 +94,7 @@ Result<> set_entry(PlyHeader& header, const Words& words) {
   return fail("is not a line of a PLY header");
 }
 
-Result<PlyHeader> read_header(LineReader& lines) {
+Result<PlyHeader> read_ply_header(LineReader& lines) {
   PlyHeader header;
   if (!lines.next() || lines.line() != "ply") return fail("the first line is not 'ply': not a PLY file");
   bool has_end = false;
@@ -290,7 +290,7 @@ Result<TriangleMesh> read_polygons(Body body, const PlyHeader& header) {
 template <class T, class Use>
 Result<T> read_body(std::string_view bytes, const Use& use) {
   LineReader lines(bytes);
-  const Result<PlyHeader> header = read_header(lines);
+  const Result<PlyHeader> header = read_ply_header(lines);
   if (!header) return tl::unexpected(header.error());
   if (header->data == PlyData::ascii) return use(AsciiBody(lines), *header);
   const std::endian order =
@@ -345,7 +345,7 @@ Result<TriangleMesh> read_ply_mesh(std::string_view bytes) {
 
 bool ply_has_faces(std::string_view bytes) {
   LineReader lines(bytes);
-  const Result<PlyHeader> header = read_header(lines);
+  const Result<PlyHeader> header = read_ply_header(lines);
   return header && std::ranges::any_of(header->elements, [](const PlyElement& element) {
            return element.name == "face" && element.count > 0;
          });

@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers stand in the file as they do in memory");
 
 /// Its last digit counts the layouts that there have been.
-constexpr std::string_view kMagic = "adit map 3\n";
+constexpr std::string_view kMagic = "adit map 5\n";
 
 /// Appends what `transfer` names.
 class Writer {
@@ -160,12 +160,16 @@ void transfer(Archive& archive, Map& map) {
   archive.number(map.id.value);
   text(archive, map.name);
   trajectory(archive, map.odometry);
+  plain_vector(archive, map.slips);
+  plain_vector(archive, map.innovations);
   archive.number(map.num_degenerate);
   archive.number(map.num_refused);
   if (size_of_vector(archive, map.keyframes, 8 * sizeof(double)))
     for (auto& entry : map.keyframes) keyframe(archive, entry);
   if (size_of_vector(archive, map.step_covariances, sizeof(Matrix6)))
     for (auto& covariance : map.step_covariances) archive.raw(covariance.data(), sizeof(Matrix6));
+  if (size_of_vector(archive, map.pose_noise, sizeof(Matrix6)))
+    for (auto& covariance : map.pose_noise) archive.raw(covariance.data(), sizeof(Matrix6));
   scan_context_config(archive, map.scan_context);
   if (size_of_vector(archive, map.places, 1))
     for (auto& entry : map.places) place(archive, entry);
@@ -180,8 +184,8 @@ void transfer(Archive& archive, Map& map) {
 
 bool is_consistent(const RobotMap& map) {
   const std::size_t n = map.keyframes.size();
-  return map.step_covariances.size() == n && map.places.size() == n && map.tunnel.size() == n &&
-         map.searchable.size() == n;
+  return map.step_covariances.size() == n && map.pose_noise.size() == n && map.places.size() == n &&
+         map.tunnel.size() == n && map.searchable.size() == n;
 }
 
 }  // namespace

@@ -40,6 +40,7 @@ RobotMap random_map() {
     map.keyframes.push_back(
         {{map.id, k}, stamp, random_pose(rng), std::make_shared<const PointCloud>(cloud)});
     map.step_covariances.push_back(Matrix6::Identity() * rng.uniform());
+    map.pose_noise.push_back(Matrix6::Identity() * rng.uniform());
     map.places.push_back(describe(cloud, {}));
     map.tunnel.push_back({Vector3(3.0, 2.0, rng.uniform()), k % 2 == 0});
     map.searchable.push_back(k % 3 == 0);

@@ -80,6 +80,18 @@ Result<Pose> read_pose(CdrReader& reader) {
   return Pose(q, t);
 }
 
+/// A matrix row by row.
+template <class Matrix>
+void write_rows(CdrWriter& writer, const Matrix& matrix) {
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+    for (Eigen::Index k = 0; k < matrix.cols(); ++k) writer.number(matrix(i, k));
+}
+template <class Matrix>
+void read_rows(CdrReader& reader, Matrix& matrix) {
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+    for (Eigen::Index k = 0; k < matrix.cols(); ++k) matrix(i, k) = reader.number<double>();
+}
+
 /// sensor_msgs/PointField's numbers.
 std::optional<ScalarType> scalar_type(std::uint8_t datatype) {
   static constexpr ScalarType kTypes[] = {ScalarType::int8,    ScalarType::uint8,  ScalarType::int16,
@@ -144,6 +156,13 @@ std::string definition_of(std::string_view type) {
         "geometry_msgs/TwistWithCovariance twist\n",
         {kHeader, kTime, kPoseWithCovariance, kPose, kPoint, kQuaternion, kTwistWithCovariance, kTwist,
          kVector3});
+  }
+  if (type == kImu) {
+    return join(
+        "std_msgs/Header header\ngeometry_msgs/Quaternion orientation\nfloat64[9] orientation_covariance\n"
+        "geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n"
+        "geometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n",
+        {kHeader, kTime, kQuaternion, kVector3});
   }
   ADIT_CHECK(type == kTransforms, "no definition of this type");
   return join("geometry_msgs/TransformStamped[] transforms\n",
@@ -254,6 +273,33 @@ Result<std::vector<TransformMessage>> decode_transforms(std::string_view message
   }
   if (!reader.ok()) return fail("the TFMessage ends early");
   return transforms;
+}
+
+std::string encode_imu(const ImuMessage& imu) {
+  CdrWriter writer;
+  write_header(writer, imu.sample.stamp, imu.frame);
+  for (const double value : imu.orientation.coeffs()) writer.number(value);
+  write_rows(writer, imu.orientation_covariance);
+  write_rows(writer, imu.sample.angular_velocity);
+  write_rows(writer, imu.covariance.angular_velocity);
+  write_rows(writer, imu.sample.specific_force);
+  write_rows(writer, imu.covariance.specific_force);
+  return writer.take();
+}
+
+Result<ImuMessage> decode_imu(std::string_view message) {
+  CdrReader reader(message);
+  ImuMessage out;
+  out.sample.stamp = read_stamp(reader);
+  out.frame = reader.text();
+  for (double& value : out.orientation.coeffs()) value = reader.number<double>();
+  read_rows(reader, out.orientation_covariance);
+  read_rows(reader, out.sample.angular_velocity);
+  read_rows(reader, out.covariance.angular_velocity);
+  read_rows(reader, out.sample.specific_force);
+  read_rows(reader, out.covariance.specific_force);
+  if (!reader.ok()) return fail(format("byte {}: the Imu message ends early", reader.offset()));
+  return out;
 }
 
 Result<Stamp> decode_stamp(std::string_view message) {

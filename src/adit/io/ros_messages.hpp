@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// The four ROS 2 messages that recordings are made of, in CDR, with their definitions for MCAP's `ros2msg`
+/// The five ROS 2 messages that recordings are made of, in CDR, with their definitions for MCAP's `ros2msg`
 /// schemas.
 #pragma once
 
@@ -15,6 +15,7 @@ namespace adit::ros {
 
 inline constexpr std::string_view kPointCloud2 = "sensor_msgs/msg/PointCloud2";
 inline constexpr std::string_view kOdometry = "nav_msgs/msg/Odometry";
+inline constexpr std::string_view kImu = "sensor_msgs/msg/Imu";
 inline constexpr std::string_view kTransforms = "tf2_msgs/msg/TFMessage";
 
 /// The full text of a message type and all types in it; the type must be one of the above.
@@ -40,6 +41,23 @@ struct TransformMessage {
 Result<TransformMessage> decode_odometry(std::string_view message);
 [[nodiscard]] std::string encode_transforms(const std::vector<TransformMessage>& transforms);
 Result<std::vector<TransformMessage>> decode_transforms(std::string_view message);
+
+/// One measurement of an IMU, as sensor_msgs/msg/Imu defines it: a covariance of zeros is unknown, one whose
+/// first element is -1 says that its quantity was not measured.
+struct ImuMessage {
+  std::string frame;
+  ImuSample sample;
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< As it stands, of any length.
+  Matrix3 orientation_covariance = Matrix3::Zero();                 ///< rad^2
+  ImuCovariance covariance;
+};
+[[nodiscard]] std::string encode_imu(const ImuMessage& imu);
+/// Numbers are handed on as they are, also those that are not finite. Fails when the message ends early.
+Result<ImuMessage> decode_imu(std::string_view message);
+/// The first element of the covariance of a quantity that was not measured.
+inline constexpr double kUnmeasured = -1.0;
+/// Whether a covariance says that its quantity was not measured.
+[[nodiscard]] inline bool is_unmeasured(const Matrix3& covariance) { return covariance(0, 0) == kUnmeasured; }
 
 /// The stamp that nearly every message starts with.
 Result<Stamp> decode_stamp(std::string_view message);

@@ -33,6 +33,49 @@ TEST(RosMessages, EveryTruncationIsAnError) {
   EXPECT_FALSE(ros::decode_odometry(""));
 }
 
+ros::ImuMessage some_imu() {
+  ros::ImuMessage imu;
+  imu.frame = "os_imu";
+  imu.sample = {{1'700'000'000'123'456'789}, {0.1, -0.2, 0.3}, {0.5, -0.25, 9.8}};
+  imu.orientation = Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5);
+  imu.orientation_covariance << -1, 0, 0, 0, 0, 0, 0, 0, 0;
+  imu.covariance.angular_velocity << 1, 2, 3, 4, 5, 6, 7, 8, 9;
+  imu.covariance.specific_force << 10, 20, 30, 40, 50, 60, 70, 80, 90;
+  return imu;
+}
+
+TEST(RosMessages, ImuRoundTrip) {
+  const ros::ImuMessage imu = some_imu();
+  const Result<ros::ImuMessage> back = ros::decode_imu(ros::encode_imu(imu));
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->frame, "os_imu");
+  EXPECT_EQ(back->sample.stamp, imu.sample.stamp);
+  EXPECT_EQ(back->sample.angular_velocity, imu.sample.angular_velocity);
+  EXPECT_EQ(back->sample.specific_force, imu.sample.specific_force);
+  EXPECT_EQ(back->orientation.coeffs(), imu.orientation.coeffs());
+  EXPECT_EQ(back->covariance.angular_velocity, imu.covariance.angular_velocity);
+  EXPECT_EQ(back->covariance.specific_force, imu.covariance.specific_force);
+  EXPECT_TRUE(ros::is_unmeasured(back->orientation_covariance));
+  EXPECT_FALSE(ros::is_unmeasured(back->covariance.angular_velocity));
+}
+
+/// The bytes of the message, laid out by hand from the definition of sensor_msgs/msg/Imu.
+TEST(RosMessages, ImuHasTheLayoutOfItsDefinition) {
+  const ros::ImuMessage imu = some_imu();
+  CdrWriter writer;
+  writer.number(std::int32_t{1'700'000'000}).number(std::uint32_t{123'456'789}).text("os_imu");
+  for (const double x : {0.5, -0.5, 0.5, 0.5}) writer.number(x);  // x y z w
+  for (int i = 0; i < 9; ++i) writer.number(i == 0 ? -1.0 : 0.0);
+  for (const double x : {0.1, -0.2, 0.3}) writer.number(x);
+  for (int i = 1; i <= 9; ++i) writer.number(double(i));
+  for (const double x : {0.5, -0.25, 9.8}) writer.number(x);
+  for (int i = 1; i <= 9; ++i) writer.number(10.0 * i);
+  const std::string message = writer.take();
+  EXPECT_EQ(ros::encode_imu(imu), message);
+  for (std::size_t size = 0; size < message.size(); ++size)
+    EXPECT_FALSE(ros::decode_imu(message.substr(0, size))) << size;
+}
+
 TEST(RosMessages, PaddedRowsOfAnOrganisedCloud) {
   CdrWriter writer;
   writer.number(std::int32_t{1}).number(std::uint32_t{500}).text("f");

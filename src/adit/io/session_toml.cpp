@@ -99,6 +99,15 @@ void insert_solution(const Session& session, toml::table& table) {
   table.insert("refusals", refusals);
 }
 
+/// How well the frame between two robots is known, one standard deviation each.
+toml::table sigma_table(const MergeAccuracy& accuracy) {
+  return toml::table{{"along_m", accuracy.along_m},
+                     {"across_m", accuracy.across_m},
+                     {"up_m", accuracy.up_m},
+                     {"turn_deg", accuracy.turn_deg},
+                     {"loops_in_use", static_cast<std::int64_t>(accuracy.num_loops)}};
+}
+
 void insert_merges(const Session& session, toml::table& table) {
   const auto outcome_of = [&](const MergeCheck& check) {
     return std::ranges::find_if(session.solution.pairs, [&](const PairOutcome& pair) {
@@ -112,6 +121,7 @@ void insert_merges(const Session& session, toml::table& table) {
     if (const auto outcome = outcome_of(check); outcome != session.solution.pairs.end()) {
       tested.insert("merged", outcome->merged);  // an accepted one may be taken back
       if (!outcome->joined_reason.empty()) tested.insert("joined", outcome->joined_reason);
+      if (outcome->accuracy) tested.insert("sigma", sigma_table(*outcome->accuracy));
     }
     (check.a == check.b ? revisits : merges).push_back(std::move(tested));
   }

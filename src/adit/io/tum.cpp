@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_tum_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// A decimal number as its digits and the place of the point: value = digits * 10^-decimals.
 struct Decimal {
@@ -42,7 +42,7 @@ std::optional<Decimal> parse_decimal(std::string_view text) {
   }
   bool after_point = false;
   std::size_t i = 0;
-  for (; i < text.size() && (is_digit(text[i]) || (text[i] == '.' && !after_point)); ++i) {
+  for (; i < text.size() && (is_tum_digit(text[i]) || (text[i] == '.' && !after_point)); ++i) {
     if (text[i] == '.') {
       after_point = true;
     } else {

@@ -2,12 +2,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+
 #include "adit/core/config.hpp"
 #include "adit/core/records.hpp"
 #include "adit/odometry/adaptive_threshold.hpp"
-#include "adit/odometry/wheel_guided.hpp"
+#include "adit/odometry/local_map.hpp"
+#include "adit/odometry/odometry.hpp"
+#include "adit/odometry/scan_to_map.hpp"
 
 namespace adit {
+
+/// Norm of the wheels' motion [m; rad] since the last registered scan up to which the robot counts as at
+/// rest; the value of Kinematic-ICP.
+inline constexpr double kStationaryMotion = 1e-3;
+[[nodiscard]] Field stationary_motion_field(double* stationary_motion);
 
 struct KinematicIcpConfig {
   ScanToMapConfig scan_to_map{.max_iterations = 10, .convergence = 1e-3, .max_correction = 1.0};
@@ -18,28 +27,37 @@ struct KinematicIcpConfig {
 /// Wheel odometry corrected by LiDAR in the two motions that a non-holonomic vehicle has: T. Guadagnino, B.
 /// Mersch, I. Vizzo, S. Gupta, M.V.R. Malladi, L. Lobefaro, G. Doisy, C. Stachniss, "Kinematic-ICP: Enhancing
 /// LiDAR Odometry with Kinematic Constraints for Wheeled Mobile Robots Moving on Planar Surfaces", ICRA 2025.
+/// The wheels predict and deskew, and a robot at rest is not registered.
 ///
 /// Height, roll and pitch are those of the wheels. Where the scene leaves the direction of travel open, the
 /// residuals hardly change the forward motion, and the regularisation ties it to the wheels: such a step is
 /// `degenerate` and enters the map like a good one (else the map would end with the first stretch of smooth
 /// tunnel). Steps that are `too_few_points` or `diverged` keep the wheels' prediction and stay out of the
 /// map.
-class KinematicIcp {
+class KinematicIcp : public Odometry {
  public:
-  KinematicIcp(const KinematicIcpConfig& config, const Pose& T_base_lidar)
-      : config_(config), drive_(config.scan_to_map, config.stationary_motion, T_base_lidar) {}
+  KinematicIcp(const KinematicIcpConfig& config, const Pose& T_base_lidar);
 
-  /// See the same members of WheelGuided.
-  OdometryStep register_scan(const Scan& scan, const WheelDelta& wheel);
-  [[nodiscard]] PointCloud cloud_of_last_scan() const { return drive_.cloud_of_last_scan(); }
-  [[nodiscard]] const LocalMap& map() const { return drive_.map(); }
+  /// Needs the wheels; their duration must be positive where the scan has per-point times.
+  OdometryStep register_scan(const Scan& scan, const SensedMotion& motion) override;
+  [[nodiscard]] const PointCloud& cloud_of_last_scan() const override { return cloud_; }
+  [[nodiscard]] const LocalMap& map() const { return map_; }
 
  private:
+  [[nodiscard]] bool is_at_rest(const Pose& T_prediction) const;
+  [[nodiscard]] OdometryStep resting(const Pose& T_prediction) const;
+  [[nodiscard]] OdometryStep moving(const Pose& T_prediction);
   [[nodiscard]] OdometryStep registered(const ThinnedScan& scan, const Pose& T_prediction);
 
   KinematicIcpConfig config_;
-  WheelGuided drive_;
+  Pose T_base_lidar_;
+  LocalMap map_;
+  Pose T_odom_base_;
   DeviationStatistics deviations_;
+  std::optional<OdometryStep> last_registered_;  ///< Of the last moving scan, if that entered the map.
+  bool started_ = false;
+  PointCloud cloud_;
+  VoxelThinner thinner_;
 };
 
 }  // namespace adit

@@ -7,6 +7,8 @@
 namespace adit {
 namespace {
 
+constexpr Duration kHorizon = std::chrono::seconds(2);  // a velocity says little about what comes later
+
 // Sum of squared distances from the map, square metres; a point counts at most the square of a voxel.
 double misfit(const Alignment& alignment, const ThinnedScan& scan, const LocalMap& map) {
   const double reach = map.voxel_size();
@@ -52,12 +54,12 @@ KissIcp::KissIcp(const KissIcpConfig& config, const Pose& T_base_lidar)
       map_(config.scan_to_map.voxel_size, config.scan_to_map.max_points_per_voxel),
       threshold_(config.initial_threshold, config.min_motion, config.scan_to_map.max_range) {}
 
-OdometryStep KissIcp::register_scan(const Scan& scan) {
+OdometryStep KissIcp::register_scan(const Scan& scan, const SensedMotion& /*motion*/) {
   ADIT_CHECK(!stamp_ || *stamp_ < scan.stamp, "the stamps of scans ascend");
-  const Pose T_prediction = motion_ ? T_odom_base_ * motion_->T_start_end : T_odom_base_;
+  const Pose T_prediction = predicted(scan.stamp);
   const ScanToMapConfig& config = config_.scan_to_map;
   preprocess(scan.cloud, {config.min_range, config.max_range}, T_base_lidar_,
-             config.deskew ? motion_ : std::nullopt, cloud_);
+             config.deskew && motion_ ? std::optional(sweep_of(*motion_)) : std::nullopt, cloud_);
   irregular_ = are_irregular(config_.irregular_steps, scan);
   const ThinnedScan thin = thinned_twice(cloud_.points, config.voxel_size, thinner_);
   OdometryStep step = map_.empty() ? first_step(thin, T_prediction, config) : registered(thin, T_prediction);
@@ -68,6 +70,11 @@ OdometryStep KissIcp::register_scan(const Scan& scan) {
   stamp_ = scan.stamp;
   T_odom_base_ = step.T_odom_base;
   return step;
+}
+
+Pose KissIcp::predicted(Stamp stamp) const {
+  if (!motion_) return T_odom_base_;
+  return T_odom_base_ * motion_->pose_after(std::min(stamp - *stamp_, std::max(motion_->duration, kHorizon)));
 }
 
 Alignment KissIcp::align(const ThinnedScan& scan, const Pose& T_prediction) const {
@@ -89,7 +96,9 @@ OdometryStep KissIcp::registered(const ThinnedScan& scan, const Pose& T_predicti
     threshold_.add(T_prediction.inverse() * alignment.T_map_base);
   else
     threshold_.failed();
-  return step_of(alignment, scan.source, map_, 3.0 * sigma, config_.scan_to_map);
+  OdometryStep step = step_of(alignment, scan.source, map_, 3.0 * sigma, config_.scan_to_map);
+  step.correction = (T_prediction.inverse() * step.T_odom_base).log();
+  return step;
 }
 
 }  // namespace adit

@@ -11,6 +11,7 @@
 #include "adit/geometry/deskew.hpp"
 #include "adit/odometry/adaptive_threshold.hpp"
 #include "adit/odometry/local_map.hpp"
+#include "adit/odometry/odometry.hpp"
 #include "adit/odometry/scan_to_map.hpp"
 
 namespace adit {
@@ -33,8 +34,9 @@ struct KissIcpConfig {
 /// In Defense of Point-to-Point ICP - Simple, Accurate, and Robust Registration If Done the Right Way", RA-L
 /// 2023. It works in the base frame: T_odom_base starts at identity.
 ///
-/// Beyond the paper: its constant-velocity prediction presumes scans at a steady pace. Scans without
-/// per-point times have often been picked or thinned from a drive, and their steps then vary; so with
+/// Beyond the paper: its prediction repeats the last step, which presumes scans at a steady pace. Here the
+/// velocity is kept over the time that has passed (at most two seconds, where scans are missing). Scans
+/// without per-point times have often been picked or thinned from a drive, and their steps then vary; so with
 /// `irregular_steps` each such scan is also aligned from the last pose, and the better fit counts
 /// (docs/decisions/0003-irregular-steps.md).
 ///
@@ -42,18 +44,17 @@ struct KissIcpConfig {
 /// such notion, and as in the paper the scan enters the map (in a smooth tunnel it slips, which is what is to
 /// be shown). Steps that are `too_few_points` or `diverged` keep the constant-velocity prediction and stay
 /// out of the map.
-class KissIcp {
+class KissIcp : public Odometry {
  public:
   KissIcp(const KissIcpConfig& config, const Pose& T_base_lidar);
 
-  /// Stamps must ascend strictly from scan to scan.
-  OdometryStep register_scan(const Scan& scan);
-  /// The last scan, deskewed and range-cropped at full density, in the base frame at its stamp.
-  [[nodiscard]] PointCloud cloud_of_last_scan() const { return cloud_; }
+  OdometryStep register_scan(const Scan& scan, const SensedMotion& motion) override;
+  [[nodiscard]] const PointCloud& cloud_of_last_scan() const override { return cloud_; }
   [[nodiscard]] const LocalMap& map() const { return map_; }
   [[nodiscard]] double sigma() const { return threshold_.sigma(); }
 
  private:
+  [[nodiscard]] Pose predicted(Stamp stamp) const;
   [[nodiscard]] OdometryStep registered(const ThinnedScan& scan, const Pose& T_prediction);
   [[nodiscard]] Alignment align(const ThinnedScan& scan, const Pose& T_prediction) const;
 

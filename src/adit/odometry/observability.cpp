@@ -4,9 +4,13 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <map>
 
+#include "adit/core/check.hpp"
 #include "adit/core/decompositions.hpp"
 #include "adit/core/parallel.hpp"
+#include "adit/geometry/voxel_grid.hpp"
+#include "adit/odometry/fixed_directions.hpp"
 
 namespace adit {
 namespace {
@@ -22,6 +26,8 @@ constexpr std::size_t kMinPlanePoints = 6;
 constexpr double kMinPatchRatio = 0.04;
 // Square metres: no sensor, and no map of 0.2 m spacing, is better than a centimetre.
 constexpr double kMinVariance = 1e-4;
+// Metres: the edge of a region whose residuals err alike.
+constexpr double kRegion = 2.0;
 // Metres: levers of a scene that lies on an axis.
 constexpr double kMinLever = 1.0;
 
@@ -102,7 +108,31 @@ Observability observability(const std::vector<PlaneResidual>& residuals,
   const Vector6 kept = (values.array() < degeneracy_threshold).select(0.0, scaled_weight * values);
   const Matrix6 V = scale.asDiagonal() * vectors;
   out.information = V * kept.asDiagonal() * V.transpose();
+  const Vector6 is_fixed = (values.array() < degeneracy_threshold).select(Vector6::Zero(), Vector6::Ones());
+  out.onto_fixed = scale.cwiseInverse().asDiagonal() * vectors * is_fixed.asDiagonal() * vectors.transpose() *
+                   scale.asDiagonal();
   return out;
+}
+
+Matrix6 information_by_regions(const std::vector<PlaneResidual>& residuals,
+                               std::span<const Eigen::Vector3f> points, const Matrix6& onto_fixed) {
+  ADIT_CHECK(residuals.size() == points.size(), "a point for each residual");
+  const VoxelGrid regions(kRegion);
+  Matrix6 H = Matrix6::Zero();
+  std::map<VoxelKey, Vector6> gradients;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    const auto& [value, jacobian] = residuals[i];
+    const std::optional<VoxelKey> region = regions.key_of(points[i]);
+    if (!region) continue;
+    H += jacobian * jacobian.transpose();
+    gradients.try_emplace(*region, Vector6::Zero()).first->second += value * jacobian;
+  }
+  // The floor keeps it defined where there are fewer regions than directions.
+  Matrix6 squares = kMinVariance * H;
+  for (const auto& [region, g] : gradients) squares += g * g.transpose();
+  const FixedDirections fixed(onto_fixed.transpose() * H * onto_fixed);
+  const FixedDirections::Block within = fixed.of_information(H);
+  return fixed.information(within * inverse(fixed.of_information(squares)) * within);
 }
 
 }  // namespace adit

@@ -35,6 +35,8 @@ struct Observability {
   /// possible.
   double weakest = 0.0;
   bool degenerate = true;  ///< `weakest` is below `degeneracy_threshold`.
+  /// Takes the open directions out of a step of T_map_base: the projection onto those that the scene fixes.
+  Matrix6 onto_fixed = Matrix6::Zero();
 };
 /// From a sample of the source points (base frame), those whose nearest neighbour in the map is nearer than
 /// `max_distance` metres.
@@ -45,5 +47,14 @@ struct Observability {
 [[nodiscard]] Observability observability(const std::vector<PlaneResidual>& residuals,
                                           std::span<const Eigen::Vector3f> source, double weight,
                                           double degeneracy_threshold);
+
+/// What the residuals at the end say of the pose, within the directions that are fixed (`onto_fixed`): rough
+/// walls and planes that are slightly off make neighbours err alike, so that residuals count by regions of
+/// the scene. `points`: of each residual, base frame. Source: the cluster-robust ("sandwich") covariance of
+/// K.-Y. Liang and S. L. Zeger, "Longitudinal data analysis using generalized linear models" (Biometrika
+/// 1986), inverted.
+[[nodiscard]] Matrix6 information_by_regions(const std::vector<PlaneResidual>& residuals,
+                                             std::span<const Eigen::Vector3f> points,
+                                             const Matrix6& onto_fixed);
 
 }  // namespace adit

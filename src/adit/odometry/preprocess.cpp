@@ -77,7 +77,7 @@ void join(std::vector<T>& values, const std::vector<std::size_t>& kept) {
 }  // namespace
 
 void preprocess(const PointCloud& cloud_lidar, const RangeLimits& limits, const Pose& T_base_lidar,
-                const std::optional<ConstantVelocity>& motion, PointCloud& cloud_base) {
+                const std::optional<SweepMotion>& motion, PointCloud& cloud_base) {
   cloud_lidar.check();
   const std::span<const Eigen::Vector3f> raw = cloud_lidar.points;
   const SquaredLimits squared = {static_cast<float>(limits.min_range * limits.min_range),

@@ -21,6 +21,6 @@ struct RangeLimits {
 /// up. With `motion` (of the base) and per-point times the sweep is deskewed; without either it is only moved
 /// into the base frame. The result replaces `cloud_base` and uses its memory.
 void preprocess(const PointCloud& cloud_lidar, const RangeLimits& limits, const Pose& T_base_lidar,
-                const std::optional<ConstantVelocity>& motion, PointCloud& cloud_base);
+                const std::optional<SweepMotion>& motion, PointCloud& cloud_base);
 
 }  // namespace adit

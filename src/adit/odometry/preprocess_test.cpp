@@ -50,7 +50,7 @@ TEST(Preprocess, CropsMovesAndDeskews) {
   const RangeLimits limits = {1.0, 50.0};
   PointCloud cloud = raw_cloud(10);  // what it held is gone
   for (const bool deskew : {false, true}) {
-    preprocess(raw, limits, kMount, deskew ? std::optional(kMotion) : std::nullopt, cloud);
+    preprocess(raw, limits, kMount, deskew ? std::optional(sweep_of(kMotion)) : std::nullopt, cloud);
     const PointCloud oracle = expected(raw, limits, deskew);
     ASSERT_EQ(cloud.size(), oracle.size());
     EXPECT_EQ(cloud.intensities, oracle.intensities);
@@ -65,10 +65,10 @@ TEST(Preprocess, SameWithAnyNumberOfThreadsAndWithoutIntensities) {
   PointCloud two;
   const int before = num_threads();
   set_num_threads(1);
-  preprocess(raw, {1.0, 50.0}, kMount, kMotion, one);
+  preprocess(raw, {1.0, 50.0}, kMount, sweep_of(kMotion), one);
   set_num_threads(2);
   raw.intensities.clear();
-  preprocess(raw, {1.0, 50.0}, kMount, kMotion, two);
+  preprocess(raw, {1.0, 50.0}, kMount, sweep_of(kMotion), two);
   set_num_threads(before);
   EXPECT_EQ(one.points, two.points);
   EXPECT_TRUE(two.intensities.empty());
@@ -76,9 +76,9 @@ TEST(Preprocess, SameWithAnyNumberOfThreadsAndWithoutIntensities) {
 
 TEST(Preprocess, NothingLeft) {
   PointCloud cloud = raw_cloud(10);
-  preprocess({}, {}, kMount, kMotion, cloud);
+  preprocess({}, {}, kMount, sweep_of(kMotion), cloud);
   EXPECT_TRUE(cloud.empty());
-  preprocess(raw_cloud(100), {90.0, 100.0}, kMount, kMotion, cloud);
+  preprocess(raw_cloud(100), {90.0, 100.0}, kMount, sweep_of(kMotion), cloud);
   EXPECT_TRUE(cloud.empty());
   EXPECT_TRUE(cloud.intensities.empty());
 }

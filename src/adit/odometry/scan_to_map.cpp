@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "adit/core/angles.hpp"
 #include "adit/core/decompositions.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/simd.hpp"
@@ -158,7 +159,7 @@ Alignment gauss_newton(const Pose& T_prediction, const ScanToMapConfig& config, 
     const Vector6 step = solve(equations);
     const bool finite = step.allFinite();
     if (finite) out.T_map_base = out.T_map_base * Pose::exp(step);
-    if (!finite || (T_prediction.inverse() * out.T_map_base).translation().norm() > config.max_correction)
+    if (!finite || !is_within_trust(T_prediction.inverse() * out.T_map_base, config))
       return {T_prediction, StepStatus::diverged, out.num_correspondences, out.iterations};
     if (step.norm() < config.convergence) break;
   }
@@ -181,8 +182,15 @@ Fields fields_of(ScanToMapConfig& c) {
           {"min_correspondences", &c.min_correspondences, "", 6, 100000, "fewer leave the scan unregistered"},
           {"max_correction", &c.max_correction, "m", 0.01, 1000.0,
            "larger corrections of the predicted position count as divergence"},
+          {"max_turn_deg", &c.max_turn_deg, "deg", 0.1, 180.0,
+           "and so do larger corrections of the predicted orientation"},
           {"degeneracy_threshold", &c.degeneracy_threshold, "", 0.0, 0.33,
            "share of the information (1/3 = even) below which a direction counts as open"}};
+}
+
+bool is_within_trust(const Pose& correction, const ScanToMapConfig& config) {
+  return correction.translation().norm() <= config.max_correction &&
+         correction.angle() <= config.max_turn_deg * kDegree;
 }
 
 NormalEquations<6> linearize_rigid(Correspondences& pairs, const Pose& T_map_base, double kernel_scale) {

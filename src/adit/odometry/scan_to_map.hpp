@@ -28,6 +28,7 @@ struct ScanToMapConfig {
   double convergence = 1e-4;
   int min_correspondences = 30;
   double max_correction = 10.0;
+  double max_turn_deg = 180.0;
   double degeneracy_threshold = 0.01;
 };
 
@@ -66,6 +67,9 @@ struct Alignment {
   int num_correspondences = 0;
   int iterations = 0;
 };
+
+/// Whether a correction of the prediction is one that the odometry believes.
+[[nodiscard]] bool is_within_trust(const Pose& correction, const ScanToMapConfig& config);
 
 /// Gauss-Newton on `linearize_rigid` from the prediction; `sigma` is the kernel's scale and correspondences
 /// reach to 3 sigma.

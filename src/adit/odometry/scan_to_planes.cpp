@@ -3,11 +3,12 @@
 #include "adit/odometry/scan_to_planes.hpp"
 
 #include <algorithm>
+#include <cmath>
 
-#include "adit/core/angles.hpp"
 #include "adit/core/decompositions.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/robust_kernel.hpp"
+#include "adit/odometry/adaptive_threshold.hpp"
 
 namespace adit {
 namespace {
@@ -17,7 +18,7 @@ constexpr std::size_t kPointsPerPart = 32;
 // Patches of 0.7 voxels follow rough walls better than whole ones; a tenth of thickness is the unevenness of
 // blasted rock.
 constexpr PlaneLimits kPatch{.radius = 0.7, .thickness = 0.1};
-// Voxels. The map's planes are those around the points at the prediction; should the scan move farther than
+// Voxels. The map's planes are those around the points at the prediction; should the points move farther than
 // this from there, they are looked up once more.
 constexpr double kLookUpAgain = 0.2;
 // Share of the usual points near a plane below which the prediction is poor.
@@ -46,9 +47,19 @@ Planes planes_around(std::span<const Eigen::Vector3f> source, const LocalMap& ma
   return planes;
 }
 
+int num_found(const Planes& planes) {
+  return static_cast<int>(std::ranges::count_if(planes, [](const auto& plane) { return plane.has_value(); }));
+}
+
 double share_found(const Planes& planes) {
-  const auto found = std::ranges::count_if(planes, [](const auto& plane) { return plane.has_value(); });
-  return static_cast<double>(found) / static_cast<double>(std::max<std::size_t>(1, planes.size()));
+  return num_found(planes) / static_cast<double>(std::max<std::size_t>(1, planes.size()));
+}
+
+// Metres, the root mean square.
+double usual_range(std::span<const Eigen::Vector3f> source) {
+  double squares = 0.0;
+  for (const Eigen::Vector3f& p : source) squares += p.cast<double>().squaredNorm();
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, source.size())));
 }
 
 std::vector<PlaneResidual> residuals_at(std::span<const Eigen::Vector3f> source, const Planes& planes,
@@ -60,6 +71,14 @@ std::vector<PlaneResidual> residuals_at(std::span<const Eigen::Vector3f> source,
     if (planes[i])
       residuals.push_back(plane_residual(R, T_map_base.translation(), *planes[i], source[i].cast<double>()));
   return residuals;
+}
+
+std::vector<Eigen::Vector3f> points_near(std::span<const Eigen::Vector3f> source, const Planes& planes) {
+  std::vector<Eigen::Vector3f> near;
+  near.reserve(source.size());
+  for (std::size_t i = 0; i < source.size(); ++i)
+    if (planes[i]) near.push_back(source[i]);
+  return near;
 }
 
 NormalEquations<6> linearize_planes(const std::vector<PlaneResidual>& residuals, double sigma) {
@@ -78,15 +97,25 @@ NormalEquations<6> linearize_planes(const std::vector<PlaneResidual>& residuals,
   return out;
 }
 
+// What the residuals say in the directions that the scene fixes. In the others they say little, and that is
+// wrong: rings that repeat from scan to scan fit best where they were (solution remapping: J. Zhang, M.
+// Kaess, S. Singh, "On degeneracy of optimization-based state estimation problems", ICRA 2016).
+void take_out_open_directions(const Observability& seen, NormalEquations<6>& equations) {
+  if (!seen.degenerate) return;
+  equations.H = (seen.onto_fixed.transpose() * equations.H * seen.onto_fixed).eval();
+  equations.g = (seen.onto_fixed.transpose() * equations.g).eval();
+}
+
 // Gauss-Newton with these planes, on from the pose of `so_far`.
 PlaneAlignment refined(const Problem& problem, const Planes& planes, PlaneAlignment so_far) {
-  const PosePrior& prior = problem.prior;
+  so_far.seen = observability(residuals_at(problem.source, planes, so_far.T_map_base), problem.source, 1.0,
+                              problem.config.degeneracy_threshold);
   for (int i = 0; i < problem.config.max_iterations; ++i) {
-    const NormalEquations<6> equations =
+    NormalEquations<6> equations =
         linearize_planes(residuals_at(problem.source, planes, so_far.T_map_base), problem.sigma);
-    const Vector6 off = (prior.T_map_base.inverse() * so_far.T_map_base).log();
-    const Vector6 step =
-        solve_symmetric(equations.H + prior.information, -(equations.g + prior.information * off));
+    take_out_open_directions(so_far.seen, equations);
+    equations += linearize_prior(problem.prior, so_far.T_map_base);
+    const Vector6 step = solve_symmetric(equations.H, -equations.g);
     ++so_far.iterations;
     if (!step.allFinite()) {
       so_far.status = StepStatus::diverged;
@@ -121,27 +150,13 @@ Start start_of(const Problem& problem) {
 
 }  // namespace
 
-Fields fields_of(WheelNoise& c) {
-  return {{"slip", &c.slip, "", 1e-4, 1.0, "forward, per metre driven"},
-          {"sideways", &c.sideways, "", 1e-4, 1.0, "sideways, per metre"},
-          {"climb", &c.climb, "", 1e-4, 10.0, "up and down, per metre"},
-          {"tilt_deg", &c.tilt_deg, "deg/m", 1e-3, 360.0, "roll and pitch, per metre"},
-          {"heading_deg", &c.heading_deg, "deg/m", 1e-3, 360.0, "heading, per metre"},
-          {"turn", &c.turn, "", 1e-4, 1.0, "heading again, share of the angle turned"}};
-}
-
-Matrix6 wheel_information(const WheelNoise& noise, const Pose& T_last_now) {
-  // Encoder ticks and the clock leave this much open for a robot that hardly moves.
-  constexpr double kFloor = 0.001;       // metres
-  constexpr double kTurnFloor = 0.0002;  // radians
-  constexpr double kSlipFloor = 2 * kFloor;
-  const double distance = T_last_now.translation().norm();
-  const double tilt = noise.tilt_deg * kDegree * distance + 2 * kTurnFloor;
-  Vector6 sigma;
-  sigma << noise.slip * distance + kSlipFloor, noise.sideways * distance + kFloor,
-      noise.climb * distance + kFloor, tilt, tilt,
-      noise.heading_deg * kDegree * distance + noise.turn * T_last_now.angle() + kTurnFloor;
-  return sigma.array().square().inverse().matrix().asDiagonal();
+NormalEquations<6> linearize_prior(const PosePrior& prior, const Pose& T_map_base) {
+  const Vector6 off = (prior.T_map_base.inverse() * T_map_base).log();
+  const Matrix6 J = Pose::right_jacobian_inverse(off);
+  NormalEquations<6> out;
+  out.H = J.transpose() * prior.information * J;
+  out.g = J.transpose() * prior.information * off;
+  return out;
 }
 
 PlaneAlignment align_point_to_plane(std::span<const Eigen::Vector3f> source, const LocalMap& map,
@@ -152,20 +167,26 @@ PlaneAlignment align_point_to_plane(std::span<const Eigen::Vector3f> source, con
   out.T_map_base = T_start;
   out.iterations = iterations;
   out = refined(problem, planes, out);
-  if ((T_start.inverse() * out.T_map_base).translation().norm() > kLookUpAgain * map.voxel_size()) {
+  const double moved = point_deviation(T_start.inverse() * out.T_map_base, usual_range(source));
+  if (moved > kLookUpAgain * map.voxel_size()) {
     planes = planes_around(source, map, out.T_map_base);
     out = refined(problem, planes, out);
   }
-  if ((prior.T_map_base.inverse() * out.T_map_base).translation().norm() > config.max_correction)
+  out.num_correspondences = num_found(planes);
+  if (out.num_correspondences < config.min_correspondences)
+    out.status = StepStatus::too_few_points;
+  else if (!is_within_trust(prior.T_map_base.inverse() * out.T_map_base, config))
     out.status = StepStatus::diverged;
-  if (out.status == StepStatus::diverged) {
+  if (out.status != StepStatus::ok) {
     out.T_map_base = prior.T_map_base;
     return out;
   }
   const std::vector<PlaneResidual> residuals = residuals_at(source, planes, out.T_map_base);
-  out.num_correspondences = static_cast<int>(residuals.size());
+  out.seen.information = information_by_regions(residuals, points_near(source, planes), out.seen.onto_fixed);
+  NormalEquations<6> at_end = linearize_planes(residuals, sigma);
+  take_out_open_directions(out.seen, at_end);
+  out.information = at_end.H;
   out.share_near = share_found(planes);
-  out.seen = observability(residuals, source, 1.0, config.degeneracy_threshold);
   return out;
 }
 

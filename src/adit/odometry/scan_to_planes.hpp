@@ -10,32 +10,21 @@
 
 namespace adit {
 
-/// Standard deviations of the wheels' motion between two scans, per metre driven. Wheels that measure in a
-/// plane know nothing of climbing and tilting; there the figures are those of a rough floor.
-struct WheelNoise {
-  double slip = 0.02;        ///< Forward, metres per metre.
-  double sideways = 0.01;    ///< Metres per metre.
-  double climb = 0.25;       ///< Metres per metre.
-  double tilt_deg = 10.0;    ///< Roll and pitch, degrees per metre.
-  double heading_deg = 0.5;  ///< Degrees per metre.
-  double turn = 0.05;        ///< Heading again, share of the angle turned.
-};
-[[nodiscard]] Fields fields_of(WheelNoise& noise);
-
-/// Information of the pose T_map_base that the wheels predict after the motion `T_last_now` (T_base0_base1);
-/// right perturbation, [translation; rotation].
-[[nodiscard]] Matrix6 wheel_information(const WheelNoise& noise, const Pose& T_last_now);
-
 /// What is known of a scan's pose before it is looked at.
 struct PosePrior {
-  Pose T_map_base;                        ///< The wheels' prediction.
+  Pose T_map_base;                        ///< The prediction.
   Matrix6 information = Matrix6::Zero();  ///< Of it, right perturbation [translation; rotation].
   double usual_share = 0.0;               ///< Share of the points of earlier scans that lay near a plane.
 };
 
+/// Normal equations of the prior's cost, half of d^T information d with d = log(prior^-1 T_map_base), in the
+/// tangent of a right perturbation of T_map_base.
+[[nodiscard]] NormalEquations<6> linearize_prior(const PosePrior& prior, const Pose& T_map_base);
+
 struct PlaneAlignment : Alignment {
-  Observability seen;       ///< What the scan alone says about the pose.
-  double share_near = 0.0;  ///< Share of the source points that lie near a plane of the map.
+  Observability seen;                     ///< What the scan alone says about the pose.
+  Matrix6 information = Matrix6::Zero();  ///< Of the residuals at the end, as if all were independent.
+  double share_near = 0.0;                ///< Share of the source points that lie near a plane of the map.
 };
 
 /// Minimises the squared distances of the scan's points from the planes of the map around them
@@ -45,6 +34,9 @@ struct PlaneAlignment : Alignment {
 ///
 /// Where less than nine tenths of `prior.usual_share` of the points lie near a plane, the prediction is poor
 /// (a kerb, a ramp), and point-to-point ICP brings the scan near first.
+///
+/// `too_few_points` where fewer than `min_correspondences` points lie near a plane, `diverged` where the
+/// correction of the prediction is beyond `max_correction` or `max_turn_deg`.
 [[nodiscard]] PlaneAlignment align_point_to_plane(std::span<const Eigen::Vector3f> source,
                                                   const LocalMap& map, const PosePrior& prior, double sigma,
                                                   const ScanToMapConfig& config);

@@ -20,29 +20,6 @@ template <class P>
 using Point = Eigen::Matrix<double, kDim<P>, 1>;
 using Scalar = Eigen::Matrix<double, 1, 1>;
 
-// Newton's iteration for the polar factor, X <- (X + X^-T) / 2, keeps the sign of the determinant and doubles
-// the correct digits each time (Higham, "Functions of Matrices", section 8.3); what is far from a rotation or
-// turned inside out takes the decomposition.
-Matrix3 nearest_rotation(const Matrix3& m) {
-  constexpr int kRounds = 10;
-  // Least squares shrinks the matrices where the graph is loose; scaled to volume 1 they are near rotations.
-  const double volume = m.determinant();
-  Matrix3 X = volume > 0.0 ? Matrix3(m / std::cbrt(volume)) : m;
-  for (int i = 0; i < kRounds && X.determinant() > 0.1; ++i) {
-    const Matrix3 next = 0.5 * (X + X.inverse().transpose());
-    const double change = (next - X).squaredNorm();
-    X = next;
-    if (change < 1e-26) return X;
-  }
-  auto [u, singular_values, v] = svd(m);
-  if ((u * v.transpose()).determinant() < 0.0) u.col(2) *= -1.0;
-  return u * v.transpose();
-}
-Eigen::Matrix2d nearest_rotation(const Eigen::Matrix2d& m) {
-  const double angle = std::atan2(m(1, 0) - m(0, 1), m(0, 0) + m(1, 1));
-  return Eigen::Rotation2Dd(angle).toRotationMatrix();
-}
-
 constexpr std::size_t kNodesPerPart = 256;  // nodes that one thread takes at a time
 
 Pose pose_of(const Matrix3& R, const Vector3& t) { return {R, t}; }
@@ -113,6 +90,29 @@ Result<std::vector<Eigen::Matrix<double, kRows, kSides>>> solve_linear(
 }
 
 }  // namespace
+
+// Newton's iteration for the polar factor, X <- (X + X^-T) / 2, keeps the sign of the determinant and doubles
+// the correct digits each time (Higham, "Functions of Matrices", section 8.3); what is far from a rotation or
+// turned inside out takes the decomposition.
+Matrix3 nearest_rotation(const Matrix3& m) {
+  constexpr int kRounds = 10;
+  // Least squares shrinks the matrices where the graph is loose; scaled to volume 1 they are near rotations.
+  const double volume = m.determinant();
+  Matrix3 X = volume > 0.0 ? Matrix3(m / std::cbrt(volume)) : m;
+  for (int i = 0; i < kRounds && X.determinant() > 0.1; ++i) {
+    const Matrix3 next = 0.5 * (X + X.inverse().transpose());
+    const double change = (next - X).squaredNorm();
+    X = next;
+    if (change < 1e-26) return X;
+  }
+  auto [u, singular_values, v] = svd(m);
+  if ((u * v.transpose()).determinant() < 0.0) u.col(2) *= -1.0;
+  return u * v.transpose();
+}
+Eigen::Matrix2d nearest_rotation(const Eigen::Matrix2d& m) {
+  const double angle = std::atan2(m(1, 0) - m(0, 1), m(0, 0) + m(1, 1));
+  return Eigen::Rotation2Dd(angle).toRotationMatrix();
+}
 
 template <class P>
 Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph,

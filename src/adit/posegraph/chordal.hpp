@@ -11,6 +11,10 @@
 
 namespace adit {
 
+/// The rotation nearest to `m` in the Frobenius norm.
+[[nodiscard]] Matrix3 nearest_rotation(const Matrix3& m);
+[[nodiscard]] Eigen::Matrix2d nearest_rotation(const Eigen::Matrix2d& m);
+
 /// Poses to start from that need no initial guess: rotations by linear least squares over unconstrained
 /// matrices, each then projected to the nearest rotation; translations by linear least squares given these.
 /// Anchors keep their poses; the poses of other nodes are ignored. Source: Carlone, Tron, Daniilidis,

@@ -23,7 +23,10 @@ Vector3 between_residual(const Pose2& T_from_to, const Pose2& T_world_from, cons
 }
 
 BetweenFactor<Pose> linearize(const Pose& T_from_to, const Pose& T_world_from, const Pose& T_world_to) {
-  const Pose estimate = T_world_from.inverse() * T_world_to;
+  return linearize(T_from_to, T_world_from.inverse() * T_world_to);
+}
+
+BetweenFactor<Pose> linearize(const Pose& T_from_to, const Pose& estimate) {
   const Pose error = T_from_to.inverse() * estimate;
   const Vector3 angle = so3::log(error.rotation());
   const Matrix3 R_to_from = T_from_to.rotation_matrix().transpose();
@@ -39,7 +42,10 @@ BetweenFactor<Pose> linearize(const Pose& T_from_to, const Pose& T_world_from, c
 }
 
 BetweenFactor<Pose2> linearize(const Pose2& T_from_to, const Pose2& T_world_from, const Pose2& T_world_to) {
-  const Pose2 estimate = T_world_from.inverse() * T_world_to;
+  return linearize(T_from_to, T_world_from.inverse() * T_world_to);
+}
+
+BetweenFactor<Pose2> linearize(const Pose2& T_from_to, const Pose2& estimate) {
   const Pose2 error = T_from_to.inverse() * estimate;
   const Eigen::Matrix2d R_to_from = T_from_to.rotation_matrix().transpose();
   BetweenFactor<Pose2> f;

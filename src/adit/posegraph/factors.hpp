@@ -29,6 +29,10 @@ struct BetweenFactor {
 [[nodiscard]] BetweenFactor<Pose2> linearize(const Pose2& T_from_to, const Pose2& T_world_from,
                                              const Pose2& T_world_to);
 
+/// The same of poses of which only T_i_j is known: residual and derivatives depend on nothing else.
+[[nodiscard]] BetweenFactor<Pose> linearize(const Pose& T_from_to, const Pose& estimate);
+[[nodiscard]] BetweenFactor<Pose2> linearize(const Pose2& T_from_to, const Pose2& estimate);
+
 /// The perturbation above.
 [[nodiscard]] Pose retract(const Pose& T, const Vector6& step);
 [[nodiscard]] Pose2 retract(const Pose2& T, const Vector3& step);

@@ -37,13 +37,19 @@ inline Fields fields_of(GncConfig& c) {
 /// It starts from loops that confirm one another (loop_clusters.hpp): least squares over the largest
 /// clusters, then all loops that this explains, in rounds of choosing loops and solving anew until they stay
 /// the same. Where loops fit better than their information says, the bound shrinks to four times what the
-/// kept ones call for. That alone settles most graphs, and never factorizes the dense matrix that random
-/// loops make. Unless it ends clearly well (odometry unbent; few loops rejected, or only small clusters;
-/// nothing come loose), graduated searches from the graph's own poses and from the least-squares solution
-/// with all loops follow, and the lowest truncated cost, the sum over odometry of chi2 plus the sum over
-/// loops of min(chi2, c^2), wins.
+/// kept ones call for, but not below what chi2 over the redundancy of the solution calls for. That alone
+/// settles most graphs, and never factorizes the dense matrix that random loops make. Unless it ends clearly
+/// well (odometry unbent; few loops rejected, or only small clusters; nothing come loose; the cycles of the
+/// solution no worse than short cycles over neighbouring loops say), graduated searches follow: from the
+/// graph's own poses, once with each piece of a cluster weighing as much as one loop, and from the
+/// least-squares solution with all loops. The most likely wins: one measure for all (loop_evidence.hpp), by
+/// which the loops of one piece are rejected at the price of one mistake.
 ///
-/// `plain` skips the paragraph above: graduated searches from the graph's own poses and from least squares
+/// Then groups of loops are tried (loop_trials.hpp). A group that the rest contradicts is rejected. A group
+/// that fits, but which the rest predicts so loosely that a false one would have fitted too, is refused where
+/// clusters of its size were false elsewhere: weight 0, listed in `Solution::refused`, with a note.
+///
+/// `plain` skips both paragraphs above: graduated searches from the graph's own poses and from least squares
 /// with all loops, each with a last solve over the loops below the bound; the lower truncated cost wins.
 /// Source: Yang, Antonante, Tzoumas, Carlone, "Graduated Non-Convexity for Robust Spatial Perception" (RA-L
 /// 2020), Proposition 4 (weights), Remark 5 (mu).

@@ -20,13 +20,24 @@ constexpr Index kLarge = 300;        // variables, from which on a shallow tree 
 
 }  // namespace
 
+Index IncrementalCholesky::new_block() {
+  if (!free_blocks_.empty()) {
+    const Index b = free_blocks_.back();
+    free_blocks_.pop_back();
+    return b;
+  }
+  blocks_.resize(blocks_.size() + d_ * d_, 0.0);
+  uses_.push_back(0);
+  return uses_.size() - 1;
+}
+
 Index IncrementalCholesky::add_variable() {
   const Index v = size();
-  diagonal_.push_back(blocks_.size() / (d_ * d_));
-  blocks_.resize(blocks_.size() + d_ * d_, 0.0);
+  diagonal_.push_back(new_block());
   neighbours_.emplace_back();
   clique_of_.push_back(kNone);
   row_of_.push_back(kNone);
+  work_.resize(work_.size() + d_, 0.0);
   touched_.push_back(v);
   return v;
 }
@@ -35,25 +46,38 @@ void IncrementalCholesky::add(Index i, Index j, const Eigen::Ref<const Eigen::Ma
   ADIT_CHECK(i < size() && j < size(), "two variables that have been added");
   const auto d = static_cast<Eigen::Index>(d_);
   const auto at = [&](Index b) { return Eigen::Map<Eigen::MatrixXd>(block(b), d, d); };
-  touched_.push_back(i);
+  dirty_.push_back(i);
   if (i == j) {
     at(diagonal_[i]) += term;
     return;
   }
-  touched_.push_back(j);
-  const auto known = std::ranges::find(neighbours_[i], j, &Neighbour::variable);
-  if (known != neighbours_[i].end()) {
-    if (known->transposed)
-      at(known->block) += term;
-    else
-      at(known->block) += term.transpose();
-    return;
+  dirty_.push_back(j);
+  auto known = std::ranges::find(neighbours_[i], j, &Neighbour::variable);
+  if (known == neighbours_[i].end()) {
+    touched_.push_back(i);
+    touched_.push_back(j);
+    const Index b = new_block();
+    neighbours_[j].push_back({i, b, false});
+    known = neighbours_[i].insert(neighbours_[i].end(), {j, b, true});
   }
-  const Index b = blocks_.size() / (d_ * d_);
-  blocks_.resize(blocks_.size() + d_ * d_);
-  at(b) = term;
-  neighbours_[i].push_back({j, b, true});
-  neighbours_[j].push_back({i, b, false});
+  ++uses_[known->block];
+  if (known->transposed)
+    at(known->block) += term;
+  else
+    at(known->block) += term.transpose();
+}
+
+void IncrementalCholesky::remove(Index i, Index j, const Eigen::Ref<const Eigen::MatrixXd>& term) {
+  add(i, j, -term);
+  if (i == j) return;
+  const auto known = std::ranges::find(neighbours_[i], j, &Neighbour::variable);
+  const Index b = known->block;
+  uses_[b] -= 2;
+  if (uses_[b] > 0) return;
+  neighbours_[i].erase(known);
+  neighbours_[j].erase(std::ranges::find(neighbours_[j], i, &Neighbour::variable));
+  std::fill_n(block(b), d_ * d_, 0.0);
+  free_blocks_.push_back(b);
 }
 
 IncrementalCholesky::Removed IncrementalCholesky::remove_touched() {
@@ -61,8 +85,8 @@ IncrementalCholesky::Removed IncrementalCholesky::remove_touched() {
   touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
   std::vector<Index> affected;
   for (const Index v : touched_) {
-    for (Index c = clique_of_[v]; c != kNone; c = cliques_[c].parent) {
-      if (std::ranges::find(affected, c) != affected.end()) break;
+    for (Index c = clique_of_[v]; c != kNone && !cliques_[c].is_marked; c = cliques_[c].parent) {
+      cliques_[c].is_marked = true;
       affected.push_back(c);
     }
   }
@@ -72,7 +96,7 @@ IncrementalCholesky::Removed IncrementalCholesky::remove_touched() {
   for (const Index c : affected) {
     std::ranges::copy_if(cliques_[c].own, std::back_inserter(removed.variables), std::not_fn(is_touched));
     for (const Index child : cliques_[c].children) {
-      if (!std::ranges::binary_search(affected, child)) removed.orphans.push_back(child);
+      if (!cliques_[child].is_marked) removed.orphans.push_back(child);
     }
   }
   for (const Index c : affected) {
@@ -87,19 +111,27 @@ IncrementalCholesky::Removed IncrementalCholesky::remove_touched() {
 
 std::optional<Index> IncrementalCholesky::refresh() {
   num_renewed_ = 0;
-  if (touched_.empty()) return std::nullopt;
-  const Removed removed = remove_touched();
-  for (Index l = 0; l < removed.variables.size(); ++l) row_of_[removed.variables[l]] = l;
-  const BlockSymbolic symbolic = analyze(removed);
-  const std::vector<Index> renewed = make_cliques(symbolic, removed.variables);
-  adopt(removed.orphans, symbolic);
-  for (const Index v : removed.variables) row_of_[v] = kNone;
-
-  sort_cliques();
-  for (const Index c : renewed) {
+  std::vector<Index> renewed;
+  if (!touched_.empty()) {
+    const Removed removed = remove_touched();
+    for (Index l = 0; l < removed.variables.size(); ++l) row_of_[removed.variables[l]] = l;
+    const BlockSymbolic symbolic = analyze(removed);
+    renewed = make_cliques(symbolic, removed.variables);
+    adopt(removed.orphans, symbolic);
+    for (const Index v : removed.variables) row_of_[v] = kNone;
+  }
+  // Where only numbers have changed, the order of elimination stays. New cliques are above all others.
+  std::vector<Index> order = paths_to_root(dirty_);
+  dirty_.clear();
+  for (const Index c : renewed) cliques_[c].is_marked = true;
+  std::erase_if(order, [&](Index c) { return cliques_[c].is_marked; });
+  for (const Index c : renewed) cliques_[c].is_marked = false;
+  std::ranges::reverse(order);
+  order.insert(order.end(), renewed.begin(), renewed.end());
+  num_renewed_ = order.size();
+  for (const Index c : order) {
     if (const auto free = eliminate(cliques_[c])) return free;
   }
-  num_renewed_ = renewed.size();
   return std::nullopt;
 }
 
@@ -226,57 +258,6 @@ void IncrementalCholesky::add_update(const Clique& child, Clique& parent, Part p
       }
     }
   }
-}
-
-void IncrementalCholesky::sort_cliques() {
-  order_.clear();
-  for (Index c = 0; c < cliques_.size(); ++c) {
-    if (!cliques_[c].own.empty() && cliques_[c].parent == kNone) order_.push_back(c);
-  }
-  // Parents first, then turned round.
-  for (Index k = 0; k < order_.size(); ++k) {
-    const std::vector<Index>& children = cliques_[order_[k]].children;
-    order_.insert(order_.end(), children.begin(), children.end());
-  }
-  std::ranges::reverse(order_);
-}
-
-Eigen::VectorXd IncrementalCholesky::solve(const Eigen::VectorXd& right_side) const {
-  ADIT_CHECK(right_side.size() == static_cast<Eigen::Index>(size() * d_), "one row for each scalar variable");
-  ADIT_CHECK(touched_.empty(), "refresh comes first");
-  Eigen::VectorXd x = right_side;
-  std::vector<double> t;
-  const auto gather = [&](const std::vector<Index>& variables, double* to) {
-    for (const Index v : variables) to = std::copy_n(x.data() + v * d_, d_, to);
-  };
-  const auto store = [&](const Clique& clique) {
-    const double* from = t.data();
-    for (const Index v : clique.own) {
-      std::copy_n(from, d_, x.data() + v * d_);
-      from += d_;
-    }
-  };
-  const auto rows_of = [&](const Clique& clique) { return (clique.own.size() + clique.below.size()) * d_; };
-  for (const Index c : order_) {
-    const Clique& clique = cliques_[c];
-    t.assign(rows_of(clique), 0.0);
-    gather(clique.own, t.data());
-    dense::solve_lower(clique.panel.data(), t.size(), clique.own.size() * d_, t.data());
-    store(clique);
-    const double* owed = t.data() + clique.own.size() * d_;
-    for (const Index v : clique.below) {
-      for (Index i = 0; i < d_; ++i) x.data()[v * d_ + i] += *owed++;
-    }
-  }
-  for (Index k = order_.size(); k-- > 0;) {
-    const Clique& clique = cliques_[order_[k]];
-    t.resize(rows_of(clique));
-    gather(clique.own, t.data());
-    gather(clique.below, t.data() + clique.own.size() * d_);
-    dense::solve_lower_transposed(clique.panel.data(), t.size(), clique.own.size() * d_, t.data());
-    store(clique);
-  }
-  return x;
 }
 
 }  // namespace adit

@@ -174,5 +174,99 @@ TYPED_TEST(Incremental, GivesTheSameBytesWithAnyNumberOfThreads) {
   EXPECT_EQ(results.size(), 1U);
 }
 
+TEST(IncrementalCholesky, RemovedTermsLeaveNoTrace) {
+  Rng rng(11);
+  Growing g(3);
+  for (std::size_t i = 0; i < 60; ++i) {
+    g.add_variable(rng);
+    if (i > 0) g.add_term(i - 1, i, rng);
+  }
+  g.expect_solves();
+  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(g.dense.rows(), -1.0, 2.0);
+  const Eigen::VectorXd before = g.cholesky.solve(b);
+  const Eigen::Matrix3d term = 0.1 * Eigen::Matrix3d::Identity();
+  g.cholesky.add(5, 50, term);
+  g.cholesky.add(50, 5, term);
+  ASSERT_FALSE(g.cholesky.refresh());
+  EXPECT_GT((g.cholesky.solve(b) - before).norm(), 1e-3 * before.norm());
+  g.cholesky.remove(5, 50, term);
+  g.cholesky.remove(5, 50, term.transpose());
+  ASSERT_FALSE(g.cholesky.refresh());
+  EXPECT_LT((g.cholesky.solve(b) - before).norm(), 1e-9 * before.norm());
+  g.expect_solves();
+}
+
+TEST(IncrementalCholesky, QuadraticFormsAndSparseSolutionsAreThoseOfTheDenseInverse) {
+  Rng rng(12);
+  Growing g(3);
+  for (std::size_t i = 0; i < 50; ++i) {
+    g.add_variable(rng);
+    if (i > 0) g.add_term(i - 1, i, rng);
+    if (i % 9 == 8) g.add_term(rng.below(i), i, rng);
+  }
+  ASSERT_FALSE(g.cholesky.refresh());
+  Eigen::MatrixXd columns(6, 4);
+  for (double& x : columns.reshaped()) x = rng.normal();
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(g.dense.rows(), 4);
+  all.middleRows(3 * 7, 3) = columns.topRows(3);
+  all.middleRows(3 * 41, 3) = columns.bottomRows(3);
+  const Eigen::MatrixXd expected = all.transpose() * g.dense.llt().solve(all);
+  EXPECT_LT((g.cholesky.quadratic_form({7, 41}, columns) - expected).norm(), 1e-9 * expected.norm());
+
+  const IncrementalCholesky::Sparse b{{7}, {1.0, -2.0, 0.5}};
+  Eigen::VectorXd dense_b = Eigen::VectorXd::Zero(g.dense.rows());
+  dense_b.segment(21, 3) << 1.0, -2.0, 0.5;
+  const Eigen::VectorXd x = g.dense.llt().solve(dense_b);
+  for (const double threshold : {0.0, 1e-3}) {
+    const IncrementalCholesky::Sparse sparse = g.cholesky.solve(b, threshold);
+    Eigen::VectorXd found = Eigen::VectorXd::Zero(x.size());
+    for (std::size_t k = 0; k < sparse.variables.size(); ++k)
+      for (std::size_t i = 0; i < 3; ++i)
+        found(static_cast<Eigen::Index>(3 * sparse.variables[k] + i)) = sparse.rows[3 * k + i];
+    EXPECT_LT((found - x).cwiseAbs().maxCoeff(), 1e-9 + 10.0 * threshold);
+  }
+}
+
+TYPED_TEST(Incremental, EdgesTakenOutOfUseCountNoMore) {
+  using P = TypeParam;
+  Rng rng(9);
+  const auto made = test::make_graph<P>(rng, 100, 15, 0.02);
+  IncrementalOptimizer<P> optimizer;
+  feed(made.graph, optimizer, [](const auto&) {});
+  auto wrong = made.graph.edges.front();
+  wrong.from = 3;
+  wrong.to = 90;
+  wrong.kind = EdgeKind::loop;
+  const double cost = optimizer.update().cost;
+  const std::size_t e = optimizer.add_edge(wrong);
+  EXPECT_GT(optimizer.update().cost, 2.0 * cost);
+  optimizer.set_use(e, EdgeUse::out_of_use);
+  EXPECT_NEAR(optimizer.update().cost, cost, 1e-4 * cost);
+  EXPECT_FALSE(optimizer.is_used(e));
+}
+
+// What a new measurement adds to the cost is, to first order, its chi2 by the predicted covariance and its
+// own.
+TYPED_TEST(Incremental, PredictsWhatALoopWillCost) {
+  using P = TypeParam;
+  Rng rng(10);
+  const auto made = test::make_graph<P>(rng, 60, 10, 1e-3);
+  OptimizerConfig config;
+  config.relative_tolerance = 1e-10;
+  IncrementalOptimizer<P> optimizer(config);
+  feed(made.graph, optimizer, [](const auto&) {});
+  const double before = optimizer.update().cost;
+  typename BasicPoseGraph<P>::Edge loop{10, 40, made.truth[10].inverse() * made.truth[40],
+                                        1e6 * P::Jacobian::Identity(), EdgeKind::loop};
+  loop.T_from_to = retract(loop.T_from_to, test::random_tangent<P>(rng, 1e-3));
+  const std::size_t e = optimizer.add_edge(loop, EdgeUse::out_of_use);
+  (void)optimizer.update();
+  const auto prediction = optimizer.predict({e});
+  const Eigen::MatrixXd covariance = prediction.covariance + Eigen::MatrixXd(loop.information.inverse());
+  const double chi2 = prediction.residual.dot(covariance.llt().solve(prediction.residual));
+  optimizer.set_use(e, EdgeUse::in_use);
+  EXPECT_NEAR(optimizer.update().cost - before, chi2, 0.05 * chi2 + 1e-3);
+}
+
 }  // namespace
 }  // namespace adit

@@ -19,6 +19,7 @@ namespace adit {
 namespace {
 
 constexpr std::size_t kLoopsPerPart = 32;  // loops that one thread takes at a time
+constexpr std::size_t kManyCycles = 100;   // more do not make the scale surer: they share odometry
 
 // An open direction of the information becomes one of very large variance.
 template <class Matrix>
@@ -127,10 +128,13 @@ std::vector<double> best_agreements(const Neighbours& neighbours) {
   return best;
 }
 
+// Exact agreement says nothing of the noise: loops that agree to this share of the bound are copies of one
+// another.
+constexpr double kCopyShare = 1e-9;
+
 // `best`: chi2 of each loop's best agreement. Even with half of all loops false, the 40th percentile is that
-// of a true one. Exact agreement says nothing of the noise: such loops are copies of one another.
+// of a true one.
 double agreement_bound(std::vector<double> best, double bound) {
-  constexpr double kCopyShare = 1e-9;
   constexpr double kPercentile = 0.4;
   constexpr double kPercentileHeadroom = 20.0;  // true loops reach several times the percentile
   std::erase_if(best, [&](double chi2) { return chi2 < kCopyShare * bound || !std::isfinite(chi2); });
@@ -151,6 +155,87 @@ DisjointSets joined_below(double bound, const Neighbours& neighbours) {
   return sets;
 }
 
+// Of agreements between each loop and its nearest neighbour. Below the given `bound` all of them are seen;
+// at the bound the larger ones are cut off, and the median is the median of the rest.
+double scale_of(const Neighbours& neighbours, double bound, int dof, double probability) {
+  constexpr double kSureness = 1e-3;  // that as few cycles as these close so well by luck
+  std::vector<double> nearest;
+  for (const std::vector<Neighbour>& of_loop : neighbours) {
+    if (of_loop.empty()) continue;
+    const double chi2 = of_loop.front().chi2;
+    if (chi2 < bound && chi2 > kCopyShare * bound) nearest.push_back(chi2);
+  }
+  if (nearest.empty()) return 1.0;
+  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
+  std::nth_element(nearest.begin(), middle, nearest.end());
+  const bool is_cut = bound >= chi2_quantile(probability, dof);
+  const double median = chi2_quantile(is_cut ? 0.5 * probability : 0.5, dof);
+  const int redundancy = dof * static_cast<int>(std::min<std::size_t>(nearest.size(), kManyCycles));
+  return *middle / median * redundancy / chi2_quantile(kSureness, redundancy);
+}
+
+// Groups of at most `max_size` loops; pairs that agree best are joined first.
+// `misfit`: of the group that each loop stands for, the chi2 of the cycles that joined it.
+struct JoinedGroups {
+  DisjointSets sets;
+  std::vector<double> misfit;
+};
+JoinedGroups joined_best_first(double bound, std::size_t max_size, const Neighbours& neighbours) {
+  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+  for (std::size_t i = 0; i < neighbours.size(); ++i)
+    for (const Neighbour& n : neighbours[i])
+      if (n.chi2 < bound) pairs.emplace_back(n.chi2, i, n.loop);
+  std::ranges::sort(pairs);
+  DisjointSets sets(neighbours.size());
+  std::vector<std::size_t> size(neighbours.size(), 1);
+  std::vector<double> misfit(neighbours.size(), 0.0);
+  for (const auto& [chi2, i, j] : pairs) {
+    const std::size_t a = sets.find(i);
+    const std::size_t b = sets.find(j);
+    if (a == b || size[a] + size[b] > max_size) continue;
+    sets.join(a, b);
+    const std::size_t both = sets.find(a);
+    size[both] = size[a] + size[b];
+    misfit[both] = misfit[a] + misfit[b] + chi2;
+  }
+  return {std::move(sets), std::move(misfit)};
+}
+
+// The cycles that joined a piece are the best of several, and close better than chance would have it. Over
+// all pieces but copies their mean is known.
+void level_misfits(LoopClusters& clusters, int dof, double bound) {
+  double expected = 0.0;
+  double found = 0.0;
+  for (std::size_t p = 0; p < clusters.piece_sizes.size(); ++p) {
+    const double redundancy = static_cast<double>(clusters.piece_sizes[p] - 1) * dof;
+    if (clusters.piece_misfits[p] <= kCopyShare * bound * redundancy) continue;
+    expected += redundancy * clusters.scale;
+    found += clusters.piece_misfits[p];
+  }
+  if (found == 0.0) return;
+  for (double& misfit : clusters.piece_misfits) misfit *= expected / found;
+}
+
+// The group of each edge, numbered in the order of the loops, and the size of each group.
+template <class P>
+std::pair<std::vector<std::size_t>, std::vector<std::size_t>> numbered(DisjointSets sets,
+                                                                       const std::vector<Loop<P>>& loops,
+                                                                       std::size_t num_edges) {
+  std::vector<std::size_t> of_edge(num_edges, LoopClusters::kNone);
+  std::vector<std::size_t> sizes;
+  std::vector<std::size_t> number(loops.size(), LoopClusters::kNone);  // of the group that a loop represents
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    std::size_t& group = number[sets.find(i)];
+    if (group == LoopClusters::kNone) {
+      group = sizes.size();
+      sizes.push_back(0);
+    }
+    of_edge[loops[i].edge] = group;
+    ++sizes[group];
+  }
+  return {std::move(of_edge), std::move(sizes)};
+}
+
 }  // namespace
 
 template <class P>
@@ -166,20 +251,16 @@ LoopClusters loop_clusters(const BasicPoseGraph<P>& graph, const LoopClusterConf
       kLoopsPerPart);
   const double bound =
       agreement_bound(best_agreements(neighbours), chi2_quantile(config.probability, P::kDof));
-  DisjointSets sets = joined_below(bound, neighbours);
-
-  LoopClusters clusters{std::vector<std::size_t>(graph.edges.size(), LoopClusters::kNone), {}};
-  std::vector<std::size_t> number(loops.size(),
-                                  LoopClusters::kNone);  // of the cluster that a loop represents
-  for (std::size_t i = 0; i < loops.size(); ++i) {
-    std::size_t& cluster = number[sets.find(i)];
-    if (cluster == LoopClusters::kNone) {
-      cluster = clusters.sizes.size();
-      clusters.sizes.push_back(0);
-    }
-    clusters.of_edge[loops[i].edge] = cluster;
-    ++clusters.sizes[cluster];
-  }
+  LoopClusters clusters;
+  std::tie(clusters.of_edge, clusters.sizes) =
+      numbered(joined_below(bound, neighbours), loops, graph.edges.size());
+  clusters.scale = scale_of(neighbours, bound, P::kDof, config.probability);
+  JoinedGroups pieces = joined_best_first(bound, config.max_piece, neighbours);
+  std::tie(clusters.piece_of_edge, clusters.piece_sizes) = numbered(pieces.sets, loops, graph.edges.size());
+  clusters.piece_misfits.assign(clusters.piece_sizes.size(), 0.0);
+  for (std::size_t i = 0; i < loops.size(); ++i)
+    clusters.piece_misfits[clusters.piece_of_edge[loops[i].edge]] = pieces.misfit[pieces.sets.find(i)];
+  level_misfits(clusters, P::kDof, bound);
   return clusters;
 }
 

@@ -23,11 +23,23 @@ struct LoopClusterConfig {
   /// false ones agree by chance falls with the third power of the bound, and a true loop has several
   /// neighbours.
   double probability = 0.6;
+  std::size_t max_piece = 10;
 };
 struct LoopClusters {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   std::vector<std::size_t> of_edge;  ///< Cluster of each edge; kNone for odometry.
   std::vector<std::size_t> sizes;    ///< Loops in each cluster; at least 1.
+  /// Pieces of clusters, of at most `max_piece` loops: those that agree best come together first. A piece is
+  /// what one mistake may have made; two pieces of one cluster agree less surely than the loops of one piece.
+  std::vector<std::size_t> piece_of_edge;  ///< kNone for odometry.
+  std::vector<std::size_t> piece_sizes;    ///< At least 1.
+  /// chi2 that the loops of each piece cost one another, about their redundancy times `scale` for true loops
+  /// and 0 for copies of one another.
+  std::vector<double> piece_misfits;
+  /// Variance of the measurements, loops and the odometry between them, by that which their information
+  /// states: from the chi2 of the short cycles over neighbouring loops that agree, whose redundancy is known.
+  /// The median cycle, raised to what it may be at 99.9 % if there are only a few. 1 where no cycle says so.
+  double scale = 1.0;
 };
 template <class P>
 [[nodiscard]] LoopClusters loop_clusters(const BasicPoseGraph<P>& graph,

@@ -98,6 +98,56 @@ TEST(LoopClusters, LoopsThatShareOneMistakeShareACluster) {
   EXPECT_NE(clusters.front(), clusters.back());
 }
 
+TEST(LoopClusters, MeasureTheVarianceByShortCycles) {
+  for (const double noise_share : {1.0, 0.1, 0.01}) {
+    SCOPED_TRACE(noise_share);
+    Rng rng(5);
+    TwoLaps made = two_laps(rng, noise_share);
+    const double stated = noise_share * noise_share;
+    EXPECT_NEAR(std::log(loop_clusters(made.graph).scale / stated), 0.0, std::log(2.5));
+    // As many false loops, in runs of copies, do not change it.
+    for (std::size_t k = 0; k < kLap; ++k) {
+      made.graph.edges.push_back({10 * (k / 10) + k % 10, 35 + k % 10 + k / 10,
+                                  made.truth[10 * (k / 10) + k % 10].inverse() *
+                                      Pose::planar(3.0 * static_cast<double>(k / 10), 1.0, 0.5) *
+                                      made.truth[35 + k % 10 + k / 10],
+                                  Matrix6::Identity() / (kSigma * kSigma), EdgeKind::loop});
+    }
+    EXPECT_NEAR(std::log(loop_clusters(made.graph).scale / stated), 0.0, std::log(4.0));
+  }
+}
+
+TEST(LoopClusters, FewCyclesLeaveTheVarianceOpen) {
+  Rng rng(6);
+  TwoLaps made = two_laps(rng, 0.1);
+  std::size_t loop = 0;
+  std::erase_if(made.graph.edges,
+                [&](const auto& edge) { return edge.kind == EdgeKind::loop && loop++ > 1; });
+  EXPECT_GT(loop_clusters(made.graph).scale, 0.01);
+  made.graph.edges.pop_back();
+  EXPECT_EQ(loop_clusters(made.graph).scale, 1.0);
+}
+
+TEST(LoopClusters, PiecesAreSmallAndTheBestAgreeingComeTogether) {
+  Rng rng(7);
+  const TwoLaps made = two_laps(rng);
+  const LoopClusters clusters = loop_clusters(made.graph);
+  ASSERT_GE(clusters.piece_sizes.size(), kLap / 10);
+  EXPECT_EQ(clusters.piece_sizes.size(), clusters.piece_misfits.size());
+  std::vector<std::size_t> counted(clusters.piece_sizes.size(), 0);
+  double misfit = 0.0;
+  double redundancy = 0.0;
+  for (std::size_t e = 0; e < made.graph.edges.size(); ++e)
+    if (clusters.of_edge[e] != LoopClusters::kNone) ++counted.at(clusters.piece_of_edge[e]);
+  EXPECT_EQ(counted, clusters.piece_sizes);
+  for (std::size_t p = 0; p < counted.size(); ++p) {
+    EXPECT_LE(counted[p], 10U);
+    misfit += clusters.piece_misfits[p];
+    redundancy += 6.0 * static_cast<double>(counted[p] - 1);
+  }
+  EXPECT_NEAR(misfit / (redundancy * clusters.scale), 1.0, 1e-9);
+}
+
 TEST(LoopClusters, DirectionAndOrderOfEdgesDoNotMatter) {
   Rng rng(4);
   const TwoLaps made = two_laps(rng);

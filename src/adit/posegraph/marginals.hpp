@@ -12,9 +12,9 @@ namespace adit {
 
 /// Marginal covariances of node poses (right perturbation, [translation; rotation]; metres and radians), with
 /// the anchor of each component held fixed, at the linearization point graph.nodes[i].pose: put the solution
-/// in first. Factorizes once; each query then costs two sparse triangular solves per column. No command of
-/// `adit` uses it yet: it is kept for reporting the uncertainty of a map. Source: Kaess, Dellaert,
-/// "Covariance recovery from a square root information matrix for data association" (RAS 2009), section 3.
+/// in first. Factorizes once; each query then costs two sparse triangular solves per column. Source: Kaess,
+/// Dellaert, "Covariance recovery from a square root information matrix for data association" (RAS 2009),
+/// section 3.
 template <class P>
 class Marginals {
  public:

@@ -158,8 +158,10 @@ template GraphStructure structure_of(const PoseGraph2&, const Components&, const
 template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<1>>&);
 template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<2>>&);
 template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<3>>&);
+template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<4>>&);
 template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<6>>&);
 template Eigen::VectorXd times<3>(const BlockPattern&, const std::vector<double>&, const Eigen::VectorXd&);
+template Eigen::VectorXd times<4>(const BlockPattern&, const std::vector<double>&, const Eigen::VectorXd&);
 template Eigen::VectorXd times<6>(const BlockPattern&, const std::vector<double>&, const Eigen::VectorXd&);
 template NormalEquations linearize(const PoseGraph&, const GraphStructure&, const std::vector<Pose>&,
                                    const std::vector<double>&);

@@ -24,11 +24,18 @@ constexpr std::size_t kEdgesPerPart = 256;
 // A residual this small, in standard deviations squared per edge, is rounding: nothing is left to gain.
 constexpr double kRoundingCost = 1e-16;
 
-// Lambda of LM. It is 0, plain Gauss-Newton, until a step fails: damping slows the long waves of a chain
-// most, and these are what loops correct.
+// Lambda of LM, relative to the diagonal of the normal matrix. It is 0, plain Gauss-Newton, until a step
+// disappoints: damping slows the long waves of a chain most, and these are what loops correct.
 constexpr double kFirstLambda = 1e-6;
 constexpr double kSmallestLambda = 1e-11;
 constexpr double kLargestLambda = 1e8;
+
+// The gain ratio: the decrease of the cost over what the quadratic model predicted. A step is taken above
+// the first; damping grows below the second (Nocedal and Wright, "Numerical Optimization", algorithm 4.1).
+constexpr double kLeastGainRatio = 1e-3;
+constexpr double kPoorGainRatio = 0.25;
+constexpr double kFirstGrowth = 2.0;  // of lambda; doubles with each poor step in a row
+constexpr double kLargestDrop = 0.1;  // of lambda after a good step; Nielsen's third took MIT 8 steps longer
 
 // Of the steps by an earlier factor: residual left, of the linear system; rounds after which a new factor
 // pays; share of the squared residual that a round leaves where those will not do.
@@ -121,22 +128,61 @@ class Minimizer {
     if (s.cost_final <= kRoundingCost * static_cast<double>(graph_.edges.size()))
       return converge(s, "the cost is zero");
     const double predicted = predicted_decrease(*step);
-    if (!step->allFinite()) return worsen(s);
     std::vector<P> poses = stepped(s.poses, structure_, *step);
     const double cost = total_cost(graph_, poses, weights_);
     const double decrease = s.cost_final - cost;
-    // Near the minimum rounding decides the sign of the last decrease, so the model's prediction ends the
-    // search, too.
-    if (std::isfinite(cost) && (decrease > 0.0 || config_.method == SolveMethod::gauss_newton)) {
+    const bool gauss_newton = config_.method == SolveMethod::gauss_newton;
+    if (gauss_newton ? std::isfinite(cost) : decrease > kLeastGainRatio * std::max(predicted, 0.0)) {
       s.poses = std::move(poses);
       s.cost_final = cost;
       current_ = false;
-      lambda_ = decrease > 0.5 * predicted ? lower(lambda_) : lambda_;
-      if (std::abs(decrease) <= enough) converge(s, "the cost no longer falls");
-      return;
     }
-    if (predicted <= enough) return converge(s, "the cost no longer falls");
-    worsen(s);
+    if (gauss_newton) return judge_gauss_newton(s, decrease, enough);
+    judge(s, {predicted, decrease, enough});
+  }
+
+  void judge_gauss_newton(Solution<P>& s, double decrease, double enough) {
+    if (current_) {
+      s.status = SolveStatus::non_finite;
+      s.reason = "a Gauss-Newton step made the cost not finite; method lm damps such steps";
+    } else if (std::abs(decrease) <= enough) {
+      converge(s, kNoLongerFalls);
+    }
+  }
+
+  // Of one step: what the model predicted, how far the cost fell, and which decrease is too small to go on.
+  struct Gain {
+    double predicted, decrease, enough;
+  };
+
+  // Ends the search, or sets the damping of the next step. A small decrease shows a minimum only where the
+  // model holds and nothing is damped: after a small damped step, the undamped one decides.
+  void judge(Solution<P>& s, const Gain& gain) {
+    const bool is_good = gain.decrease >= kPoorGainRatio * gain.predicted;
+    const bool is_small = gain.decrease <= gain.enough;
+    // Near the minimum rounding decides the sign of the last decrease; then the prediction counts.
+    if (lambda_ == 0.0 && (gain.predicted <= gain.enough || (is_good && is_small)))
+      return converge(s, kNoLongerFalls);
+    if (!is_good) return small_when_damped_ ? converge(s, kNoLongerFalls) : raise_lambda(s);
+    small_when_damped_ = is_small;
+    if (is_small)
+      lambda_ = 0.0;
+    else
+      lower_lambda(gain.decrease / gain.predicted);
+  }
+
+  // Nielsen's rule: Madsen, Nielsen and Tingleff, equation (2.21).
+  void lower_lambda(double gain_ratio) {
+    const double x = 2.0 * gain_ratio - 1.0;
+    lambda_ *= std::max(kLargestDrop, 1.0 - x * x * x);
+    if (lambda_ < kSmallestLambda) lambda_ = 0.0;
+    growth_ = kFirstGrowth;
+  }
+
+  void raise_lambda(Solution<P>& s) {
+    lambda_ = lambda_ == 0.0 ? kFirstLambda : lambda_ * growth_;
+    growth_ *= 2.0;
+    if (lambda_ > kLargestLambda) converge(s, "no step lowers the cost");
   }
 
   // Variable that the matrix leaves free, or nothing.
@@ -183,21 +229,10 @@ class Minimizer {
            step.dot(times<P::kDof>(structure_.pattern, equations_.values, step));
   }
 
-  static double lower(double lambda) { return lambda <= kSmallestLambda ? 0.0 : lambda * 0.1; }
-
+  static constexpr const char* kNoLongerFalls = "the cost no longer falls";
   static void converge(Solution<P>& s, const char* why) {
     s.status = SolveStatus::converged;
     s.reason = why;
-  }
-
-  void worsen(Solution<P>& s) {
-    if (config_.method == SolveMethod::gauss_newton) {
-      s.status = SolveStatus::non_finite;
-      s.reason = "a Gauss-Newton step made the cost not finite; method lm damps such steps";
-      return;
-    }
-    lambda_ = lambda_ == 0.0 ? kFirstLambda : lambda_ * 10.0;
-    if (lambda_ > kLargestLambda) converge(s, "no step lowers the cost");
   }
 
   void give_up(Solution<P>& s, std::uint64_t key) {
@@ -216,6 +251,8 @@ class Minimizer {
   NormalEquations equations_;
   bool current_ = false;  // equations_ belong to the present poses
   double lambda_;
+  double growth_ = kFirstGrowth;    // factor on lambda_ after the next poor step
+  bool small_when_damped_ = false;  // the step before was good, damped, and gained too little to go on
 };
 
 // Puts the start into `solution`; false when the configuration's start does not exist.

@@ -58,6 +58,7 @@ struct Solution {
   std::string reason;                ///< Why it stopped, in one sentence.
   std::vector<std::string> notes;    ///< Remarks for the reader, e.g. that the graph has several components.
   std::vector<double> edge_weights;  ///< In [0, 1], one per edge; all 1 without `optimize_gnc`.
+  std::vector<std::size_t> refused;  ///< Loops that fit, left out by `optimize_gnc` as nothing confirms them.
 
   [[nodiscard]] bool ok() const {
     return status == SolveStatus::converged || status == SolveStatus::max_iterations;
@@ -66,9 +67,11 @@ struct Solution {
 
 /// Minimises chi2 over all poses by Gauss-Newton or Levenberg-Marquardt with sparse Cholesky factorization.
 /// The anchor of each connected component keeps its pose. `edge_weights` multiplies the information of each
-/// edge (empty: all 1); edges of weight 0 are left out and connect nothing. The same bytes with any number of
-/// threads. Throws ContractViolation when an edge names a node that does not exist. Source: Madsen, Nielsen,
-/// Tingleff, "Methods for non-linear least squares problems" (2004).
+/// edge (empty: all 1); edges of weight 0 are left out and connect nothing. Levenberg-Marquardt accepts steps
+/// and sets its damping by the gain ratio, and takes a small decrease for the minimum only where nothing is
+/// damped. The same bytes with any number of threads. Throws ContractViolation when an edge names a node that
+/// does not exist. Source: Madsen, Nielsen, Tingleff, "Methods for non-linear least squares problems" (2004),
+/// section 3.2.
 template <class P>
 [[nodiscard]] Solution<P> optimize(const BasicPoseGraph<P>& graph, const OptimizerConfig& config = {},
                                    const std::vector<double>& edge_weights = {});

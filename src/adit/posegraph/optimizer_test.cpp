@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <limits>
 
 #include "adit/core/check.hpp"
@@ -80,6 +81,42 @@ void expect_same_minimum_as_dense() {
 }
 TEST(Optimizer, FindsTheMinimumOfDenseGaussNewtonInSpace) { expect_same_minimum_as_dense<Pose>(); }
 TEST(Optimizer, FindsTheMinimumOfDenseGaussNewtonInThePlane) { expect_same_minimum_as_dense<Pose2>(); }
+
+// From random poses many steps gain far less than their model predicts, and the shorter a step is damped the
+// less it gains: neither shows a minimum.
+template <class P>
+void expect_nothing_left_to_gain(double initial_damping) {
+  int num_judged = 0;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Rng rng(seed);
+    auto graph = test::make_graph<P>(rng, 12, 12, 0.05).graph;
+    for (std::size_t i = 1; i < graph.nodes.size(); ++i) graph.nodes[i].pose = test::random_pose<P>(rng, 3.0);
+    OptimizerConfig config;
+    config.initialization = SolveStart::given;
+    config.initial_damping = initial_damping;
+    config.max_iterations = 1000;
+    const auto solution = optimize(graph, config);
+    ASSERT_EQ(solution.status, SolveStatus::converged) << solution.reason;
+    // Where some residual is half a turn the cost has a kink, in which a search may end rightly.
+    const bool in_kink = std::ranges::any_of(graph.edges, [&](const auto& edge) {
+      const auto r = between_residual(edge.T_from_to, solution.poses[edge.from], solution.poses[edge.to]);
+      return r.template tail < P::kDof == 6 ? 3 : 1 > ().norm() > 3.1;
+    });
+    if (in_kink) continue;
+    ++num_judged;
+    Eigen::VectorXd g;
+    const Eigen::MatrixXd H = dense_hessian(graph, solution.poses, g);
+    const double to_gain = g.dot(H.llt().solve(g));
+    EXPECT_LT(to_gain, 10.0 * config.relative_tolerance * solution.cost_final + 1e-12) << seed;
+  }
+  EXPECT_GT(num_judged, 20);
+}
+TEST(Optimizer, EndsWhereTheModelHasNothingLeftToGain) {
+  for (const double initial_damping : {0.0, 1.0, 1e6}) {
+    expect_nothing_left_to_gain<Pose>(initial_damping);
+    expect_nothing_left_to_gain<Pose2>(initial_damping);
+  }
+}
 
 TEST(Optimizer, AveragesTwoMeasurementsOfOneEdgeByTheirInformation) {
   PoseGraph graph;

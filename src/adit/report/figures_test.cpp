@@ -66,6 +66,15 @@ TEST(Figures, OnlyContestedOrRefusedMergesAreDrawnAndNotTooManyOfThem) {
   EXPECT_NE(last->caption.find("3 more pairs are not drawn"), std::string::npos) << last->caption;
 }
 
+TEST(Plots, StretchesOnWhichWheelsSlippedAreMarked) {
+  LoopMap map = made_up::study().joint->loop_map;
+  EXPECT_EQ(plot_loop_map(map).find("wheels slipped"), std::string::npos);
+  map.robots[0].slips = {{map.robots[0].path[0], map.robots[0].path[1]}};
+  const std::string svg = plot_loop_map(map);
+  EXPECT_NE(svg.find("wheels slipped: 1"), std::string::npos);
+  expect_renders(svg);
+}
+
 TEST(Plots, LoopsOfEachFateHaveTheirOwnLookAndCount) {
   const std::string svg = plot_loop_map(made_up::study().joint->loop_map);
   for (const char* label : {"in use: 1", "refused: 1", "refused, weak along the tunnel: 1"})

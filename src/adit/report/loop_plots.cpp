@@ -72,14 +72,20 @@ constexpr std::array<FateStyle, 3> kFates = {{{LoopFate::weak, "refused, weak al
                                               {LoopFate::refused, "refused", Dash::dashes},
                                               {LoopFate::in_use, "in use", Dash::none}}};
 
+constexpr Rgba kSlip = {240, 150, 20};
+
 std::vector<LegendItem> legend_of(const LoopMap& map) {
   std::vector<LegendItem> items;
+  std::size_t num_slips = 0;
+  for (const LoopMap::Robot& robot : map.robots) num_slips += robot.slips.size();
   for (std::size_t i = 0; i < map.robots.size(); ++i) items.push_back({map.robots[i].name, robot_color(i)});
   std::for_each(kFates.rbegin(), kFates.rend(), [&](const FateStyle& style) {
     const auto count = std::ranges::count(map.loops, style.fate, &LoopMap::Loop::fate);
     items.push_back(
         {format("{}: {}", style.label, count), fate_color(style.fate), LegendItem::Mark::dash, style.dash});
   });
+  if (num_slips > 0)
+    items.push_back({format("wheels slipped: {}", num_slips), kSlip, LegendItem::Mark::dash});
   return items;
 }
 
@@ -149,6 +155,8 @@ std::string plot_loop_map(const LoopMap& map) {
   }
   for (std::size_t i = 0; i < map.robots.size(); ++i) {
     const LoopMap::Robot& robot = map.robots[i];
+    for (const std::vector<Vector3>& slip : robot.slips)
+      canvas.polyline(view.at(shifted(slip, maps[robot.map].shift)), {kSlip, 10.0, 0.6});
     canvas.polyline(view.at(shifted(robot.path, maps[robot.map].shift)),
                     {robot_color(i), path_width(i, map.robots.size())});
   }

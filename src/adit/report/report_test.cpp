@@ -10,6 +10,7 @@
 #include "adit/report/html_report.hpp"
 #include "adit/report/markup.hpp"
 #include "adit/report/metrics_json.hpp"
+#include "adit/report/reliability_plot.hpp"
 #include "adit/report/text_tables.hpp"
 #include "support/made_up_study.hpp"
 
@@ -143,6 +144,15 @@ TEST(HtmlReport, ASessionWithoutGroundTruthClaimsNothingAboutIt) {
   EXPECT_NE(html.find("agree; drive on until both pass a junction"), std::string::npos);
   for (const char* unknown : {"wrong loops", "In short", "Tables", "Peak memory", "study of"})
     EXPECT_EQ(html.find(unknown), std::string::npos) << unknown;
+}
+
+TEST(ReliabilityPlot, EachCurveIsALineAndIsNamed) {
+  const std::vector<ReliabilityCurve> curves = {{"loops", {{0.0, 0.0}, {0.5, 0.7}, {1.0, 1.0}}},
+                                                {"steps", {{0.0, 0.1}, {1.0, 0.9}}}};
+  const std::string svg = plot_reliability(curves);
+  EXPECT_EQ(occurrences(svg, "stroke-linejoin"), 2U);
+  EXPECT_EQ(occurrences(svg, ">loops<"), 1U);
+  EXPECT_NE(plot_reliability({}).find("</svg>"), std::string::npos);
 }
 
 TEST(HtmlReport, AnEmptyStudyIsAPageToo) {

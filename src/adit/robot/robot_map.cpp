@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 #include <utility>
 
 #include "adit/core/format.hpp"
@@ -23,6 +22,7 @@ void append_keyframe(RobotMap& to, const RobotMap& from, std::size_t k, const Ma
   keyframe.id.index = static_cast<std::uint32_t>(to.keyframes.size());
   to.keyframes.push_back(std::move(keyframe));
   to.step_covariances.push_back(covariance);
+  to.pose_noise.push_back(from.pose_noise[k]);
   to.places.push_back(from.places[k]);
   to.tunnel.push_back(from.tunnel[k]);
   to.searchable.push_back(true);
@@ -35,6 +35,8 @@ RobotMap without_tunnel_keyframes(const RobotMap& map) {
   kept.viewpoint = map.viewpoint;
   kept.scan_context = map.scan_context;
   kept.odometry = map.odometry;
+  kept.slips = map.slips;
+  kept.innovations = map.innovations;
   kept.num_degenerate = map.num_degenerate;
   kept.num_refused = map.num_refused;
   Matrix6 covariance = Matrix6::Zero();  // of the pose of k relative to the last keyframe that stayed
@@ -52,15 +54,6 @@ RobotMap without_tunnel_keyframes(const RobotMap& map) {
 }
 
 }  // namespace
-
-Matrix6 odometry_covariance(const OdometryNoise& noise, double distance_m) {
-  const double distance = std::max(distance_m, 0.01);
-  const double rotation = noise.rotation_deg * std::numbers::pi / 180.0;
-  Vector6 variance;
-  variance << Vector3::Constant(noise.translation * noise.translation * distance),
-      Vector3::Constant(rotation * rotation * distance);
-  return variance.asDiagonal();
-}
 
 std::string_view to_string(KeyframeSelection selection) {
   return std::ranges::find(kSelections, selection, &decltype(kSelections)::value_type::first)->second;

@@ -12,41 +12,36 @@
 
 namespace adit {
 
-/// Noise of the odometry between two keyframes, a random walk: variances grow with the distance driven, so
-/// they add up along the path whatever the spacing of the keyframes.
-struct OdometryNoise {
-  double translation = 0.05;   ///< Sigma of each axis after one metre, metres.
-  double rotation_deg = 0.15;  ///< Sigma about each axis after one metre.
-  double guessed = 5.0;        ///< Factor on both where odometry had no prediction to rely on.
+/// A stretch of time on which the wheels were not believed.
+struct SlipStretch {
+  Stamp begin;
+  Stamp end;
+  double counted_m = 0.0;  ///< By the wheels, more (or, negative, less) than the robot drove.
 };
-inline Fields fields_of(OdometryNoise& c) {
-  return {
-      {"translation", &c.translation, "m/sqrt(m)", 1e-4, 1.0, "odometry noise, translation after one metre"},
-      {"rotation_deg", &c.rotation_deg, "deg/sqrt(m)", 1e-4, 10.0,
-       "odometry noise, rotation after one metre"},
-      {"guessed", &c.guessed, "", 1.0, 100.0,
-       "factor on that noise where scans come at irregular intervals and there are no wheels"}};
-}
-
-/// Covariance of the relative pose over `distance_m` metres of odometry (right perturbation, [translation;
-/// rotation], metres and radians). Distances below 1 cm count as 1 cm.
-[[nodiscard]] Matrix6 odometry_covariance(const OdometryNoise& noise, double distance_m);
 
 /// One robot's own map: its keyframes in the order driven and the odometry that joins them. All vectors but
-/// `odometry` are as long as `keyframes`, and keyframes[k].id.index == k.
+/// `odometry`, `slips` and `innovations` are as long as `keyframes`, and keyframes[k].id.index == k.
 struct RobotMap {
   RobotId id;
   std::string name;
   Vector3 viewpoint = Vector3::Zero();  ///< Position of the LiDAR in the base frame, metres.
   std::vector<Keyframe> keyframes;
-  std::vector<Matrix6> step_covariances;  ///< Of T_{k-1}_{k} (right perturbation); entry 0 is zero.
-  ScanContextConfig scan_context;         ///< What `places` were described with.
+  /// Of the drift in T_{k-1}_{k}, right perturbation; entry 0 is zero. They add up along the path.
+  std::vector<Matrix6> step_covariances;
+  /// Of the noise of T_odom_base itself, right perturbation, which no neighbour shares. The keyframe's cloud
+  /// shares it, so that loops between clouds do not see it.
+  std::vector<Matrix6> pose_noise;
+  ScanContextConfig scan_context;  ///< What `places` were described with.
   std::vector<ScanContext> places;
   std::vector<TunnelVerdict> tunnel;
   std::vector<bool> searchable;  ///< Takes part in loop search.
   Trajectory odometry;           ///< T_odom_base of every scan.
-  int num_degenerate = 0;        ///< Odometry steps with a direction that the scan did not fix.
-  int num_refused = 0;           ///< Scans with too few points, or that diverged.
+  std::vector<SlipStretch> slips;
+  /// Of every scan that was registered and whose motion had been predicted with a covariance: the innovation
+  /// squared, normalised, over its dimension; 1 on average where that covariance is true.
+  std::vector<float> innovations;
+  int num_degenerate = 0;  ///< Odometry steps with a direction that the scan did not fix.
+  int num_refused = 0;     ///< Scans with too few points, or that diverged.
 };
 
 /// Which keyframes take part in the graph and in the loop search.

@@ -37,6 +37,7 @@ RobotMap winding_drive(const std::vector<std::uint32_t>& tunnel) {
   Pose T_odom_base = Pose::exp(random_twist(rng, 2.0));
   for (std::uint32_t k = 0; k < kKeyframes; ++k) {
     map.step_covariances.push_back(k == 0 ? Matrix6(Matrix6::Zero()) : random_covariance(rng));
+    map.pose_noise.push_back(random_covariance(rng));
     if (k > 0) T_odom_base = T_odom_base * Pose::exp(random_twist(rng, 1.0));
     const Stamp stamp{k * 100};
     map.keyframes.push_back({{map.id, k}, stamp, T_odom_base, std::make_shared<const PointCloud>()});
@@ -121,6 +122,7 @@ TEST(RobotMap, KeepingTunnelKeyframesOnlyBarsThemFromTheSearch) {
     EXPECT_EQ(kept.searchable[k], k != 2 && k != 7);
     EXPECT_TRUE(all.searchable[k]);
     EXPECT_EQ(kept.step_covariances[k], map.step_covariances[k]);
+    EXPECT_EQ(kept.pose_noise[k], map.pose_noise[k]);
   }
 }
 
@@ -130,16 +132,6 @@ TEST(RobotMap, SelectionsAreReadFromTheirNames) {
     EXPECT_EQ(keyframe_selection(to_string(selection)), selection);
   }
   EXPECT_NE(keyframe_selection("tunnel").error().message.find("tunnel_filter_keep"), std::string::npos);
-}
-
-TEST(OdometryNoise, VarianceGrowsWithTheDistanceAndNeverVanishes) {
-  const OdometryNoise noise{.translation = 0.1, .rotation_deg = 2.0};
-  const Matrix6 one = odometry_covariance(noise, 1.0);
-  EXPECT_NEAR(one(0, 0), 0.01, 1e-12);
-  EXPECT_NEAR(std::sqrt(one(5, 5)) * 180.0 / std::numbers::pi, 2.0, 1e-9);
-  EXPECT_TRUE(odometry_covariance(noise, 3.0).isApprox(3.0 * one));
-  EXPECT_EQ(odometry_covariance(noise, 0.0), odometry_covariance(noise, 0.01));
-  EXPECT_GT(odometry_covariance(noise, 0.0).determinant(), 0.0);
 }
 
 }  // namespace

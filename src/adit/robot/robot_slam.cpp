@@ -31,28 +31,47 @@ Fields fields_of(RobotSlamConfig& c) {
 
 RobotSlam::RobotSlam(RobotId id, const std::string& name, const RobotSlamConfig& config,
                      const Pose& T_base_lidar)
-    : config_(checked(config)), odometry_(config.odometry, T_base_lidar), keyframe_policy_(config.keyframes) {
+    : RobotSlam(id, name, config, T_base_lidar, make_odometry(config.odometry, T_base_lidar)) {}
+
+RobotSlam::RobotSlam(RobotId id, const std::string& name, const RobotSlamConfig& config,
+                     const Pose& T_base_lidar, std::unique_ptr<Odometry> odometry)
+    : config_(checked(config)),
+      odometry_(std::move(odometry)),
+      keyframe_policy_(config.keyframes),
+      uncertainty_(config.noise) {
   map_.id = id;
   map_.name = name;
   map_.viewpoint = T_base_lidar.translation();
   map_.scan_context = config_.scan_context;
 }
 
-RobotStep RobotSlam::process(const Scan& scan, const std::optional<WheelDelta>& wheel) {
-  const OdometryStep step = odometry_.register_scan(scan, wheel);
+RobotStep RobotSlam::process(const Scan& scan, const SensedMotion& motion) {
+  const OdometryStep step = odometry_->register_scan(scan, motion);
   map_.odometry.push_back({step.stamp, step.T_odom_base});
   map_.num_degenerate += step.status == StepStatus::degenerate ? 1 : 0;
   map_.num_refused +=
       step.status == StepStatus::too_few_points || step.status == StepStatus::diverged ? 1 : 0;
-  is_guessed_ = is_guessed_ || step.is_guess;
+  uncertainty_.add(step);
+  if (step.innovation) map_.innovations.push_back(static_cast<float>(*step.innovation));
+  note_slip(step);
   if (!keyframe_policy_.accepts(step)) return {step};
   add_keyframe(step);
-  is_guessed_ = false;
   return {step, map_.keyframes.back().id};
 }
 
+// Steps that follow one another are one stretch.
+void RobotSlam::note_slip(const OdometryStep& step) {
+  if (step.slip) {
+    const Stamp before =
+        map_.odometry.size() > 1 ? map_.odometry[map_.odometry.size() - 2].stamp : step.stamp;
+    if (map_.slips.empty() || map_.slips.back().end != before) map_.slips.push_back({before, before, 0.0});
+    map_.slips.back().end = step.stamp;
+    map_.slips.back().counted_m += *step.slip;
+  }
+}
+
 void RobotSlam::add_keyframe(const OdometryStep& step) {
-  const PointCloud full = odometry_.cloud_of_last_scan();
+  const PointCloud& full = odometry_->cloud_of_last_scan();
   Keyframe keyframe;
   keyframe.id = {map_.id, static_cast<std::uint32_t>(map_.keyframes.size())};
   keyframe.stamp = step.stamp;
@@ -60,27 +79,31 @@ void RobotSlam::add_keyframe(const OdometryStep& step) {
   PointCloud thinned = voxel_downsample(full, config_.cloud_voxel);
   thinned.time_offsets_ns.clear();  // the cloud is deskewed
   keyframe.cloud = std::make_shared<const PointCloud>(std::move(thinned));
-  map_.places.push_back(describe(full, config_.scan_context));
+  // Places are described with z upwards, however the robot stands, where it feels what is up.
+  map_.places.push_back(
+      describe(step.up ? transformed(levelled(*step.up), full) : full, config_.scan_context));
   // A cloud with too few points for a bounding box does not describe the place: it takes no part in the loop
   // search.
   map_.tunnel.push_back(
       tunnel_filter(*keyframe.cloud, config_.tunnel_filter).value_or(TunnelVerdict{Vector3::Zero(), true}));
   map_.searchable.push_back(true);
-  Matrix6 covariance = Matrix6::Zero();
-  if (!map_.keyframes.empty()) {
-    const Pose T_before_now = map_.keyframes.back().T_odom_base.inverse() * keyframe.T_odom_base;
-    covariance = odometry_covariance(config_.noise, T_before_now.translation().norm());
-    if (is_guessed_) covariance *= config_.noise.guessed * config_.noise.guessed;
-  }
-  map_.step_covariances.push_back(covariance);
+  map_.step_covariances.push_back(map_.keyframes.empty() ? Matrix6(Matrix6::Zero()) : uncertainty_.drift());
+  map_.pose_noise.push_back(uncertainty_.pose_noise());
+  uncertainty_.begin_edge();
   map_.keyframes.push_back(std::move(keyframe));
 }
 
 Result<> check_wheels(const Recording& recording, const OdometryConfig& config,
                       std::string_view without_wheels) {
-  if (!config.needs_wheels() || !recording.wheel.empty()) return {};
-  return fail(format("{}: {} needs wheel odometry and the recording has none; use {}", recording.name,
-                     to_string(config.method), without_wheels));
+  if (!config.needs_wheels()) return {};
+  if (recording.wheel.empty())
+    return fail(format("{}: {} needs wheel odometry and the recording has none; use {}", recording.name,
+                       to_string(config.method), without_wheels));
+  for (std::size_t i = 1; i < recording.num_scans(); ++i)
+    if (!sensed_before(recording, i).wheel)
+      return fail(format("{}: {} needs wheel odometry, which is silent at {:.3f} s; use {}", recording.name,
+                         to_string(config.method), recording.scan_stamps[i].seconds(), without_wheels));
+  return {};
 }
 
 Result<RobotMap> map_recording(const Recording& recording, RobotId id, const RobotSlamConfig& config,
@@ -100,11 +123,10 @@ Result<std::vector<RobotMap>> map_recording(const Recording& recording, RobotId 
     robots.emplace_back(id, recording.name, config, recording.T_base_lidar);
   }
   std::size_t num_done = 0;
-  const Result<> done =
-      for_each_scan(recording, [&](const Scan& scan, const std::optional<WheelDelta>& wheel) {
-        for (RobotSlam& robot : robots) robot.process(scan, wheel);
-        return !observer || observer(++num_done);
-      });
+  const Result<> done = for_each_scan(recording, [&](const Scan& scan, const SensedMotion& motion) {
+    for (RobotSlam& robot : robots) robot.process(scan, motion);
+    return !observer || observer(++num_done);
+  });
   if (!done) return tl::unexpected(done.error());
   std::vector<RobotMap> maps;
   for (const RobotSlam& robot : robots) {

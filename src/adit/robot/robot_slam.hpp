@@ -3,11 +3,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string_view>
 
 #include "adit/keyframes/keyframe_policy.hpp"
-#include "adit/odometry/odometry.hpp"
+#include "adit/odometry/methods.hpp"
+#include "adit/odometry/path_uncertainty.hpp"
 #include "adit/robot/robot_map.hpp"
 #include "adit/robot/scan_loop.hpp"
 
@@ -18,7 +20,7 @@ struct RobotSlamConfig {
   KeyframePolicyConfig keyframes;
   TunnelFilterConfig tunnel_filter;
   ScanContextConfig scan_context;
-  OdometryNoise noise;
+  PathNoise noise;
   double cloud_voxel = 0.15;  ///< Keyframe clouds are thinned to one point per voxel of this edge, metres.
 };
 Fields fields_of(RobotSlamConfig& config);
@@ -34,25 +36,28 @@ class RobotSlam {
  public:
   /// Throws ContractViolation when `config` is out of its documented ranges.
   RobotSlam(RobotId id, const std::string& name, const RobotSlamConfig& config, const Pose& T_base_lidar);
+  /// The same with an odometry of one's own instead of the one that `config` names.
+  RobotSlam(RobotId id, const std::string& name, const RobotSlamConfig& config, const Pose& T_base_lidar,
+            std::unique_ptr<Odometry> odometry);
 
-  /// `wheel`: the motion of the base from the scan before to this one; ignored by kiss-icp, needed by the
-  /// others.
-  RobotStep process(const Scan& scan, const std::optional<WheelDelta>& wheel);
+  /// `motion`: what other sensors measured from the scan before to this one.
+  RobotStep process(const Scan& scan, const SensedMotion& motion);
 
   [[nodiscard]] const RobotMap& map() const { return map_; }
 
  private:
+  void note_slip(const OdometryStep& step);
   void add_keyframe(const OdometryStep& step);
 
   RobotSlamConfig config_;
-  Odometry odometry_;
+  std::unique_ptr<Odometry> odometry_;
   KeyframePolicy keyframe_policy_;
-  bool is_guessed_ = false;  ///< A step since the last keyframe had no prediction.
+  PathUncertainty uncertainty_;
   RobotMap map_;
 };
 
-/// Fails where the odometry needs wheels and the recording has none. The message recommends `without_wheels`,
-/// the option that selects an odometry without wheels.
+/// Fails where the odometry needs wheels and the recording has none, or they were silent during the drive.
+/// The message recommends `without_wheels`, the option that selects an odometry without wheels.
 [[nodiscard]] Result<> check_wheels(const Recording& recording, const OdometryConfig& config,
                                     std::string_view without_wheels);
 

@@ -2,21 +2,56 @@
 // SPDX-License-Identifier: MIT
 #include "adit/robot/scan_loop.hpp"
 
+#include <algorithm>
+
 namespace adit {
 
-Result<std::optional<WheelDelta>> wheel_before(const Recording& recording, std::size_t index) {
-  if (recording.wheel.empty() || index == 0) return std::optional<WheelDelta>{};
-  return wheel_delta(recording.wheel, recording.scan_stamps[index - 1], recording.scan_stamps[index])
-      .map([](const WheelDelta& delta) { return std::optional<WheelDelta>(delta); });
+namespace {
+
+// Ten samples of a slow IMU. A robot that shakes turns by degrees in between, which nothing else measures.
+constexpr Duration kImuSilence = std::chrono::milliseconds(100);
+constexpr Duration kStart = std::chrono::milliseconds(500);
+constexpr Duration kSilence = std::chrono::seconds(1);  // robots speed up, stop and turn within that
+
+// Whether the wheels measured from `begin` to `end` without a silence.
+bool spans(const Trajectory& wheel, Stamp begin, Stamp end) {
+  if (wheel.empty() || begin < wheel.front().stamp || end > wheel.back().stamp) return false;
+  auto at = std::ranges::upper_bound(wheel, begin, {}, &StampedPose::stamp);
+  for (; at != wheel.end(); ++at) {
+    if (at->stamp - (at - 1)->stamp > kSilence) return false;
+    if (at->stamp >= end) break;
+  }
+  return true;
+}
+
+// Of the half second before the first scan or, where the IMU began later, after it.
+SensedMotion sensed_at_the_start(const Recording& recording) {
+  SensedMotion motion;
+  motion.T_base_imu = recording.T_base_imu;
+  const Stamp first = recording.scan_stamps.front();
+  motion.imu = imu_between(recording.imu, first - kStart, first, kImuSilence);
+  if (motion.imu.empty()) motion.imu = imu_between(recording.imu, first, first + kStart, kImuSilence);
+  return motion;
+}
+
+}  // namespace
+
+SensedMotion sensed_before(const Recording& recording, std::size_t index) {
+  if (index == 0) return sensed_at_the_start(recording);
+  const Stamp begin = recording.scan_stamps[index - 1];
+  const Stamp end = recording.scan_stamps[index];
+  SensedMotion motion;
+  if (spans(recording.wheel, begin, end)) motion.wheel = wheel_delta(recording.wheel, begin, end).value();
+  motion.imu = imu_between(recording.imu, begin, end, kImuSilence);
+  motion.T_base_imu = recording.T_base_imu;
+  return motion;
 }
 
 Result<> for_each_scan(const Recording& recording, const ScanVisitor& visit) {
   for (std::size_t i = 0; i < recording.num_scans(); ++i) {
     const Result<Scan> scan = recording.read_scan(i);
     if (!scan) return fail(recording.name, scan.error());
-    const Result<std::optional<WheelDelta>> wheel = wheel_before(recording, i);
-    if (!wheel) return fail(recording.name, wheel.error());
-    if (!visit(*scan, *wheel)) return fail(recording.name + ": interrupted");
+    if (!visit(*scan, sensed_before(recording, i))) return fail(recording.name + ": interrupted");
   }
   return {};
 }

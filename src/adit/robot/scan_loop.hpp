@@ -4,21 +4,22 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 
 #include "adit/core/records.hpp"
 
 namespace adit {
 
-/// The wheel motion from scan `index` - 1 to `index`; none for the first scan and for recordings without
-/// wheels.
-[[nodiscard]] Result<std::optional<WheelDelta>> wheel_before(const Recording& recording, std::size_t index);
+/// What the other sensors measured from scan `index` - 1 to `index`; for the first
+/// scan, what the IMU felt in the half second around it. Wheels that
+/// begin later, end earlier or were silent for more than a second in between say nothing of that interval; an
+/// IMU neither, for which a silence begins after 0.1 s.
+[[nodiscard]] SensedMotion sensed_before(const Recording& recording, std::size_t index);
 
-/// Takes a scan and the wheel motion since the scan before (as `wheel_before`); returns false to stop.
-using ScanVisitor = std::function<bool(const Scan& scan, const std::optional<WheelDelta>& wheel)>;
+/// Takes a scan and what was measured since the scan before (as `sensed_before`); returns false to stop.
+using ScanVisitor = std::function<bool(const Scan& scan, const SensedMotion& motion)>;
 
 /// Hands every scan of the recording to `visit`, in order; each is read once. Fails, naming the recording,
-/// when a scan cannot be read, when the wheel odometry does not span it, and when `visit` stops it.
+/// when a scan cannot be read, and when `visit` stops it.
 [[nodiscard]] Result<> for_each_scan(const Recording& recording, const ScanVisitor& visit);
 
 }  // namespace adit

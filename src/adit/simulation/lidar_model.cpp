@@ -13,6 +13,7 @@
 #include "adit/core/parallel.hpp"
 #include "adit/core/rng.hpp"
 #include "adit/core/simd.hpp"
+#include "adit/simulation/scan_pattern.hpp"
 
 namespace adit {
 namespace {
@@ -50,6 +51,45 @@ LidarConfig vlp16() {
   return with_noise(with_range(with_columns(c, 1800), 0.5, 100.0), 0.03, 0.03);
 }
 
+LidarConfig os1_64_front() {
+  LidarConfig c = with_noise(with_range(ouster("os1-64-front", 64, 22.5), 0.5, 120.0), 0.007, 0.05);
+  c.azimuth_min_deg = -45.0;
+  c.azimuth_max_deg = 45.0;
+  return c;
+}
+
+LidarConfig livox(const std::string& name, LidarPattern pattern, int shots_per_column) {
+  LidarConfig c;
+  c.name = name;
+  c.pattern = pattern;
+  c.columns = 400;  // 0.25 ms each
+  c.beams = shots_per_column;
+  return with_noise(c, 0.02, 0.02);
+}
+
+LidarConfig mid40() {
+  LidarConfig c = livox("livox-mid-40", LidarPattern::rosette, 25);
+  c.elevation_min_deg = -19.2;
+  c.elevation_max_deg = 19.2;
+  return with_range(c, 1.0, 260.0);
+}
+
+LidarConfig avia() {
+  LidarConfig c = livox("livox-avia", LidarPattern::rosette, 60);
+  c.elevation_min_deg = -36.0;
+  c.elevation_max_deg = 36.0;
+  return with_range(c, 1.0, 320.0);
+}
+
+LidarConfig mid360() {
+  LidarConfig c = livox("livox-mid-360", LidarPattern::wave, 50);
+  c.elevation_min_deg = -7.0;
+  c.elevation_max_deg = 52.0;
+  c.first_rpm = 1813.0;
+  c.second_rpm = 11057.0;
+  return with_range(c, 0.1, 70.0);
+}
+
 // Fields of view, ranges and range noise after the makers' data sheets.
 std::vector<LidarConfig> presets() {
   return {ouster("os2-128", 128, 11.25),
@@ -59,7 +99,11 @@ std::vector<LidarConfig> presets() {
           with_noise(with_range(ouster("os1-64", 64, 22.5), 0.5, 120.0), 0.007, 0.05),
           with_noise(with_range(ouster("os1-128", 128, 22.5), 0.5, 120.0), 0.007, 0.05),
           with_noise(with_range(ouster("os0-128", 128, 45.0), 0.3, 50.0), 0.008, 0.04),
-          vlp16()};
+          vlp16(),
+          os1_64_front(),
+          mid40(),
+          avia(),
+          mid360()};
 }
 
 // For 0 <= x <= 1, to 1e-6 (Abramowitz and Stegun, 4.4.46). The C library's is not vectorized.
@@ -139,7 +183,7 @@ ADIT_WIDE_VECTORS void measure(const Returns& returns, const Chance& chance,
 // All that is the same for every scan of one sensor, in the units of the inner loop.
 class Sensor {
  public:
-  explicit Sensor(const LidarConfig& c) : returns_(c) {
+  explicit Sensor(const LidarConfig& c) : config_(c), returns_(c) {
     const double step = c.beams > 1 ? (c.elevation_max_deg - c.elevation_min_deg) / (c.beams - 1) : 0.0;
     for (int beam = 0; beam < c.beams; ++beam) {
       const double elevation = (c.elevation_max_deg - step * beam) * kDegree;
@@ -150,6 +194,16 @@ class Sensor {
 
   [[nodiscard]] std::size_t num_beams() const { return cosines_.size(); }
   [[nodiscard]] const Returns& returns() const { return returns_; }
+
+  /// The directions of shots from `first` on, `step` apart, of a pattern that does not repeat.
+  void look(Stamp first, Duration step, std::size_t num, RayBlock::Vectors& directions) const {
+    for (std::size_t i = 0; i < num; ++i) {
+      const Vector3 direction = pattern_direction(config_, first + static_cast<std::int64_t>(i) * step);
+      directions.x[i] = static_cast<float>(direction.x());
+      directions.y[i] = static_cast<float>(direction.y());
+      directions.z[i] = static_cast<float>(direction.z());
+    }
+  }
 
   /// The directions of beams at an azimuth, in the lidar frame.
   void look(double azimuth, std::size_t first_beam, std::size_t num, RayBlock::Vectors& directions) const {
@@ -163,6 +217,7 @@ class Sensor {
   }
 
  private:
+  LidarConfig config_;
   std::vector<float> cosines_;  // of the elevations of the beams
   std::vector<float> sines_;
   Returns returns_;
@@ -175,10 +230,31 @@ struct Turn {
   Vector6 twist = (sweep.T_world_lidar_start.inverse() * sweep.T_world_lidar_end).log();
 
   [[nodiscard]] Pose T_world_lidar(int column) const {
-    return sweep.T_world_lidar_start * Pose::exp(twist * (double(column + 1) / config.columns));
+    const double share = double(column + 1) / config.columns;
+    const std::vector<Pose>& between = sweep.T_world_lidar_between;
+    if (between.empty()) return sweep.T_world_lidar_start * Pose::exp(twist * share);
+    const double place = share * static_cast<double>(between.size() + 1);
+    const auto piece = std::min(static_cast<std::size_t>(place), between.size());
+    const Pose& from = piece == 0 ? sweep.T_world_lidar_start : between[piece - 1];
+    const Pose& to = piece == between.size() ? sweep.T_world_lidar_end : between[piece];
+    return interpolate(from, to, place - static_cast<double>(piece));
   }
   [[nodiscard]] double azimuth(int column) const {
     return std::numbers::pi - 2.0 * std::numbers::pi * column / config.columns;
+  }
+  [[nodiscard]] bool is_dark(int column) const {
+    const bool sees_all = config.azimuth_min_deg <= -180.0 && config.azimuth_max_deg >= 180.0;
+    if (config.pattern != LidarPattern::spinning || sees_all) return false;
+    return azimuth(column) < config.azimuth_min_deg * kDegree ||
+           azimuth(column) > config.azimuth_max_deg * kDegree;
+  }
+  /// From shot to shot of a pattern that does not repeat.
+  [[nodiscard]] Duration shot_time() const {
+    return sweep_time(config) / (static_cast<std::int64_t>(config.columns) * config.beams);
+  }
+  /// Of the first shot of a column, where shots follow one another.
+  [[nodiscard]] Stamp first_shot(int column) const {
+    return sweep.end - sweep_time(config) + sweep_time(config) * column / config.columns;
   }
   [[nodiscard]] std::int32_t offset_ns(int column) const {
     return static_cast<std::int32_t>(-sweep_time(config).count() * (config.columns - 1 - column) /
@@ -215,6 +291,7 @@ void append_returns(const RayBlock::Numbers& ranges, const RayBlock::Vectors& di
 
 void cast_column(const Raycaster& raycaster, const Sensor& sensor, const Turn& turn, int column,
                  PointCloud& cloud) {
+  if (turn.is_dark(column)) return;
   const Pose T_world_lidar = turn.T_world_lidar(column);
   const std::uint64_t column_seed = mix64(turn.sweep.noise_seed, static_cast<std::uint64_t>(column));
   RayBlock rays;
@@ -222,7 +299,12 @@ void cast_column(const Raycaster& raycaster, const Sensor& sensor, const Turn& t
   RayBlock::Numbers ranges;
   for (std::size_t beam = 0; beam < sensor.num_beams(); beam += rays.size) {
     rays.size = std::min(RayBlock::kCapacity, sensor.num_beams() - beam);
-    sensor.look(turn.azimuth(column), beam, rays.size, directions);
+    if (turn.config.pattern == LidarPattern::spinning) {
+      sensor.look(turn.azimuth(column), beam, rays.size, directions);
+    } else {
+      const Duration before = static_cast<std::int64_t>(beam) * turn.shot_time();
+      sensor.look(turn.first_shot(column) + before, turn.shot_time(), rays.size, directions);
+    }
     aim(T_world_lidar, directions, rays);
     raycaster.cast(rays, sensor.returns().range_max);
     const Chance chance(column_seed, beam, rays.size);
@@ -252,12 +334,26 @@ Result<> check_ascending(const std::string& what, double low, double high) {
 
 }  // namespace
 
+std::string_view to_string(LidarPattern pattern) {
+  switch (pattern) {
+    case LidarPattern::spinning:
+      return "spinning";
+    case LidarPattern::rosette:
+      return "rosette";
+    case LidarPattern::wave:
+      return "wave";
+  }
+  return "unknown";
+}
+
 Result<> check_lidar(LidarConfig config) {
   if (Result<> fields = check_fields(fields_of(config)); !fields) return fail("lidar", fields.error());
   if (config.beams > 1) {
     Result<> field = check_ascending("elevation", config.elevation_min_deg, config.elevation_max_deg);
     if (!field) return field;
   }
+  Result<> azimuth = check_ascending("azimuth", config.azimuth_min_deg, config.azimuth_max_deg);
+  if (!azimuth) return azimuth;
   if (Result<> range = check_ascending("range", config.range_min, config.range_max); !range) return range;
   return check_ascending("drop-out", config.dropout_start_deg, config.dropout_end_deg);
 }

@@ -21,6 +21,17 @@ struct Robot {
   std::uint64_t seed = 0;
   Trajectory truth;
   std::vector<Stamp> scan_stamps;
+  bool sways = false;  ///< So that a sweep is not steady.
+
+  /// Of the LiDAR within the sweep that ends then.
+  [[nodiscard]] std::vector<Pose> poses_between(Stamp end) const {
+    constexpr int kPieces = 20;  // 5 ms each at 10 Hz, as the true poses lie twice as far apart
+    std::vector<Pose> poses;
+    const Duration sweep = sweep_time(lidar);
+    for (int k = 1; sways && k < kPieces; ++k)
+      poses.push_back(*pose_at(truth, end - sweep + sweep * k / kPieces) * T_base_lidar(lidar));
+    return poses;
+  }
 
   [[nodiscard]] Result<Scan> scan(std::size_t i) const {
     if (i >= scan_stamps.size()) {
@@ -33,7 +44,8 @@ struct Robot {
     if (!T_world_start) return fail(name, T_world_start.error());
     if (!T_world_end) return fail(name, T_world_end.error());
     return cast_scan(raycaster, lidar,
-                     {*T_world_start * T_base_sensor, *T_world_end * T_base_sensor, end, mix64(seed, i)});
+                     {*T_world_start * T_base_sensor, *T_world_end * T_base_sensor, end, mix64(seed, i),
+                      poses_between(end)});
   }
 };
 
@@ -62,6 +74,8 @@ Trajectory with_poses_at(const Trajectory& truth, const std::vector<Stamp>& stam
 Result<> check(const World& world, ScenarioConfig config) {
   if (Result<> fields = check_fields(fields_of(config)); !fields) return fields;
   if (Result<> lidar = check_lidar(config.lidar); !lidar) return lidar;
+  if (Result<> wheels = check_wheels(config.wheels); !wheels) return wheels;
+  if (Result<> imu = check_imu(config.imu); !imu) return imu;
   if (world.routes.empty()) return fail(world.name + ": the world has no routes, so no robot can drive");
   std::set<std::string> names;
   for (const Route& route : world.routes) {
@@ -71,13 +85,34 @@ Result<> check(const World& world, ScenarioConfig config) {
   return {};
 }
 
-Recording recording_of(Robot robot, const WheelConfig& wheels) {
+constexpr std::uint64_t kImuStream = 0x696d75;  // numbers of their own for the IMU's errors
+
+void add_wheels(Recording& recording, const Robot& robot, const WheelConfig& wheels) {
+  if (!wheels.on) return;
+  const std::uint64_t seed = mix64(robot.seed);
+  recording.wheel = wheel_odometry(robot.truth, wheels, seed);
+  recording.faults = wheel_faults(robot.truth, wheels, seed);
+}
+
+void add_imu(Recording& recording, const Robot& robot, const ImuConfig& imu) {
+  if (!imu.on) return;
+  recording.T_base_imu = recording.T_base_lidar * T_lidar_imu(imu);
+  recording.imu_mount_source = "simulation";
+  recording.imu_name = imu.name;
+  recording.imu_covariance = covariance_of(imu);
+  recording.imu = imu_samples(robot.truth, recording.T_base_imu, imu, mix64(robot.seed, kImuStream));
+  std::ranges::copy(imu_faults(imu, robot.truth.front().stamp), std::back_inserter(recording.faults));
+  std::ranges::stable_sort(recording.faults, {}, &SensorFault::begin);
+}
+
+Recording recording_of(Robot robot, const ScenarioConfig& config) {
   Recording recording;
   recording.name = robot.name;
   recording.lidar = robot.lidar.name;
   recording.T_base_lidar = T_base_lidar(robot.lidar);
   recording.mount_source = "simulation";
-  recording.wheel = wheel_odometry(robot.truth, wheels, mix64(robot.seed));
+  add_wheels(recording, robot, config.wheels);
+  add_imu(recording, robot, config.imu);
   robot.scan_stamps = scan_stamps(robot.truth, robot.lidar);
   robot.truth = with_poses_at(robot.truth, robot.scan_stamps);
   recording.scan_stamps = robot.scan_stamps;
@@ -117,9 +152,14 @@ Result<std::vector<Recording>> simulate(const World& world, const ScenarioConfig
   if (!raycaster) return fail(world.name, raycaster.error());
   std::vector<Recording> recordings;
   for (std::size_t i = 0; i < world.routes.size(); ++i) {
-    recordings.push_back(recording_of(
-        {world.routes[i].name, *raycaster, config.lidar, mix64(config.seed, i), (*truths)[i], {}},
-        config.wheels));
+    recordings.push_back(recording_of({world.routes[i].name,
+                                       *raycaster,
+                                       config.lidar,
+                                       mix64(config.seed, i),
+                                       (*truths)[i],
+                                       {},
+                                       config.drive.sway_hz > 0.0},
+                                      config));
   }
   return recordings;
 }

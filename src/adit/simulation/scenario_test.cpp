@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "adit/core/parallel.hpp"
 #include "support/meshes.hpp"
@@ -84,6 +86,36 @@ TEST(Scenario, a_scan_deskewed_with_the_truth_lies_on_the_walls) {
   }
 }
 
+TEST(Scenario, a_walking_robot_sways_and_so_do_its_scans_and_its_imu) {
+  ScenarioConfig config = quick();
+  config.lidar.noise_near = config.lidar.noise_far = 0.0;
+  config.drive.sway_hz = 2.0;
+  config.imu = imu_preset("perfect").value();
+  const Recording r = simulated(hall(), config)[0];
+  const Recording driving = simulated(hall(), quick())[0];
+  double highest = 0.0;
+  double steepest = 0.0;
+  for (const StampedPose& pose : r.truth) {
+    highest = std::max(highest, pose.T_world_body.translation().z());
+    steepest = std::max(steepest, pose.T_world_body.log().segment<2>(3).norm());
+  }
+  EXPECT_NEAR(highest, 0.02, 0.003);
+  EXPECT_NEAR(steepest, 0.035, 0.006);
+  EXPECT_EQ(r.truth.back().T_world_body.translation(), driving.truth.back().T_world_body.translation());
+  double roll_rate = 0.0;
+  for (const ImuSample& sample : r.imu)
+    roll_rate = std::max(roll_rate, std::abs(sample.angular_velocity.x()));
+  EXPECT_NEAR(roll_rate, 0.035 * 4.0 * std::numbers::pi, 0.06);
+  const Scan scan = r.read_scan(40).value();
+  for (std::size_t k = 0; k < scan.cloud.size(); ++k) {
+    const Stamp stamp = scan.stamp + Duration(scan.cloud.time_offsets_ns[k]);
+    const Vector3 p =
+        pose_at(r.truth, stamp).value() * (r.T_base_lidar * scan.cloud.points[k].cast<double>());
+    const double off = std::min((p - kLow).cwiseAbs().minCoeff(), (p - kHigh).cwiseAbs().minCoeff());
+    ASSERT_LT(off, 5e-3);
+  }
+}
+
 TEST(Scenario, scans_are_the_same_in_any_order_on_any_thread) {
   const Recording r = simulated(hall(), quick())[0];
   std::vector<PointCloud> forwards;
@@ -113,6 +145,51 @@ TEST(Scenario, each_robot_errs_differently) {
   EXPECT_NE(twins[0].wheel.back().T_world_body.translation(),
             twins[1].wheel.back().T_world_body.translation());
   EXPECT_NE(twins[0].read_scan(9)->cloud.points, twins[1].read_scan(9)->cloud.points);
+}
+
+bool same(const Trajectory& a, const Trajectory& b) {
+  return std::ranges::equal(a, b, [](const StampedPose& x, const StampedPose& y) {
+    return x.stamp == y.stamp && (x.T_world_body.matrix() - y.T_world_body.matrix()).norm() == 0.0;
+  });
+}
+
+TEST(Scenario, the_imu_covers_every_sweep_and_sits_in_the_lidar) {
+  const Recording r = simulated(hall(), quick())[0];
+  EXPECT_EQ(r.imu_name, "icm-20948");
+  EXPECT_LT((r.T_base_imu.translation() - Vector3(0.006, -0.012, 0.908)).norm(), 1e-12);
+  EXPECT_LT(r.imu.front().stamp, r.scan_stamps.front());
+  EXPECT_GE(r.imu.back().stamp, r.scan_stamps.back());
+  EXPECT_GT(r.imu_covariance.angular_velocity(0, 0), 0.0);
+  for (std::size_t i = 1; i < r.imu.size(); ++i) ASSERT_GT(r.imu[i].stamp, r.imu[i - 1].stamp);
+}
+
+TEST(Scenario, a_sensor_less_changes_no_other) {
+  const Recording all = simulated(hall(), quick())[1];
+  ScenarioConfig config = quick();
+  config.imu.on = false;
+  const Recording no_imu = simulated(hall(), config)[1];
+  EXPECT_TRUE(no_imu.imu.empty());
+  EXPECT_TRUE(same(no_imu.wheel, all.wheel));
+  EXPECT_EQ(no_imu.read_scan(7)->cloud.points, all.read_scan(7)->cloud.points);
+  config = quick();
+  config.wheels.on = false;
+  const Recording no_wheels = simulated(hall(), config)[1];
+  EXPECT_TRUE(no_wheels.wheel.empty());
+  ASSERT_EQ(no_wheels.imu.size(), all.imu.size());
+  EXPECT_EQ(no_wheels.imu[99].specific_force, all.imu[99].specific_force);
+  EXPECT_EQ(no_wheels.read_scan(7)->cloud.points, all.read_scan(7)->cloud.points);
+  EXPECT_TRUE(same(no_wheels.truth, all.truth));
+}
+
+TEST(Scenario, faults_are_kept_for_evaluation) {
+  ScenarioConfig config = quick();
+  config.wheels.faults = "slip 3:4 0.5";
+  config.imu.faults = "silent 2:2.5";
+  const Recording r = simulated(hall(), config)[0];
+  ASSERT_EQ(r.faults.size(), 2U);
+  EXPECT_EQ(r.faults[0].sensor, "imu");
+  EXPECT_EQ(r.faults[1].sensor, "wheels");
+  EXPECT_TRUE(simulated(hall(), quick())[0].faults.empty());
 }
 
 TEST(Scenario, a_recording_outlives_the_world_it_came_from) {
@@ -152,6 +229,12 @@ TEST(Scenario, refuses_configurations_out_of_range) {
   config = quick();
   config.wheels.effective_track = -1.0;
   EXPECT_NE(error_of(hall(), config).find("wheels.effective_track"), std::string::npos);
+  config = quick();
+  config.imu.faults = "spin 1:2";
+  EXPECT_NE(error_of(hall(), config).find("imu"), std::string::npos);
+  config = quick();
+  config.wheels.faults = "slip";
+  EXPECT_NE(error_of(hall(), config).find("wheels"), std::string::npos);
   config = quick();
   config.lidar.range_max = 0.3;
   EXPECT_NE(error_of(hall(), config).find("range"), std::string::npos);

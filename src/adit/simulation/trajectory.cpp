@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "adit/core/angles.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/simulation/floor_line.hpp"
@@ -226,6 +227,30 @@ Pose pose_after(const Path& path, double driving_time) {
   return T_world_base(a, b, std::clamp(share, 0.0, 1.0));
 }
 
+// T_base_swaying: how the body of a walking robot moves against the smooth line, at a share of its full
+// speed.
+Pose sway(const DriveConfig& config, double time, double share) {
+  const double phase = 2.0 * std::numbers::pi * config.sway_hz * time;
+  const double roll = share * config.sway_roll_deg * kDegree * std::sin(phase);
+  const double pitch = share * config.sway_pitch_deg * kDegree * std::sin(2.0 * phase);
+  const double height = share * config.sway_height * 0.5 * (1.0 - std::cos(2.0 * phase));
+  return {so3::exp(Vector3(roll, pitch, 0.0)), Vector3(0.0, 0.0, height)};
+}
+
+Trajectory with_sway(Trajectory trajectory, const DriveConfig& config, double full_speed) {
+  if (config.sway_hz == 0.0) return trajectory;
+  const Trajectory smooth = trajectory;
+  for (std::size_t i = 1; i + 1 < smooth.size(); ++i) {
+    const double moved =
+        (smooth[i + 1].T_world_body.translation() - smooth[i - 1].T_world_body.translation()).norm();
+    const double seconds = to_seconds(smooth[i + 1].stamp - smooth[i - 1].stamp);
+    const double time = to_seconds(smooth[i].stamp - smooth.front().stamp);
+    trajectory[i].T_world_body =
+        smooth[i].T_world_body * sway(config, time, std::min(1.0, moved / seconds / full_speed));
+  }
+  return trajectory;
+}
+
 Trajectory sampled(const Path& path, const DriveConfig& config, Stamp start) {
   Trajectory trajectory;
   const double duration = config.stand_time + path.back().time;
@@ -247,7 +272,7 @@ Result<Trajectory> drive(const Raycaster& raycaster, const Route& route, const D
   if (const Result<> turns = unwrap_yaw(path, route.name); !turns) return tl::unexpected(turns.error());
   follow_floor(raycaster, config, path);
   set_speeds(config, route.speed_mps, path);
-  return sampled(path, config, start);
+  return with_sway(sampled(path, config, start), config, route.speed_mps);
 }
 
 }  // namespace adit

@@ -2,14 +2,90 @@
 // SPDX-License-Identifier: MIT
 #include "adit/simulation/wheel_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "adit/core/angles.hpp"
 #include "adit/core/check.hpp"
 #include "adit/core/rng.hpp"
+#include "adit/simulation/faults.hpp"
 
 namespace adit {
 namespace {
+
+constexpr std::string_view kSlip = "slip";
+constexpr std::string_view kSpin = "spin";
+constexpr std::string_view kLift = "lift";
+constexpr std::string_view kFreeze = "freeze";
+constexpr std::string_view kJump = "jump";
+constexpr std::string_view kSilence = "silent";
+constexpr std::array kWheelFaults{FaultKind{kSlip, FaultAmount::needed},
+                                  FaultKind{kSpin, FaultAmount::needed},
+                                  FaultKind{kLift},
+                                  FaultKind{kFreeze},
+                                  FaultKind{kJump, FaultAmount::needed},
+                                  FaultKind{kSilence}};
+constexpr std::uint64_t kBurstStream = 0x6275727374;  // numbers of their own for the bursts
+
+// What the wheels travel beside what the robot does.
+struct Disturbance {
+  double slip = 0.0;  // metres too far per metre
+  double spin = 0.0;  // metres per second
+  bool lifted = false;
+};
+
+Disturbance disturbance_at(const std::vector<SensorFault>& faults, Stamp stamp) {
+  Disturbance now;
+  for (const SensorFault& fault : faults) {
+    if (stamp < fault.begin || stamp >= fault.end) continue;
+    if (fault.kind == kSlip) now.slip += fault.amount;
+    if (fault.kind == kSpin) now.spin += fault.amount;
+    if (fault.kind == kLift) now.lifted = true;
+  }
+  return now;
+}
+
+// The wheels' share of a true motion.
+struct Roll {
+  double ahead;
+  double turn;
+};
+
+Roll disturbed(const Roll& roll, const Disturbance& now, double seconds) {
+  if (now.lifted) return {now.spin * seconds, 0.0};
+  return {roll.ahead * (1.0 + now.slip) + now.spin * seconds, roll.turn};
+}
+
+Roll wired(const Roll& roll, const WheelConfig& config) {
+  const double ahead = config.sign == WheelSign::reversed ? -config.scale : config.scale;
+  const double turn = config.sign == WheelSign::correct ? config.scale : -config.scale;
+  return {roll.ahead * ahead, roll.turn * turn};
+}
+
+// A jump moves all poses of its stretch by the same, along the heading that the robot has when it begins.
+Trajectory with_jumps(Trajectory odometry, const std::vector<SensorFault>& faults) {
+  for (const SensorFault& fault : faults) {
+    if (fault.kind != kJump) continue;
+    const auto begin = std::ranges::lower_bound(odometry, fault.begin, {}, &StampedPose::stamp);
+    const auto end = std::ranges::lower_bound(odometry, fault.end, {}, &StampedPose::stamp);
+    if (begin == odometry.end()) continue;
+    const Pose& T = begin->T_world_body;
+    const Pose moved = T * Pose::translation_of(fault.amount, 0.0, 0.0) * T.inverse();
+    for (auto at = begin; at != end; ++at) at->T_world_body = moved * at->T_world_body;
+  }
+  return odometry;
+}
+
+// What becomes of the odometry between the wheels and the recording.
+Trajectory reported(const Trajectory& odometry, const std::vector<SensorFault>& faults, Duration offset) {
+  Trajectory out;
+  for (const StampedPose& pose : with_jumps(odometry, faults)) {
+    if (is_faulty(faults, kSilence, pose.stamp)) continue;
+    const bool is_frozen = is_faulty(faults, kFreeze, pose.stamp) && !out.empty();
+    out.push_back({pose.stamp + offset, is_frozen ? out.back().T_world_body : pose.T_world_body});
+  }
+  return out;
+}
 
 std::vector<Stamp> odometry_stamps(const Trajectory& truth, double rate_hz) {
   std::vector<Stamp> stamps;
@@ -80,8 +156,51 @@ class Wheels {
 
 }  // namespace
 
+std::string_view to_string(WheelSign sign) {
+  switch (sign) {
+    case WheelSign::correct:
+      return "correct";
+    case WheelSign::reversed:
+      return "reversed";
+    case WheelSign::swapped:
+      return "swapped";
+  }
+  return "unknown";
+}
+
+Result<> check_wheels(WheelConfig config) {
+  if (Result<> fields = check_fields(fields_of(config)); !fields) return fail("wheels", fields.error());
+  const auto faults = parse_faults(config.faults, "wheels", kWheelFaults, Stamp{});
+  if (!faults) return fail("wheels", faults.error());
+  if (config.burst_min <= config.burst_max) return {};
+  return fail("wheels: burst_min must not be above burst_max");
+}
+
+std::vector<SensorFault> wheel_faults(const Trajectory& truth, const WheelConfig& config,
+                                      std::uint64_t seed) {
+  ADIT_CHECK(!truth.empty(), "the true trajectory has a pose");
+  const Stamp start = truth.front().stamp;
+  Result<std::vector<SensorFault>> listed = parse_faults(config.faults, "wheels", kWheelFaults, start);
+  ADIT_CHECK(listed.has_value(), "the wheels' configuration passes check_wheels");
+  std::vector<SensorFault> faults = std::move(*listed);
+  Rng rng(mix64(seed, kBurstStream));
+  const double minutes_between = 1.0 / std::max(config.burst_rate, 1e-9);
+  // Exponential pauses: bursts come at any time with the same probability.
+  const auto pause = [&] {
+    return from_seconds(std::min(1e9, -60.0 * minutes_between * std::log1p(-rng.uniform())));
+  };
+  for (Stamp begin = start + pause(); begin < truth.back().stamp; begin = faults.back().end + pause()) {
+    const Duration lasting = from_seconds(config.burst_time * rng.uniform(0.5, 1.5));
+    faults.push_back({"wheels", std::string(kSlip), begin, begin + lasting,
+                      rng.uniform(config.burst_min, config.burst_max)});
+  }
+  std::ranges::stable_sort(faults, {}, &SensorFault::begin);
+  return faults;
+}
+
 Trajectory wheel_odometry(const Trajectory& truth, const WheelConfig& config, std::uint64_t seed) {
   ADIT_CHECK(!truth.empty(), "the true trajectory has a pose");
+  const std::vector<SensorFault> faults = wheel_faults(truth, config, seed);
   Wheels wheels(config, seed);
   Pose2 T_odom_base;
   StampedPose last = truth.front();
@@ -90,12 +209,16 @@ Trajectory wheel_odometry(const Trajectory& truth, const WheelConfig& config, st
     const StampedPose now{stamp, *pose_at(truth, stamp)};
     const Vector6 motion = (last.T_world_body.inverse() * now.T_world_body).log();
     const double seconds = to_seconds(now.stamp - last.stamp);
-    if (seconds > 0.0) T_odom_base = T_odom_base * wheels.roll(motion[0], motion[5], seconds);
+    if (seconds > 0.0) {
+      const Roll rolled = disturbed({motion[0], motion[5]}, disturbance_at(faults, last.stamp), seconds);
+      const Roll counted = wired(rolled, config);
+      T_odom_base = T_odom_base * wheels.roll(counted.ahead, counted.turn, seconds);
+    }
     const Eigen::Vector2d& p = T_odom_base.translation();
     odometry.push_back({stamp, Pose::planar(p.x(), p.y(), T_odom_base.theta())});
     last = now;
   }
-  return odometry;
+  return reported(odometry, faults, from_seconds(config.time_offset));
 }
 
 }  // namespace adit

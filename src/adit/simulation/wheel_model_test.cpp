@@ -156,6 +156,119 @@ TEST(WheelModel, turns_are_wrong_by_a_constant_share) {
   }
 }
 
+WheelConfig with_faults(const std::string& faults) {
+  WheelConfig c = perfect();
+  c.faults = faults;
+  return c;
+}
+
+/// Metres ahead from `begin` to `end`, seconds after the start of a steady drive.
+double travelled(const Trajectory& wheel, double begin, double end) {
+  const Stamp start{1'000'000'000};
+  return (pose_at(wheel, start + from_seconds(begin)).value().inverse() *
+          pose_at(wheel, start + from_seconds(end)).value())
+      .translation()
+      .x();
+}
+
+TEST(WheelModel, faults_last_as_long_as_they_are_said_to) {
+  const Trajectory truth = steady(1.0, 0.0, 10.0);
+  const auto drive = [&](const std::string& faults) { return wheel_odometry(truth, with_faults(faults), 1); };
+  const Trajectory slip = drive("slip 2:4 0.5");
+  EXPECT_NEAR(travelled(slip, 0, 2), 2.0, 1e-9);
+  EXPECT_NEAR(travelled(slip, 2, 4), 3.0, 1e-9);
+  EXPECT_NEAR(travelled(slip, 4, 10), 6.0, 1e-9);
+  EXPECT_NEAR(travelled(drive("spin 2:4 0.7"), 2, 4), 3.4, 1e-9);
+  const Trajectory lift = drive("lift 2:4");
+  EXPECT_EQ(travelled(lift, 2, 4), 0.0);
+  EXPECT_NEAR(travelled(lift, 0, 10), 8.0, 1e-9);
+  const Trajectory freeze = drive("freeze 2:4");
+  EXPECT_EQ(travelled(freeze, 2, 3.9), 0.0);
+  EXPECT_NEAR(travelled(freeze, 0, 10), 10.0, 1e-9);  // the wheels counted on
+  const Trajectory jump = drive("jump 5:8 1.5");
+  EXPECT_NEAR(travelled(jump, 0, 4.98), 4.98, 1e-9);
+  EXPECT_NEAR(travelled(jump, 0, 6), 7.5, 1e-9);
+  EXPECT_NEAR(travelled(jump, 0, 10), 10.0, 1e-9);
+}
+
+TEST(WheelModel, spins_in_place_while_the_robot_stands) {
+  const Trajectory wheel = wheel_odometry(steady(0.0, 0.0, 5.0), with_faults("spin 1:3 0.8"), 1);
+  EXPECT_NEAR(travelled(wheel, 0, 5), 1.6, 1e-9);
+}
+
+TEST(WheelModel, silence_leaves_a_gap_and_nothing_else) {
+  const Trajectory truth = steady(1.0, 0.1, 10.0);
+  WheelConfig c;
+  const Trajectory whole = wheel_odometry(truth, c, 1);
+  c.faults = "silent 2:4";
+  const Trajectory wheel = wheel_odometry(truth, c, 1);
+  EXPECT_EQ(wheel.size() + 100, whole.size());
+  EXPECT_EQ(difference(wheel.back().T_world_body, whole.back().T_world_body), 0.0);
+}
+
+TEST(WheelModel, sign_scale_and_time_offset) {
+  const Trajectory truth = steady(1.0, 0.2, 10.0);
+  const Pose right = motion(wheel_odometry(truth, perfect(), 1));
+  WheelConfig c = perfect();
+  c.sign = WheelSign::reversed;
+  EXPECT_LT(difference(motion(wheel_odometry(truth, c, 1)).inverse(), Pose::exp(right.log())), 1e-9);
+  c.sign = WheelSign::swapped;
+  const Pose swapped = motion(wheel_odometry(truth, c, 1));
+  EXPECT_NEAR(swapped.yaw(), -right.yaw(), 1e-9);
+  EXPECT_NEAR(swapped.translation().x(), right.translation().x(), 1e-9);
+  c = perfect();
+  c.scale = 1.1;
+  EXPECT_LT((motion(wheel_odometry(truth, c, 1)).log() - 1.1 * right.log()).norm(), 1e-9);
+  c = perfect();
+  c.time_offset = 0.1;
+  const Trajectory late = wheel_odometry(truth, c, 1);
+  EXPECT_EQ(late.front().stamp, truth.front().stamp + from_seconds(0.1));
+  EXPECT_EQ(difference(motion(late), right), 0.0);
+}
+
+TEST(WheelModel, bursts_come_as_often_as_asked_and_their_truth_is_kept) {
+  const Trajectory truth = steady(1.0, 0.0, 1200.0);
+  WheelConfig c = perfect();
+  c.burst_rate = 3.0;
+  const std::vector<SensorFault> bursts = wheel_faults(truth, c, 1);
+  EXPECT_NEAR(static_cast<double>(bursts.size()), 55.0, 20.0);  // 20 minutes, less the bursts themselves
+  double extra = 0.0;
+  for (const SensorFault& burst : bursts) {
+    EXPECT_EQ(burst.kind, "slip");
+    EXPECT_GE(burst.amount, 0.3);
+    EXPECT_LE(burst.amount, 1.0);
+    EXPECT_GE(to_seconds(burst.end - burst.begin), 1.0);
+    EXPECT_LE(to_seconds(burst.end - burst.begin), 3.0);
+    extra += burst.amount * to_seconds(std::min(burst.end, truth.back().stamp) - burst.begin);
+  }
+  EXPECT_NEAR(path_length(wheel_odometry(truth, c, 1)), 1200.0 + extra, 1.0);
+  EXPECT_NE(wheel_faults(truth, c, 2).front().begin, bursts.front().begin);
+  EXPECT_TRUE(wheel_faults(truth, WheelConfig(), 1).empty());
+}
+
+TEST(WheelModel, faults_change_no_other_error) {
+  const Trajectory truth = steady(1.0, 0.1, 20.0);
+  WheelConfig c;
+  c.tick = 0.0;
+  const Trajectory whole = wheel_odometry(truth, c, 1);
+  c.faults = "slip 10:12 0.5";
+  const Trajectory wheel = wheel_odometry(truth, c, 1);
+  for (std::size_t i = 0; i <= 500; ++i)
+    EXPECT_EQ(difference(wheel[i].T_world_body, whole[i].T_world_body), 0.0);
+  const auto after = [](const Trajectory& t) {
+    return t[650].T_world_body.inverse() * t.back().T_world_body;
+  };
+  EXPECT_LT(difference(after(wheel), after(whole)), 1e-9);
+}
+
+TEST(WheelModel, bad_configurations_are_refused) {
+  EXPECT_TRUE(check_wheels(with_faults("lift 1:2, jump 3:4 -1")));
+  EXPECT_FALSE(check_wheels(with_faults("lift 1:2 3")));
+  WheelConfig c;
+  c.burst_min = 2.0;
+  EXPECT_FALSE(check_wheels(c));
+}
+
 TEST(WheelModel, the_seed_decides) {
   const Trajectory truth = steady(1.8, 0.05, 30.0);
   const Pose first = motion(wheel_odometry(truth, WheelConfig(), 1));

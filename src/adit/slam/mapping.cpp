@@ -8,14 +8,27 @@
 #include "adit/core/parallel.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/core/robot_ids.hpp"
+#include "adit/robot/sensor_checks.hpp"
 
 namespace adit {
 namespace {
 
-/// Falls back to KISS-ICP for a recording without wheel odometry, and notes it.
+/// The recordings with what can be used of their wheels and IMUs, and a note per finding.
+std::vector<Recording> with_sound_sensors(std::vector<Recording> recordings,
+                                          std::vector<std::string>& notes) {
+  for (Recording& recording : recordings)
+    for (const SensorFinding& finding : use_sound_sensors(recording))
+      notes.push_back(format("{}: {}", recording.name, finding.sentence));
+  return recordings;
+}
+
+/// Falls back to KISS-ICP for a recording with neither wheels nor an IMU, and notes it: plane-icp needs none
+/// either, but it loses its way where scans do not come at a steady pace.
 RobotSlamConfig config_for(const Recording& recording, RobotSlamConfig config,
                            std::vector<std::string>& notes) {
-  if (!recording.wheel.empty() || !config.odometry.needs_wheels()) return config;
+  const bool imu_suffices = !recording.imu.empty() && config.odometry.method == OdometryMethod::plane_icp;
+  if (!recording.wheel.empty() || imu_suffices || config.odometry.method == OdometryMethod::kiss_icp)
+    return config;
   notes.push_back(format("{}: no wheel odometry in this recording, so kiss-icp (LiDAR alone) instead of {}",
                          recording.name, to_string(config.odometry.method)));
   config.odometry.method = OdometryMethod::kiss_icp;
@@ -43,10 +56,12 @@ std::size_t num_scans(const std::vector<Recording>& recordings) {
   return sum;
 }
 
-Result<Mapping> map_robots(const std::vector<Recording>& recordings, const SlamConfig& config) {
-  const Result<std::vector<RobotId>> ids = robot_ids(recordings.size());
+Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig& config) {
+  const Result<std::vector<RobotId>> ids = robot_ids(given.size());
   if (!ids) return tl::unexpected(ids.error());
   Mapping mapping;
+  const std::vector<Recording> recordings =
+      config.check_sensors ? with_sound_sensors(given, mapping.notes) : given;
   std::vector<RobotSlamConfig> configs;
   for (const Recording& recording : recordings)
     configs.push_back(config_for(recording, config.robot, mapping.notes));

@@ -32,10 +32,11 @@ struct Mapping {
 };
 
 /// Maps all robots, in parallel, as one phase of progress that counts scans; may throw `Cancelled`
-/// (core/progress.hpp). A recording without wheel odometry is mapped by kiss-icp, with a note. A robot whose
+/// (core/progress.hpp). A recording without wheel odometry is mapped by kiss-icp, with a note. Wheels and
+/// IMUs are checked first (robot/sensor_checks.hpp); what is found is noted. A robot whose
 /// recording cannot be mapped stops no other: it is reported in `failed`. Fails on more than 256 recordings
 /// (ids are one byte) and where no robot is left.
-[[nodiscard]] Result<Mapping> map_robots(const std::vector<Recording>& recordings, const SlamConfig& config);
+[[nodiscard]] Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig& config);
 
 /// The number of scans of all recordings together.
 [[nodiscard]] std::size_t num_scans(const std::vector<Recording>& recordings);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "adit/slam/merge_pictures.hpp"
 #include "adit/slam/naming.hpp"
 #include "adit/slam/slam.hpp"
 #include "support/files.hpp"
@@ -54,6 +55,23 @@ TEST(Mapping, ARobotThatCannotBeMappedStopsNoOther) {
   EXPECT_EQ(mapping->failed[0].reason, "bo: scan 3 is damaged");
 }
 
+TEST(Mapping, ASensorThatWouldSpoilTheMapIsNotedUnlessChecksAreOff) {
+  Recording recording = drive("ada");
+  recording.imu_covariance = {Matrix3::Identity() * 1e-6, Matrix3::Identity() * 1e-3};
+  for (int i = 0; i <= 100; ++i)  // in g
+    recording.imu.push_back({Stamp{i * 10'000'000LL}, Vector3::Zero(), Vector3(0, 0, 1)});
+  SlamConfig config;
+  const Result<Mapping> checked = map_robots({recording}, config);
+  ASSERT_TRUE(checked) << checked.error().message;
+  ASSERT_FALSE(checked->notes.empty());
+  EXPECT_TRUE(checked->notes.front().starts_with("ada: imu: it is left out, as its acceleration is 1.00"))
+      << checked->notes.front();
+  config.check_sensors = false;
+  const Result<Mapping> unchecked = map_robots({recording}, config);
+  ASSERT_TRUE(unchecked) << unchecked.error().message;
+  for (const std::string& note : unchecked->notes) EXPECT_EQ(note.find("imu"), std::string::npos) << note;
+}
+
 TEST(Mapping, WhereNoRobotIsLeftThereIsNoMap) {
   EXPECT_ERROR(map_robots({broken("bo")}, SlamConfig{}), "bo: scan 3 is damaged");
   EXPECT_ERROR(map_robots({}, SlamConfig{}), "no recording");
@@ -70,6 +88,19 @@ TEST(Mapping, WithoutWheelsKissIcpRunsWithANote) {
   SlamConfig asked_for;
   ASSERT_TRUE(set_field(fields_of(asked_for), "robot.odometry.method", "kiss-icp"));
   EXPECT_TRUE(map_robots({drive("ada")}, asked_for)->notes.empty());
+}
+
+TEST(Mapping, WithAnImuPlaneIcpNeedsNoWheels) {
+  Recording recording = drive("ada");
+  recording.imu_covariance = {Matrix3::Identity() * 1e-6, Matrix3::Identity() * 1e-3};
+  for (int i = 0; i <= 100; ++i)
+    recording.imu.push_back({Stamp{i * 10'000'000LL}, Vector3::Zero(), Vector3(0, 0, 9.81)});
+  SlamConfig config;
+  config.check_sensors = false;
+  const Result<Mapping> mapping = map_robots({recording}, config);
+  ASSERT_TRUE(mapping.has_value()) << mapping.error().message;
+  EXPECT_EQ(mapping->robots[0].odometry, "plane-icp");
+  EXPECT_TRUE(mapping->notes.empty());
 }
 
 TEST(Mapping, MoreRobotsThanIdsAreRefused) {
@@ -110,6 +141,25 @@ TEST(Slam, ASessionStaysInItsFolderWhateverRobotsAreCalled) {
   const std::string metrics = test::get_file(folder / "out/metrics.json");
   EXPECT_NE(metrics.find("\"odometry\": \"kiss-icp\""), std::string::npos) << metrics;
   EXPECT_NE(test::get_file(folder / "out/report.html").find("odometry kiss-icp"), std::string::npos);
+}
+
+TEST(MarkSlips, MarksThePathFromTheKeyframeBeforeToTheOneAfter) {
+  LoopMap drawn;
+  drawn.robots = {{"b", 0, {}}, {"a", 0, {}}};
+  const auto map = std::make_shared<RobotMap>();
+  map->name = "a";
+  for (int k = 0; k < 5; ++k) {
+    map->keyframes.push_back({{{0}, static_cast<std::uint32_t>(k)}, Stamp{10 * k}, Pose(), nullptr});
+    drawn.robots[1].path.emplace_back(k, 0.0, 0.0);
+  }
+  map->slips = {{Stamp{12}, Stamp{28}, 1.0},
+                {Stamp{41}, Stamp{45}, 1.0}};  // the second: after the last keyframe
+  mark_slips(drawn, {map});
+  EXPECT_TRUE(drawn.robots[0].slips.empty());
+  ASSERT_EQ(drawn.robots[1].slips.size(), 2U);
+  EXPECT_EQ(drawn.robots[1].slips[0].size(), 3U);  // keyframes 1, 2, 3
+  EXPECT_EQ(drawn.robots[1].slips[0].front().x(), 1.0);
+  EXPECT_EQ(drawn.robots[1].slips[1].size(), 1U);
 }
 
 }  // namespace

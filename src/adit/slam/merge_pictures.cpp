@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "adit/fleet/joint/frames.hpp"
+#include "adit/fleet/joint/merge_accuracy.hpp"
 
 namespace adit {
 namespace {
@@ -62,6 +63,22 @@ LoopMap loop_map(const FleetGraph& fleet, const FleetSolution& solution) {
   return map;
 }
 
+void mark_slips(LoopMap& map, const std::vector<std::shared_ptr<const RobotMap>>& robots) {
+  for (LoopMap::Robot& drawn : map.robots) {
+    const auto robot = std::ranges::find(robots, drawn.name, [](const auto& r) { return r->name; });
+    if (robot == robots.end()) continue;
+    const std::vector<Keyframe>& keyframes = (*robot)->keyframes;
+    for (const SlipStretch& slip : (*robot)->slips) {
+      // From the last keyframe before it to the first one after it.
+      const auto first = std::ranges::upper_bound(keyframes, slip.begin, {}, &Keyframe::stamp);
+      const auto last = std::ranges::lower_bound(keyframes, slip.end, {}, &Keyframe::stamp);
+      const auto begin = std::max<std::ptrdiff_t>(first - keyframes.begin() - 1, 0);
+      const auto end = std::min(last - keyframes.begin() + 1, std::ssize(drawn.path));
+      if (begin < end) drawn.slips.emplace_back(drawn.path.begin() + begin, drawn.path.begin() + end);
+    }
+  }
+}
+
 std::vector<MergePicture> merge_pictures(const FleetGraph& fleet, const FleetSolution& solution) {
   std::vector<MergePicture> pictures;
   for (const auto& entry : fleet.checks) {
@@ -76,6 +93,7 @@ std::vector<MergePicture> merge_pictures(const FleetGraph& fleet, const FleetSol
     picture.verdict = !pair->merged                 ? pair->refused_reason
                       : pair->joined_reason.empty() ? check.reason
                                                     : pair->joined_reason;
+    if (pair->accuracy) picture.verdict += "; " + to_string(*pair->accuracy);
     picture.evidence_needed = check.needed;
     picture.path = odometry_of(fleet.robots.at(check.a), Pose());
     for (const MergeHypothesis& h : check.hypotheses)

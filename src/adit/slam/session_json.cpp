@@ -15,6 +15,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json slips_json(const std::vector<SlipStretch>& slips) {
+  Json json = Json::array();
+  for (const SlipStretch& slip : slips)
+    json.push_back({{"begin_ns", slip.begin.ns}, {"end_ns", slip.end.ns}, {"counted_m", slip.counted_m}});
+  return json;
+}
+
 Json robots_json(const SlamRun& run) {
   Json robots = Json::array();
   for (std::size_t i = 0; i < run.session.maps.size(); ++i) {
@@ -24,9 +31,19 @@ Json robots_json(const SlamRun& run) {
                       {"scans", map.odometry.size()},
                       {"keyframes", map.keyframes.size()},
                       {"path_length_m", path_length(map.odometry)},
+                      {"slips", slips_json(map.slips)},
                       {"bytes_sent", run.bytes_sent.at(i)}});
   }
   return robots;
+}
+
+Json accuracy_json(const std::optional<MergeAccuracy>& accuracy) {
+  if (!accuracy) return nullptr;
+  return {{"along_m", accuracy->along_m},
+          {"across_m", accuracy->across_m},
+          {"up_m", accuracy->up_m},
+          {"turn_deg", accuracy->turn_deg},
+          {"loops_in_use", accuracy->num_loops}};
 }
 
 Json pairs_json(const Session& session) {
@@ -37,6 +54,7 @@ Json pairs_json(const Session& session) {
                      {"clique", pair.num_selected},
                      {"second_clique", pair.second_clique},
                      {"merged", pair.merged},
+                     {"sigma", accuracy_json(pair.accuracy)},
                      {"refused_reason", pair.refused_reason}});
   return pairs;
 }

@@ -37,6 +37,7 @@ std::string session_page(const Session& session) {
         format("{} and {}: {}", session.name_of(pair.a), session.name_of(pair.b), pair.refused_reason));
   }
   joint.loop_map = loop_map(session.fleet, session.solution);
+  mark_slips(joint.loop_map, session.maps);
   joint.merges = merge_pictures(session.fleet, session.solution);
   return html_report(page, {}, study_figures(page));
 }

@@ -3,6 +3,7 @@
 #include "adit/slam/slam.hpp"
 
 #include "adit/core/progress.hpp"
+#include "adit/fleet/joint/merge_accuracy.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/config_toml.hpp"
 #include "adit/slam/meeting.hpp"
@@ -40,6 +41,7 @@ Result<SlamRun> slam(std::vector<Recording> recordings, const SlamConfig& config
   {
     const Phase phase("solving");
     run.session.solution = meeting->agents.front().solve(config.back_end);
+    measure_merges(run.session.solution);
   }
   run.session.maps = std::move(meeting->maps);
   run.bytes_sent = std::move(meeting->bytes_sent);

@@ -20,7 +20,9 @@ AgentConfig SlamConfig::agent() const {
 Fields fields_of(SlamConfig& c) {
   Fields fields = {enum_field("keyframes", &c.keyframes, kKeyframeSelections,
                               "which keyframes take part, and how merges are decided: adaptive tests each by "
-                              "evidence; the others are the paper's")};
+                              "evidence; the others are the paper's"),
+                   {"check_sensors", &c.check_sensors, "", 0, 0,
+                    "whether wheels and IMU that would spoil the map are repaired or left out, with a note"}};
   append(fields, "robot", fields_of(c.robot));
   append(fields, "loops", fields_of(c.loops));
   append(fields, "back_end", fields_of(c.back_end));

@@ -22,6 +22,7 @@ inline constexpr std::array kKeyframeSelections{KeyframeSelection::adaptive, Key
 /// `adaptive` does not read them.
 struct SlamConfig {
   KeyframeSelection keyframes = KeyframeSelection::adaptive;
+  bool check_sensors = true;  ///< See robot/sensor_checks.hpp.
   RobotSlamConfig robot;
   AgentConfig loops;
   BackEndConfig back_end;

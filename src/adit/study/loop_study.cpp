@@ -93,6 +93,7 @@ LoopDecision judged(const Attempt<P>& attempt, const LabelledGraph<P>& labelled,
   decision.possible_parts = reference.parts;
   decision.off_m = largest_distance_m(attempt.solution.poses, reference.poses);
   decision.is_optimal = attempt.is_optimal;
+  decision.refused = static_cast<int>(attempt.solution.refused.size());
   return decision;
 }
 
@@ -206,8 +207,9 @@ std::string summary_line(const FalseLoopRun& run) {
   for (std::size_t m = 0; m < kLoopMethods.size(); ++m) {
     line += format("  {} ", to_string(kLoopMethods[m]));
     if (const auto& decision = run.decisions[m])
-      line += format("{} false kept, {} true lost, {:.3f} m off, {:.2f} s;", decision->score.false_kept,
-                     decision->score.true_lost, decision->off_m, decision->time_s);
+      line += format("{} false kept, {} true lost, {} refused, {:.3f} m off, {:.2f} s;",
+                     decision->score.false_kept, decision->score.true_lost, decision->refused,
+                     decision->off_m, decision->time_s);
     else
       line += "-;";
   }

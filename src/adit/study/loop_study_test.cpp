@@ -179,7 +179,7 @@ FalseLoopRun made_up_run() {
   run.num_true = 40;
   run.num_false = 10;
   run.share_pct = 20;
-  run.decisions[kAdit] = LoopDecision{{37, 3, 2, 8}, 2, 1, 0.125, 1.5, false};
+  run.decisions[kAdit] = LoopDecision{{37, 3, 2, 8}, 2, 1, 0.125, 1.5, false, 4};
   run.reasons[kPcm] = "it is plane";
   return run;
 }
@@ -188,7 +188,8 @@ TEST(FalseLoopResults, OneLineHoldsTheFiguresAndADashWhereThereAreNone) {
   const std::string line = summary_line(made_up_run());
   EXPECT_NE(line.find("20 % of   50 loops false"), std::string::npos) << line;
   EXPECT_NE(line.find("plain GNC -;"), std::string::npos) << line;
-  EXPECT_NE(line.find("adit 2 false kept, 3 true lost, 0.125 m off, 1.50 s;"), std::string::npos) << line;
+  EXPECT_NE(line.find("adit 2 false kept, 3 true lost, 4 refused, 0.125 m off, 1.50 s;"), std::string::npos)
+      << line;
   EXPECT_EQ(line.find('\n'), std::string::npos);
 }
 
@@ -208,6 +209,7 @@ TEST(FalseLoopResults, JsonHoldsEveryRunInOrder) {
                                          {"true_lost", 3},
                                          {"false_kept", 2},
                                          {"false_rejected", 8},
+                                         {"refused", 4},
                                          {"parts", 2},
                                          {"possible_parts", 1},
                                          {"off_m", 0.125},

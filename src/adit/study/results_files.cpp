@@ -6,8 +6,10 @@
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/csv.hpp"
+#include "adit/study/incremental_study.hpp"
 #include "adit/study/loop_study.hpp"
 #include "adit/study/merge_run.hpp"
+#include "adit/study/uncertainty_study.hpp"
 
 namespace adit {
 namespace {
@@ -50,6 +52,7 @@ Json json_of(const std::optional<LoopDecision>& decision, const std::string& rea
           {"true_lost", decision->score.true_lost},
           {"false_kept", decision->score.false_kept},
           {"false_rejected", decision->score.false_rejected},
+          {"refused", decision->refused},
           {"parts", decision->parts},
           {"possible_parts", decision->possible_parts},
           {"off_m", decision->off_m},
@@ -63,6 +66,26 @@ Json json_of(const FalseLoopRun& run) {
   for (std::size_t m = 0; m < kLoopMethods.size(); ++m)
     json[std::string(to_string(kLoopMethods[m]))] = json_of(run.decisions[m], run.reasons[m]);
   return json;
+}
+
+Json json_of(const OverSteps& figure) {
+  return {{"mean", figure.mean}, {"worst", figure.worst}, {"last", figure.last}};
+}
+
+Json json_of(const IncrementalRun& run) {
+  return {{"graph", run.graph},
+          {"share_pct", run.share_pct},
+          {"seed", run.seed},
+          {"nodes", run.num_nodes},
+          {"true_loops", run.num_true},
+          {"false_loops", run.num_false},
+          {"precision", json_of(run.precision)},
+          {"recall", json_of(run.recall)},
+          {"ate_m", json_of(run.ate_m)},
+          {"most_false_in_use", run.most_false_in_use},
+          {"median_ms", run.median_ms},
+          {"p99_ms", run.p99_ms},
+          {"max_ms", run.max_ms}};
 }
 
 template <class T>
@@ -106,6 +129,20 @@ MergeRun run_of(const Json& json) {
   for (const Json& pair : json.at("pairs")) run.pairs.push_back(pair_of(pair));
   run.joint = joint_of(json.at("joint"));
   return run;
+}
+
+Json json_of(const UncertaintyRow& row) {
+  const Calibration& c = row.calibration;
+  Json json = {{"source", row.source}, {"count", c.count()}, {"without_covariance", c.num_unusable()}};
+  if (c.count() == 0) return json;
+  json["nees_over_dof"] = c.mean();
+  json["share_beyond_99_9"] = share_beyond_one_in_a_thousand(c);
+  if (!c.has_axes()) return json;
+  const Vector6 axes = c.mean_of_axes();
+  const Vector6 rms = c.rms();
+  json["nees_by_axis"] = std::vector<double>(axes.begin(), axes.end());
+  json["rms"] = std::vector<double>(rms.begin(), rms.end());
+  return json;
 }
 
 }  // namespace
@@ -155,6 +192,22 @@ std::string json_of(const std::vector<FalseLoopRun>& runs) {
   Json all = Json::array();
   for (const FalseLoopRun& run : runs) all.push_back(json_of(run));
   return Json{{"version", 1}, {"runs", all}}.dump(1) + "\n";
+}
+
+std::string uncertainty_json(const std::vector<MeasuredUncertainty>& measured) {
+  Json json = Json::array();
+  for (const MeasuredUncertainty& of : measured) {
+    Json sources = Json::array();
+    for (const UncertaintyRow& row : of.rows) sources.push_back(json_of(row));
+    json.push_back({{"sensors", of.sensors}, {"sources", sources}});
+  }
+  return json.dump(2) + "\n";
+}
+
+std::string json_of(const std::vector<IncrementalRun>& runs) {
+  Json all = Json::array();
+  for (const IncrementalRun& run : runs) all.push_back(json_of(run));
+  return all.dump(2) + "\n";
 }
 
 }  // namespace adit

@@ -45,9 +45,9 @@ class Drive {
   Drive(const Recording& recording, RobotId id, RobotSlamConfig config, OdometryMethod method)
       : method_(method), slam_(id, recording.name, with_method(config, method), recording.T_base_lidar) {}
 
-  void process(const Scan& scan, const std::optional<WheelDelta>& wheel) {
+  void process(const Scan& scan, const SensedMotion& motion) {
     RobotStep step;
-    const double ms = timed_ms([&] { step = slam_.process(scan, wheel); });
+    const double ms = timed_ms([&] { step = slam_.process(scan, motion); });
     if (!step.keyframe) ms_.push_back(ms);
   }
   [[nodiscard]] OdometryMethod method() const { return method_; }
@@ -76,7 +76,7 @@ class Comparison {
   void process(const Scan& scan) {
     if (!is_on_) return;
     OdometryStep step;
-    ms_.push_back(timed_ms([&] { step = odometry_.register_scan(scan); }));
+    ms_.push_back(timed_ms([&] { step = odometry_.register_scan(scan, {}); }));
     trajectory_.push_back({step.stamp, step.T_odom_base});
   }
   void add_result(const Trajectory& truth, std::vector<OdometryResult>& results) const {
@@ -100,13 +100,12 @@ Result<RobotRun> run_robot(const Recording& recording, RobotId id, const RunConf
   const bool has_kiss_icp =
       std::ranges::find(drives, OdometryMethod::kiss_icp, &Drive::method) != drives.end();
   Comparison comparison(recording, robot, !has_kiss_icp);
-  const Result<> driven =
-      for_each_scan(recording, [&](const Scan& scan, const std::optional<WheelDelta>& wheel) {
-        for (Drive& drive : drives) drive.process(scan, wheel);
-        comparison.process(scan);
-        phase.advance();
-        return true;
-      });
+  const Result<> driven = for_each_scan(recording, [&](const Scan& scan, const SensedMotion& motion) {
+    for (Drive& drive : drives) drive.process(scan, motion);
+    comparison.process(scan);
+    phase.advance();
+    return true;
+  });
   if (!driven) return tl::unexpected(driven.error());
   RobotRun run;
   run.map = std::make_shared<const RobotMap>(drives.front().map());

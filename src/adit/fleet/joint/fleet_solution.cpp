@@ -15,8 +15,7 @@ namespace adit {
 
 namespace {
 
-PoseGraph build_graph(const FleetGraph& fleet, const std::vector<const LoopOutcome*>& outcomes,
-                      const BackEndConfig& config) {
+PoseGraph build_graph(const FleetGraph& fleet, const std::vector<const LoopOutcome*>& outcomes) {
   std::vector<const LoopClosure*> loops;
   for (const LoopOutcome* outcome : outcomes) loops.push_back(&outcome->loop);
   const Frames frames = common_frames(fleet, loops);
@@ -36,8 +35,8 @@ PoseGraph build_graph(const FleetGraph& fleet, const std::vector<const LoopOutco
   for (const LoopOutcome* outcome : outcomes) {
     const LoopClosure& loop = outcome->loop;
     graph.edges.push_back({offset.at(loop.from.robot) + loop.from.index,
-                           offset.at(loop.to.robot) + loop.to.index, loop.T_from_to,
-                           loop_information(config.loop_noise), EdgeKind::loop});
+                           offset.at(loop.to.robot) + loop.to.index, loop.T_from_to, loop.information,
+                           EdgeKind::loop});
   }
   return graph;
 }
@@ -142,8 +141,8 @@ void solve_group(const FleetGraph& fleet, const std::vector<RobotId>& robots, co
       loops.push_back(&outcome);
     }
   }
-  const PoseGraph graph = build_graph(part_of(fleet, robots),
-                                      std::vector<const LoopOutcome*>(loops.begin(), loops.end()), config);
+  const PoseGraph graph =
+      build_graph(part_of(fleet, robots), std::vector<const LoopOutcome*>(loops.begin(), loops.end()));
   const Solution<Pose> solved =
       config.gnc_on ? solve_robustly(graph, config.gnc) : optimize(graph, config.gnc.optimizer);
   const std::size_t first_loop = graph.edges.size() - loops.size();
@@ -172,13 +171,12 @@ void anchor_component(const FleetGraph& fleet, const Component& component, Fleet
   }
 }
 
-PoseGraph optimized_graph(const FleetGraph& fleet, const FleetSolution& solution,
-                          const BackEndConfig& config) {
+PoseGraph optimized_graph(const FleetGraph& fleet, const FleetSolution& solution) {
   std::vector<const LoopOutcome*> used;
   for (const LoopOutcome& outcome : solution.loops) {
     if (outcome.in_use()) used.push_back(&outcome);
   }
-  PoseGraph graph = build_graph(fleet, used, config);
+  PoseGraph graph = build_graph(fleet, used);
   std::size_t node = 0;
   for (const auto& [robot, poses] : solution.T_world_keyframe) {
     for (const Pose& pose : poses) graph.nodes[node++].pose = pose;
@@ -197,10 +195,8 @@ Fields fields_of(BackEndConfig& c) {
       {"joint_evidence", &c.joint_evidence, "", 0, 0,
        "also join maps for which several pairs of robots have enough evidence only together"},
       {"min_loops", &c.min_loops, "", 1, 10000, "loops in use that two robots need to share a map"},
-      {"loop_translation", &c.loop_noise.translation, "m", 1e-4, 10.0, "sigma of a loop's translation"},
       {"one_place_m", &c.one_place_m, "m", 0.1, 1000.0,
-       "places that several pairs compared this near to one another count once"},
-      {"loop_rotation_deg", &c.loop_noise.rotation_deg, "deg", 1e-3, 90.0, "sigma of a loop's rotation"}};
+       "places that several pairs compared this near to one another count once"}};
   append(fields, "cycles", fields_of(c.cycles));
   append(fields, "pcm", fields_of(c.pcm));
   append(fields, "gnc", fields_of(c.gnc));
@@ -219,8 +215,8 @@ FleetSolution solve(const FleetGraph& fleet, const BackEndConfig& config) {
     accepted.push_back(&outcome);
     if (outcome.is_selected) consistent.push_back(&outcome);
   }
-  solution.initial = build_graph(fleet, accepted, config);
-  solution.after_pcm = build_graph(fleet, consistent, config);
+  solution.initial = build_graph(fleet, accepted);
+  solution.after_pcm = build_graph(fleet, consistent);
 
   // First all robots that consistent loops link, solved together; what remains in use then says who shares a
   // map.
@@ -239,7 +235,7 @@ FleetSolution solve(const FleetGraph& fleet, const BackEndConfig& config) {
     solution.components.back().robots = group;
     anchor_component(fleet, solution.components.back(), solution);
   }
-  solution.optimized = optimized_graph(fleet, solution, config);
+  solution.optimized = optimized_graph(fleet, solution);
   return solution;
 }
 

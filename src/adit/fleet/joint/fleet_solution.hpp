@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,6 @@ struct BackEndConfig {
   bool cycles_needed = true;   ///< as long as cycles of merges do not contradict it,
   bool joint_evidence = true;  ///< and pairs whose evidence suffices only when it is added up.
   int min_loops = 1;           ///< Loops in use between two robots before they count as merged.
-  LoopNoise loop_noise;
   CycleConfig cycles;
   double one_place_m = 4.0;  ///< Comparisons of several pairs this near to one another count once.
   PcmConfig pcm;
@@ -39,6 +39,18 @@ struct LoopOutcome {
   [[nodiscard]] bool in_use() const { return weight >= 0.5; }
 };
 
+/// How well the frame between two robots is known where they met: one standard deviation each, in the axes of
+/// the second robot, so that "along" is where it drove.
+struct MergeAccuracy {
+  double along_m = 0.0;
+  double across_m = 0.0;
+  double up_m = 0.0;
+  double turn_deg = 0.0;                 ///< About all axes together.
+  std::size_t num_loops = 0;             ///< In use between the two.
+  KeyframeId from, to;                   ///< Of the loop in the middle, where it is measured.
+  Matrix6 covariance = Matrix6::Zero();  ///< Of T_from_to, right perturbation, [translation; rotation].
+};
+
 /// What became of two robots.
 struct PairOutcome {
   RobotId a, b;
@@ -47,6 +59,7 @@ struct PairOutcome {
   std::size_t second_clique = 0;  ///< PCM's largest clique disjoint from it.
   bool clique_exact = true;       ///< PCM proved both to be the largest.
   bool merged = false;
+  std::optional<MergeAccuracy> accuracy = {};  ///< By measure_merges.
   std::string joined_reason;   ///< One sentence where several pairs together had enough evidence; else "".
   std::string refused_reason;  ///< One sentence; "" when merged.
 };

@@ -151,8 +151,7 @@ bool is_known(const FleetGraph& fleet, const Candidate& candidate) {
          });
 }
 
-std::map<RobotPair, Between> between_groups(const FleetGraph& fleet, const Groups& groups,
-                                            const BackEndConfig& config) {
+std::map<RobotPair, Between> between_groups(const FleetGraph& fleet, const Groups& groups) {
   std::map<RobotPair, Between> out;
   for (const auto& [pair, check] : fleet.checks) {
     if (check.accepted) continue;
@@ -163,7 +162,7 @@ std::map<RobotPair, Between> between_groups(const FleetGraph& fleet, const Group
     Between& between = out[std::minmax(x, y)];
     between.needed = std::max(between.needed, check.needed);
     for (const MergeHypothesis& hypothesis : check.hypotheses) {
-      Candidate candidate{&check, &hypothesis, merge_of(fleet, check, hypothesis, config)};
+      Candidate candidate{&check, &hypothesis, merge_of(fleet, check, hypothesis)};
       if (is_known(fleet, candidate)) between.candidates.push_back(std::move(candidate));
     }
   }
@@ -224,13 +223,12 @@ std::optional<JointMerge> likeliest(const GroupFrame& frame, const Between& betw
 
 }  // namespace
 
-Merge merge_of(const FleetGraph& fleet, const MergeCheck& check, const MergeHypothesis& hypothesis,
-               const BackEndConfig& config) {
+Merge merge_of(const FleetGraph& fleet, const MergeCheck& check, const MergeHypothesis& hypothesis) {
   Merge merge{check.a, check.b, hypothesis.evidence, {}};
   for (const auto& [a, b] : hypothesis.loops) {
     const auto loop = fleet.loops.find({{check.a, a}, {check.b, b}});
     if (loop != fleet.loops.end() && fleet.knows({check.a, a}) && fleet.knows({check.b, b}))
-      merge.loops.push_back(pcm_loop_of(loop->second, config.loop_noise));
+      merge.loops.push_back(pcm_loop_of(loop->second));
   }
   return merge;
 }
@@ -242,7 +240,7 @@ std::vector<JointMerge> joint_merges(const FleetGraph& fleet, std::vector<Merge>
     const Groups groups = groups_of(fleet, merges);
     const CycleCheck cycles(merges, chains, config.cycles);
     std::optional<JointMerge> best;
-    for (const auto& [pair, between] : between_groups(fleet, groups, config)) {
+    for (const auto& [pair, between] : between_groups(fleet, groups)) {
       std::optional<JointMerge> one =
           likeliest({fleet, groups, pair.first, config.one_place_m}, between, cycles);
       if (one && (!best || one->evidence > best->evidence)) best = std::move(one);

@@ -15,7 +15,7 @@ namespace adit {
 
 /// The hypothesis with those of its loops that are known, as are their keyframes.
 [[nodiscard]] Merge merge_of(const FleetGraph& fleet, const MergeCheck& check,
-                             const MergeHypothesis& hypothesis, const BackEndConfig& config);
+                             const MergeHypothesis& hypothesis);
 
 /// Hypotheses of several pairs that say the same about two groups of robots.
 struct JointMerge {

@@ -138,7 +138,7 @@ TEST(JointEvidence, LoopsOfOtherCyclesThatCloseCostEvidence) {
                                                      {RobotId{2}, chain_of(fleet.robots.at({2}))}};
     Merge merge{{0}, {1}, 10.0, {}};
     for (const auto& [a, b] : fleet.checks.at({{0}, {1}}).loops)
-      merge.loops.push_back(pcm_loop_of(fleet.loops.at({{{0}, a}, {{1}, b}}), {}));
+      merge.loops.push_back(pcm_loop_of(fleet.loops.at({{{0}, a}, {{1}, b}})));
     const std::vector<JointMerge> joint = joint_merges(fleet, {merge}, chains, {});
     return joint.empty() ? 0.0 : joint.front().evidence;
   };

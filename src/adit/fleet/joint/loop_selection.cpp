@@ -61,7 +61,7 @@ void keep_consistent(ChainsOnDemand& chains, const BackEndConfig& config,
                      const std::vector<std::size_t>& of_pair, std::vector<LoopOutcome>& loops,
                      PairOutcome& pair) {
   std::vector<PcmLoop> measured;
-  for (const std::size_t l : of_pair) measured.push_back(pcm_loop_of(loops[l].loop, config.loop_noise));
+  for (const std::size_t l : of_pair) measured.push_back(pcm_loop_of(loops[l].loop));
   const PcmResult result = pcm(chains.of(pair.a), chains.of(pair.b), measured, config.pcm);
   for (const std::size_t kept : result.largest) loops[of_pair[kept]].is_selected = true;
   pair.num_selected = result.largest.size();
@@ -127,13 +127,13 @@ std::string joined(const FleetGraph& fleet, const JointMerge& joint) {
 }
 
 /// What scans refuted about pairs of robots that did not merge.
-std::vector<Merge> refuted_hypotheses(const FleetGraph& fleet, const BackEndConfig& config) {
+std::vector<Merge> refuted_hypotheses(const FleetGraph& fleet) {
   std::vector<Merge> out;
   for (const auto& [pair, check] : fleet.checks) {
     if (check.accepted || check.a == check.b) continue;
     for (const MergeHypothesis& hypothesis : check.hypotheses) {
       if (hypothesis.outcome != HypothesisOutcome::refuted) continue;
-      Merge merge = merge_of(fleet, check, hypothesis, config);
+      Merge merge = merge_of(fleet, check, hypothesis);
       if (!merge.loops.empty()) out.push_back(std::move(merge));
     }
   }
@@ -152,8 +152,7 @@ class MergeReview {
       if (pair.num_selected == 0) continue;
       Merge merge{pair.a, pair.b, fleet.checks.at({pair.a, pair.b}).evidence, {}};
       for (const std::size_t l : selection.of_pairs.at({pair.a, pair.b}))
-        if (selection.loops[l].is_selected)
-          merge.loops.push_back(pcm_loop_of(selection.loops[l].loop, config.loop_noise));
+        if (selection.loops[l].is_selected) merge.loops.push_back(pcm_loop_of(selection.loops[l].loop));
       merges_.push_back(std::move(merge));
     }
   }
@@ -162,7 +161,7 @@ class MergeReview {
   void take_back() {
     std::set<std::size_t> gone;
     for (const Contradiction& contradiction :
-         contradictions(merges_, refuted_hypotheses(fleet_, config_), chains_, config_.cycles)) {
+         contradictions(merges_, refuted_hypotheses(fleet_), chains_, config_.cycles)) {
       const Merge& merge = merges_[contradiction.merge];
       outcome_of(merge).refused_reason = taken_back(fleet_, merges_, contradiction);
       for (const std::size_t l : selection_.of_pairs.at({merge.a, merge.b}))

@@ -10,7 +10,9 @@
 
 #include "adit/core/rng.hpp"
 #include "adit/fleet/joint/fleet_solution.hpp"
+#include "adit/odometry/path_uncertainty.hpp"
 #include "adit/robot/robot_map.hpp"
+#include "support/loop_information.hpp"
 
 namespace adit {
 namespace {
@@ -27,7 +29,7 @@ struct RandomFleet {
   std::vector<Merge> refuted;
 
   RandomFleet(std::uint64_t seed, int num_robots, double drift = 1.0) : rng(seed) {
-    const Matrix6 covariance = odometry_covariance({}, 1.0);
+    const Matrix6 covariance = random_walk({}, 1.0);
     for (std::uint8_t r = 0; r < num_robots; ++r) {
       std::vector<Pose> poses{
           Pose::planar(rng.uniform(-50.0, 50.0), rng.uniform(-50.0, 50.0), rng.uniform(-3.0, 3.0))};
@@ -52,7 +54,7 @@ struct RandomFleet {
     for (std::size_t k = 0; k < 20; k += 4) {
       const Pose T_a_b =
           truth[robots.first][from_a + k].inverse() * displaced * truth[robots.second][from_b + k];
-      merge.loops.push_back({from_a + k, from_b + k, T_a_b, loop_information()});
+      merge.loops.push_back({from_a + k, from_b + k, T_a_b, test::loop_information()});
     }
     merges.push_back(std::move(merge));
   }
@@ -217,8 +219,8 @@ TEST(MergeCycles, ASlipOfTenSigmasIsDrift) {
                                        : chain.pose(kNodes / 2) * Pose::translation_of(1.5, 0.0, 0.0) *
                                              chain.between(kNodes / 2, k));
     fleet.chains.erase({1});
-    fleet.chains.emplace(
-        RobotId{1}, OdometryChain(slipped, std::vector<Matrix6>(kNodes - 1, odometry_covariance({}, 1.0))));
+    fleet.chains.emplace(RobotId{1},
+                         OdometryChain(slipped, std::vector<Matrix6>(kNodes - 1, random_walk({}, 1.0))));
     fleet.merge({0, 1}, 10.0);
     fleet.merge({1, 2}, 10.0);
     fleet.merge({0, 2}, 10.0);

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <set>
 
+#include "adit/odometry/path_uncertainty.hpp"
 #include "adit/robot/robot_map.hpp"
 #include "support/opposite_drives.hpp"
 
@@ -52,7 +53,7 @@ TEST(ComparisonPlanner, WithinOneMapAKeyframeIsNotComparedWithItselfOrItsNeighbo
   std::vector<Pose> poses;  // up a street of 100 m and back
   for (int k = 0; k <= 200; ++k)
     poses.push_back(k <= 100 ? Pose::planar(k, 0.0, 0.0) : Pose::planar(200 - k, 1.0, std::numbers::pi));
-  const OdometryChain chain(poses, std::vector<Matrix6>(200, odometry_covariance({}, 1.0)));
+  const OdometryChain chain(poses, std::vector<Matrix6>(200, random_walk({}, 1.0)));
   const std::vector<PcmLoop> loops = {{70, 130, chain.between(70, 130)}, {50, 150, chain.between(50, 150)}};
   const std::vector<PlannedComparison> plan =
       ComparisonPlanner(chain, chain, loops, {.reach_m = 50.0}).plan(200);

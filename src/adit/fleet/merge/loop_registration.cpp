@@ -2,11 +2,18 @@
 // SPDX-License-Identifier: MIT
 #include "adit/fleet/merge/loop_registration.hpp"
 
+#include "adit/core/angles.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/registration/registration.hpp"
 
 namespace adit {
+
+Matrix6 information_of(const FixedLoopNoise& noise) {
+  Vector6 sigma;
+  sigma << Vector3::Constant(noise.translation), Vector3::Constant(noise.rotation_deg * kDegree);
+  return sigma.cwiseAbs2().cwiseInverse().asDiagonal();
+}
 
 std::vector<LoopClosure> LoopRegistration::with_clouds(const std::vector<PeerSession::Arrived>& arrived,
                                                        const Clouds& clouds) {
@@ -45,7 +52,7 @@ LoopClosure LoopRegistration::registered(const LoopCandidate& candidate, const F
   loop.from = candidate.query;
   loop.to = candidate.match;
   loop.T_from_to = registration.T_a_b.value_or(Pose());
-  loop.information = registration.information;
+  loop.information = config_.noise ? information_of(*config_.noise) : registration.information;
   loop.place_distance = candidate.distance;
   loop.num_inliers = registration.num_inliers;
   loop.overlap = registration.overlap;

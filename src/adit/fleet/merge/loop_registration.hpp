@@ -6,6 +6,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -15,10 +16,18 @@
 
 namespace adit {
 
+/// Sigmas that all loops of the paper's policies have, as in Swarm-SLAM's back-end.
+struct FixedLoopNoise {
+  double translation = 0.1;  ///< Metres.
+  double rotation_deg = 0.6;
+};
+[[nodiscard]] Matrix6 information_of(const FixedLoopNoise& noise);
+
 struct LoopRegistrationConfig {
   RegistrationConfig registration;
   /// Farther apart, in metres, two scans may show the same walls, but it is not one place.
   double one_place_m = std::numeric_limits<double>::infinity();
+  std::optional<FixedLoopNoise> noise = {};  ///< Instead of what each registration says of itself.
 };
 
 class LoopRegistration {

@@ -10,7 +10,9 @@
 #include "adit/core/rng.hpp"
 #include "adit/fleet/search/path.hpp"
 #include "adit/fleet/sync/fleet_graph.hpp"
+#include "adit/odometry/path_uncertainty.hpp"
 #include "adit/robot/robot_map.hpp"
+#include "support/loop_information.hpp"
 
 namespace adit {
 namespace {
@@ -19,7 +21,7 @@ namespace {
 OdometryChain drive(std::size_t num, double turn) {
   std::vector<Pose> poses{Pose()};
   while (poses.size() < num) poses.push_back(poses.back() * Pose::planar(1.0, 0.0, turn));
-  return {poses, std::vector<Matrix6>(num - 1, odometry_covariance({}, 1.0))};
+  return {poses, std::vector<Matrix6>(num - 1, random_walk({}, 1.0))};
 }
 
 constexpr double kRound = 2.0 * std::numbers::pi / 200.0;  // a circle of 200 m
@@ -46,7 +48,7 @@ TEST(Revisits, OdometryAcceptsItsDriftAndExcludesWhatIsFarBeyond) {
   const OdometryChain chain = drive(300, kRound);
   const auto loop = [&](double ahead) {
     return PcmLoop{40, 240, chain.between(40, 240) * Pose::translation_of(ahead, 0.0, 0.0),
-                   loop_information()};
+                   test::loop_information()};
   };
   EXPECT_TRUE(fits_odometry(chain, loop(0.0)));
   EXPECT_TRUE(fits_odometry(chain, loop(4.0)));
@@ -66,7 +68,7 @@ TEST(Revisits, OfLookAlikesTheEvidenceIsNoneOnAverage) {
     const double y = rng.uniform(-radius, radius);
     if (std::hypot(x, y) > radius) continue;
     const Pose T_a_b = chain.between(40, 240) * Pose::translation_of(x, y, 0.0);
-    sum += std::exp(odometry_evidence(chain, {40, 240, T_a_b, loop_information()}));
+    sum += std::exp(odometry_evidence(chain, {40, 240, T_a_b, test::loop_information()}));
     ++num;
   }
   EXPECT_NEAR(sum / num, 1.0, 0.1);  // a likelihood ratio: Wald's error rate stands

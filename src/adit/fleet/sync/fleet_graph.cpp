@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "adit/fleet/sync/fleet_graph.hpp"
 
-#include <numbers>
-
 namespace adit {
 
 RobotGraph graph_of(const RobotMap& map) {
@@ -15,16 +13,8 @@ RobotGraph graph_of(const RobotMap& map) {
   return graph;
 }
 
-Matrix6 loop_information(const LoopNoise& noise) {
-  const double rotation = noise.rotation_deg * std::numbers::pi / 180.0;
-  Vector6 information;
-  information << Vector3::Constant(1.0 / (noise.translation * noise.translation)),
-      Vector3::Constant(1.0 / (rotation * rotation));
-  return information.asDiagonal();
-}
-
-PcmLoop pcm_loop_of(const LoopClosure& loop, const LoopNoise& noise) {
-  return {loop.from.index, loop.to.index, loop.T_from_to, loop_information(noise)};
+PcmLoop pcm_loop_of(const LoopClosure& loop) {
+  return {loop.from.index, loop.to.index, loop.T_from_to, loop.information};
 }
 
 OdometryChain chain_of(const RobotGraph& graph, double slack) {

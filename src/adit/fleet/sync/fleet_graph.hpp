@@ -41,14 +41,8 @@ struct FleetGraph {
 /// What others learn of a robot's own map: stamps, poses and odometry steps of its keyframes.
 [[nodiscard]] RobotGraph graph_of(const RobotMap& map);
 
-/// Sigmas of a loop in the graph: fixed, as in Swarm-SLAM's back-end.
-struct LoopNoise {
-  double translation = 0.1;  ///< Metres.
-  double rotation_deg = 0.6;
-};
-[[nodiscard]] Matrix6 loop_information(const LoopNoise& noise = {});
-/// The loop as odometry chains see it, with that information.
-[[nodiscard]] PcmLoop pcm_loop_of(const LoopClosure& loop, const LoopNoise& noise = {});
+/// The loop as odometry chains see it.
+[[nodiscard]] PcmLoop pcm_loop_of(const LoopClosure& loop);
 
 /// The odometry of a robot, with `slack` times the sigmas of its steps.
 [[nodiscard]] OdometryChain chain_of(const RobotGraph& graph, double slack = 1.0);

@@ -1,0 +1,293 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/jrl.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+
+#include "adit/core/format.hpp"
+#include "adit/io/jrl_records.hpp"
+
+namespace adit {
+namespace jrl {
+namespace {
+
+// Covariances are printed with all digits: more asymmetry than that, by the largest entry, is another matrix.
+constexpr double kMaxAsymmetry = 1e-6;
+// Two robots' copies of one measurement differ by rounding at most: metres and radians.
+constexpr double kSamePose = 1e-12;
+
+// Their row of each of ours: GTSAM has rotation before translation in space, and the same order in the plane.
+template <class P>
+constexpr auto kTheirRow = [] {
+  if constexpr (P::kDof == 6)
+    return std::array<std::size_t, 6>{3, 4, 5, 0, 1, 2};
+  else
+    return std::array<std::size_t, 3>{0, 1, 2};
+}();
+
+// The inverse of the covariance, in our order.
+template <class P>
+Result<typename P::Jacobian> information_of(const std::vector<double>& covariance_as_written) {
+  constexpr std::size_t D = P::kDof;
+  using Matrix = typename P::Jacobian;
+  Matrix covariance;
+  for (std::size_t i = 0; i < D; ++i) {
+    for (std::size_t j = 0; j < D; ++j)
+      covariance(static_cast<int>(i), static_cast<int>(j)) =
+          covariance_as_written[kTheirRow<P>[i] * D + kTheirRow<P>[j]];
+  }
+  const double largest = covariance.cwiseAbs().maxCoeff();
+  if ((covariance - covariance.transpose()).cwiseAbs().maxCoeff() > kMaxAsymmetry * largest)
+    return fail("'covariance' is not symmetric; write it row by row");
+  const Eigen::LLT<Matrix> factorization(0.5 * (covariance + covariance.transpose()));
+  const bool is_definite = largest > 0.0 && factorization.info() == Eigen::Success;
+  const Matrix information = is_definite ? Matrix(factorization.solve(Matrix::Identity())) : Matrix::Zero();
+  if (!is_definite || !information.allFinite())
+    return fail("'covariance' is not positive definite; give each direction a variance above zero");
+  return Matrix(0.5 * (information + information.transpose()));
+}
+
+bool holds(const JrlFactorIds& ids, const std::string& robot, const JrlFactorId& id) {
+  const auto found = ids->find(robot);
+  return found != ids->end() && found->second.contains(id);
+}
+
+// Makes a graph of the records. P: the kind of pose that they hold.
+template <class P>
+class GraphMaker {
+ public:
+  explicit GraphMaker(JrlRecords records) : records_(std::move(records)) {}
+
+  Result<JrlFile> make() {
+    for (const JrlFactor& factor : records_.factors) {
+      if (const Result<> added = add(factor); !added) return fail(factor.place, added.error());
+    }
+    const auto initial = poses_by_key(records_.initialization);
+    if (!initial) return tl::unexpected(initial.error());
+    const auto truth = poses_by_key(records_.truth);
+    if (!truth) return tl::unexpected(truth.error());
+    add_nodes(*initial, *truth);
+    finish_edges();
+    note();
+    return JrlFile{std::move(records_.name), std::move(records_.robots), std::move(out_), std::move(places_),
+                   std::move(notes_)};
+  }
+
+ private:
+  using Edge = typename BasicPoseGraph<P>::Edge;
+  using PosesByKey = std::map<std::uint64_t, P>;
+  struct KeyedEdge {
+    std::uint64_t from;
+    std::uint64_t to;
+    Edge edge;
+    std::size_t robot;
+  };
+
+  // By the letter of its key, or else whoever names it first.
+  [[nodiscard]] std::size_t robot_of(std::uint64_t key, std::size_t named_by) const {
+    const auto own = std::ranges::find(records_.robots, std::string(1, static_cast<char>(key >> 56U)));
+    return own == records_.robots.end() ? named_by : static_cast<std::size_t>(own - records_.robots.begin());
+  }
+
+  Result<> add(const JrlFactor& factor) {
+    const P* pose = std::get_if<P>(&factor.pose);
+    if (pose == nullptr) return fail("both Pose2 and Pose3 factors in one file; split it in two");
+    const auto information = information_of<P>(factor.covariance);
+    if (!information) return tl::unexpected(information.error());
+    for (const std::uint64_t key : factor.keys) robot_of_key_.try_emplace(key, robot_of(key, factor.robot));
+    if (factor.keys.size() == 1) {
+      prior_keys_.push_back(factor.keys.front());
+      out_.priors.push_back({0, *pose, *information});
+      return {};
+    }
+    const std::uint64_t from = factor.keys[0];
+    const std::uint64_t to = factor.keys[1];
+    if (from == to) return fail(format("a measurement from node {} to itself", from));
+    KeyedEdge keyed{from, to, {0, 0, *pose, *information, kind_of(factor)}, factor.robot};
+    if (is_repeated(keyed)) return {};
+    edges_.push_back(std::move(keyed));
+    out_.labels.push_back(label_of(factor));
+    places_.push_back(factor.place);
+    return {};
+  }
+
+  [[nodiscard]] EdgeKind kind_of(const JrlFactor& factor) const {
+    const bool may_be_false = records_.potential
+                                  ? holds(records_.potential, records_.robots[factor.robot], factor.id)
+                                  : factor.keys[0] + 1 != factor.keys[1];
+    return may_be_false ? EdgeKind::loop : EdgeKind::odometry;
+  }
+  [[nodiscard]] JrlLabel label_of(const JrlFactor& factor) const {
+    if (!records_.outliers) return JrlLabel::unlabelled;
+    return holds(records_.outliers, records_.robots[factor.robot], factor.id) ? JrlLabel::outlier
+                                                                              : JrlLabel::inlier;
+  }
+
+  // Both robots of an encounter may have logged the same measurement; within one log it is a second one.
+  [[nodiscard]] bool is_repeated(const KeyedEdge& keyed) {
+    std::vector<std::size_t>& same_ends = edges_between_[{keyed.from, keyed.to}];
+    for (const std::size_t e : same_ends) {
+      const KeyedEdge& other = edges_[e];
+      if (other.robot == keyed.robot || other.edge.information != keyed.edge.information) continue;
+      if (!(other.edge.T_from_to.inverse() * keyed.edge.T_from_to).log().isZero(kSamePose)) continue;
+      ++num_repeated_;
+      return true;
+    }
+    same_ends.push_back(edges_.size());
+    return false;
+  }
+
+  // A robot's own word counts before that of others.
+  [[nodiscard]] Result<PosesByKey> poses_by_key(const std::vector<JrlValue>& values) const {
+    PosesByKey out;
+    std::set<std::uint64_t> own;
+    for (const JrlValue& value : values) {
+      const P* pose = std::get_if<P>(&value.pose);
+      if (pose == nullptr) return fail(value.place + ": a pose of another dimension than the factors'");
+      const auto known = robot_of_key_.find(value.key);
+      if (known == robot_of_key_.end() || known->second != value.robot) {
+        out.emplace(value.key, *pose);
+        continue;
+      }
+      if (!own.insert(value.key).second)
+        return fail(format("{}: key {} comes twice", value.place, value.key));
+      out.insert_or_assign(value.key, *pose);
+    }
+    return out;
+  }
+
+  void add_nodes(const PosesByKey& initial, const PosesByKey& truth) {
+    for (const auto& [key, robot] : robot_of_key_) {
+      const auto start = initial.find(key);
+      const auto true_pose = truth.find(key);
+      node_of_.emplace(key, out_.graph.nodes.size());
+      out_.graph.nodes.push_back({key, start == initial.end() ? P() : start->second});
+      out_.robot_of_node.push_back(robot);
+      out_.truth.push_back(true_pose == truth.end() ? std::nullopt : std::optional(true_pose->second));
+      is_known_.push_back(start != initial.end());
+    }
+  }
+
+  void finish_edges() {
+    for (KeyedEdge& keyed : edges_) {
+      keyed.edge.from = node_of_.at(keyed.from);
+      keyed.edge.to = node_of_.at(keyed.to);
+      out_.graph.edges.push_back(std::move(keyed.edge));
+    }
+    for (std::size_t i = 0; i < prior_keys_.size(); ++i) out_.priors[i].node = node_of_.at(prior_keys_[i]);
+    num_composed_ = static_cast<std::size_t>(std::ranges::count(is_known_, false));
+    if (num_composed_ == 0) return;
+    // Where nothing else is known, a prior says where to start.
+    for (const auto& prior : out_.priors) {
+      if (is_known_[prior.node]) continue;
+      out_.graph.nodes[prior.node].pose = prior.T_world_node;
+      is_known_[prior.node] = true;
+    }
+    const std::vector<P> poses = spanning_tree_poses(out_.graph, is_known_);
+    for (std::size_t i = 0; i < poses.size(); ++i) out_.graph.nodes[i].pose = poses[i];
+  }
+
+  void note() {
+    for (const auto& [type, count] : records_.left_out)
+      notes_.push_back(
+          format("{} factors of type {} are left out: adit solves poses from relative poses", count, type));
+    if (num_repeated_ > 0)
+      notes_.push_back(format("{} measurements that two robots repeat are counted once", num_repeated_));
+    if (num_composed_ > 0)
+      notes_.push_back(format("{} of {} poses have no initial value; they are composed along the edges",
+                              num_composed_, out_.graph.nodes.size()));
+    if (!records_.potential)
+      notes_.emplace_back(
+          "the file does not list potential outliers: every measurement but the step to the next key of a "
+          "robot is taken for a loop");
+    std::size_t trusted = 0;
+    for (std::size_t e = 0; e < out_.labels.size(); ++e)
+      trusted +=
+          out_.labels[e] == JrlLabel::outlier && out_.graph.edges[e].kind == EdgeKind::odometry ? 1 : 0;
+    if (trusted > 0)
+      notes_.push_back(
+          format("{} labelled outliers are not among the potential outliers and are trusted", trusted));
+  }
+
+  JrlRecords records_;
+  JrlGraph<P> out_;
+  std::vector<KeyedEdge> edges_;
+  std::vector<std::uint64_t> prior_keys_;
+  std::vector<std::string> places_;
+  std::vector<std::string> notes_;
+  std::map<std::uint64_t, std::size_t> robot_of_key_;
+  std::map<std::uint64_t, std::size_t> node_of_;
+  std::map<std::pair<std::uint64_t, std::uint64_t>, std::vector<std::size_t>> edges_between_;
+  std::vector<bool> is_known_;
+  std::size_t num_repeated_ = 0;
+  std::size_t num_composed_ = 0;
+};
+
+Result<JrlFile> file_of(JrlRecords records) {
+  const bool has_relative =
+      std::ranges::any_of(records.factors, [](const JrlFactor& f) { return f.keys.size() == 2; });
+  if (!has_relative)
+    return fail("no BetweenFactorPose2 and no BetweenFactorPose3 in it: there is no pose graph to solve");
+  if (std::holds_alternative<Pose2>(records.factors.front().pose))
+    return GraphMaker<Pose2>(std::move(records)).make();
+  return GraphMaker<Pose>(std::move(records)).make();
+}
+
+}  // namespace
+}  // namespace jrl
+
+Result<JrlFile> parse_jrl(const std::string& bytes, const std::string& name) {
+  Result<JrlFile> file = parse_jrl_records(bytes).and_then(jrl::file_of);
+  return file ? std::move(file) : fail(name, file.error());
+}
+
+Result<JrlFile> read_jrl(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return fail(path.string() + ": cannot be opened; does it exist?");
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  if (stream.bad()) return fail(path.string() + ": reading failed");
+  return parse_jrl(bytes, path.string());
+}
+
+template <class P>
+BasicPoseGraph<P> with_priors_as_edges(const JrlGraph<P>& log) {
+  BasicPoseGraph<P> graph = log.graph;
+  if (log.priors.size() < 2) return graph;
+  // Nodes are in the order of their keys.
+  const std::uint64_t last = graph.nodes.back().key;
+  const std::uint64_t first = graph.nodes.front().key;
+  graph.nodes.push_back({first > 0 ? 0 : last + 1, P()});
+  for (const auto& prior : log.priors)
+    graph.edges.push_back(
+        {graph.nodes.size() - 1, prior.node, prior.T_world_node, prior.information, EdgeKind::odometry});
+  return graph;
+}
+
+template <class P>
+std::vector<P> in_frame_of_priors(const JrlGraph<P>& log, std::vector<P> poses) {
+  if (log.priors.empty()) return poses;
+  const auto& prior = log.priors.front();
+  const Components parts = connected_components(log.graph);
+  const bool has_world = poses.size() > log.graph.nodes.size();
+  const P T_world_given =
+      has_world ? poses.back().inverse() : prior.T_world_node * poses[prior.node].inverse();
+  std::vector<bool> is_held(parts.anchors.size(), false);
+  for (const auto& p : log.priors) is_held[parts.of_node[p.node]] = true;
+  poses.resize(log.graph.nodes.size());
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (is_held[parts.of_node[i]]) poses[i] = T_world_given * poses[i];
+  return poses;
+}
+
+template BasicPoseGraph<Pose> with_priors_as_edges(const JrlGraph<Pose>& jrl);
+template BasicPoseGraph<Pose2> with_priors_as_edges(const JrlGraph<Pose2>& jrl);
+template std::vector<Pose> in_frame_of_priors(const JrlGraph<Pose>& jrl, std::vector<Pose> poses);
+template std::vector<Pose2> in_frame_of_priors(const JrlGraph<Pose2>& jrl, std::vector<Pose2> poses);
+
+}  // namespace adit

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The records of a JSON Robot Log as plain types; for jrl.cpp only.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "adit/core/pose.hpp"
+#include "adit/core/result.hpp"
+
+namespace adit {
+
+/// A robot's measurement: the index of its entry, and its index in the entry.
+using JrlFactorId = std::pair<std::size_t, std::size_t>;
+/// By robot; absent where the file lacks the list.
+using JrlFactorIds = std::optional<std::map<std::string, std::set<JrlFactorId>>>;
+using JrlPose = std::variant<Pose, Pose2>;
+
+/// A prior (one key) or a relative pose (two).
+struct JrlFactor {
+  std::vector<std::uint64_t> keys;
+  JrlPose pose;
+  std::vector<double> covariance;  ///< As written, row by row: as many numbers as its pose calls for.
+  std::size_t robot = 0;           ///< Whose measurement it is.
+  JrlFactorId id;
+  std::string place;
+};
+
+/// A pose of `initialization` or `groundtruth`.
+struct JrlValue {
+  std::uint64_t key = 0;
+  JrlPose pose;
+  std::size_t robot = 0;  ///< Whose list it is in.
+  std::string place;
+};
+
+struct JrlRecords {
+  std::string name;
+  std::vector<std::string> robots;
+  std::vector<JrlFactor> factors;
+  std::map<std::string, std::size_t> left_out;  ///< Counts of factors that are known but not of poses.
+  JrlFactorIds potential;
+  JrlFactorIds outliers;
+  std::vector<JrlValue> initialization;
+  std::vector<JrlValue> truth;
+};
+
+/// From JSON or CBOR. Checks the form of everything, not whether it makes a graph. Errors name the place.
+[[nodiscard]] Result<JrlRecords> parse_jrl_records(const std::string& bytes);
+
+}  // namespace adit

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Checks of a recording's wheels and IMU before a map is made of it: units, axes, signs, clocks, gaps.
+///
+/// What would spoil a map is repaired where the repair is certain (a clock that is late, a value that jumps),
+/// and else its sensor is left out. The checks need no scan: wheels and IMU are compared with one another, so
+/// with only one of them, or on a drive without curves, less can be seen. What is then left to odometry is
+/// the direction and the scale of wheels without an IMU, and their slip.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adit/core/records.hpp"
+
+namespace adit {
+
+enum class Finding {
+  imu_in_g,
+  imu_without_gravity,  ///< Of the whole drive, or of its begin.
+  imu_wrong_unit,       ///< Neither m/s^2 nor g.
+  imu_in_degrees,       ///< Degrees per second.
+  imu_wrong_axes,       ///< The mount does not agree with gravity.
+  imu_saturated,
+  imu_gaps,
+  imu_bad_covariance,  ///< Zero, huge or not positive definite.
+  wheels_reversed,     ///< Forward for backward, or left for right.
+  wheels_wrong_scale,  ///< Of turns.
+  wheels_frozen,
+  wheels_jump,
+  wheels_late,          ///< Or early.
+  wheels_contradicted,  ///< They and the gyroscope turn differently.
+};
+
+enum class Consequence {
+  noted,
+  repaired,  ///< What is wrong was left out or corrected; the sensor is used.
+  left_out,  ///< The sensor is not used.
+};
+
+struct SensorFinding {
+  Finding finding;
+  Consequence consequence = Consequence::noted;
+  std::string sentence;  ///< For people: what, where, what to do.
+};
+
+/// Checks the wheels and the IMU of a recording and replaces them by what can be used of them. Findings in a
+/// fixed order; none for a recording in which nothing is wrong. A sensor that is not there is not checked.
+[[nodiscard]] std::vector<SensorFinding> use_sound_sensors(Recording& recording);
+
+// The parts of it.
+
+/// The IMU alone: covariance, gravity, axes, range, gaps, and whether rates agree with how gravity turns.
+[[nodiscard]] std::vector<SensorFinding> check_imu_alone(Recording& recording);
+/// The wheels alone: values that stay and values that jump.
+[[nodiscard]] std::vector<SensorFinding> check_wheels_alone(Recording& recording);
+/// The wheels' motion against the IMU's: signs, scale, clocks.
+[[nodiscard]] std::vector<SensorFinding> check_wheels_with_imu(Recording& recording);
+
+}  // namespace adit

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// MCAP files as other programs write them: no chunks, no index, frames and topics of any name.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "adit/core/rng.hpp"
+#include "adit/io/mcap.hpp"
+#include "adit/io/mcap_records.hpp"
+#include "adit/io/ros_messages.hpp"
+
+namespace adit::test {
+
+inline Scan make_scan(std::size_t index, std::size_t num_points) {
+  Rng rng(index + 1);
+  Scan scan{{1'700'000'000'123'456'789 + static_cast<std::int64_t>(index) * 100'000'000}, {}};
+  for (std::size_t i = 0; i < num_points; ++i) {
+    scan.cloud.points.emplace_back(static_cast<float>(rng.uniform(-50, 50)), static_cast<float>(rng.normal()),
+                                   1.5F);
+    scan.cloud.intensities.push_back(static_cast<float>(rng.uniform(0, 255)));
+    scan.cloud.time_offsets_ns.push_back(-static_cast<std::int32_t>(rng.below(100'000'000)));
+  }
+  return scan;
+}
+
+/// The records in front of the summary, put together by hand: no chunks, no index.
+inline std::string plain_file(const std::vector<std::string>& records) {
+  std::string bytes(mcap::kMagic);
+  bytes += mcap::framed(mcap::Opcode::header, mcap::encode(mcap::Header{"ros2", "hand"}));
+  for (const std::string& record : records) bytes += record;
+  bytes += mcap::framed(mcap::Opcode::data_end, std::string(4, '\0'));
+  bytes += mcap::framed(mcap::Opcode::footer, mcap::encode(mcap::Footer{}));
+  return bytes + std::string(mcap::kMagic);
+}
+
+/// Files of other programs, message by message.
+class ForeignFile {
+ public:
+  ForeignFile() {
+    schema(1, ros::kPointCloud2);
+    schema(2, ros::kOdometry);
+    schema(3, ros::kTransforms);
+    schema(4, ros::kImu);
+  }
+  /// Three clouds in the frame `frame`, recorded 5 ms after the scans' own stamps.
+  ForeignFile& clouds(const std::string& topic, const std::string& frame = "os_lidar") {
+    const std::uint16_t id = channel(1, topic);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Scan scan = make_scan(i, 4);
+      message(id, scan.stamp + Duration(5'000'000), ros::encode_cloud(scan, frame));
+    }
+    return *this;
+  }
+  ForeignFile& odometry(const std::string& topic, const std::string& child = "base_link") {
+    const std::uint16_t id = channel(2, topic);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Stamp stamp = make_scan(i, 0).stamp;
+      message(id, stamp, ros::encode_odometry({"odom", child, {stamp, Pose()}}));
+    }
+    return *this;
+  }
+  ForeignFile& imu(const std::string& topic, const std::vector<ros::ImuMessage>& samples) {
+    const std::uint16_t id = channel(4, topic);
+    for (const ros::ImuMessage& sample : samples) message(id, sample.sample.stamp, ros::encode_imu(sample));
+    return *this;
+  }
+  ForeignFile& links(const std::vector<ros::TransformMessage>& transforms) {
+    message(channel(3, "/tf_static"), make_scan(0, 0).stamp, ros::encode_transforms(transforms));
+    return *this;
+  }
+  [[nodiscard]] Result<Recording> read(const RecordingConfig& config = {}) const {
+    return read_recording(memory_source(plain_file(records_)), config);
+  }
+
+ private:
+  void schema(std::uint16_t id, std::string_view type) {
+    records_.push_back(mcap::framed(mcap::Opcode::schema,
+                                    mcap::encode(mcap::Schema{id, std::string(type), "ros2msg", "..."})));
+  }
+  std::uint16_t channel(std::uint16_t schema, const std::string& topic) {
+    records_.push_back(mcap::framed(mcap::Opcode::channel,
+                                    mcap::encode(mcap::Channel{++num_channels_, schema, topic, "cdr", {}})));
+    return num_channels_;
+  }
+  void message(std::uint16_t channel, Stamp stamp, std::string data) {
+    records_.push_back(mcap::framed(mcap::Opcode::message,
+                                    mcap::encode(mcap::Message{channel, 0, stamp, stamp, std::move(data)})));
+  }
+
+  std::vector<std::string> records_;
+  std::uint16_t num_channels_ = 0;
+};
+
+}  // namespace adit::test
