@@ -123,7 +123,7 @@ Words arguments_of(const Writer& writer, const Inputs& inputs) {
     if (word == "RECORDING") word = inputs.recording();
     if (word == "WORLDS") word = inputs.list_of_worlds();
     if (word == "GRAPHS") word = inputs.list_of_graphs();
-    if (word == "GRAPH") word = inputs.graph(4000);
+    if (word == "GRAPH") word = inputs.graph(12000);
   }
   return words;
 }
@@ -184,22 +184,30 @@ TEST_P(Writing, IsInterruptedWithinASecondInEveryPhase) {
   ASSERT_EQ(uninterrupted.exit_code, 0) << test::get_file(log());
   Words words = whole;
   words.back() = target().string();
+  double whole_s = uninterrupted.cpu_s;
   int num_interrupted = 0;
-  for (const double share : {0.1, 0.3, 0.5, 0.7, 0.85}) {
-    std::filesystem::remove_all(target());
-    put_old_output(target());
-    const std::map<std::string, std::string> before = tree_of(target_folder());
-    const int signal = share == 0.5 ? SIGTERM : SIGINT;
-    const Ended ended = test::Process(words, log()).signal_after(share * uninterrupted.cpu_s, signal);
-    if (ended.exit_code == 0) continue;  // it was quicker than last time and has replaced the old output
-    ++num_interrupted;
-    EXPECT_EQ(ended.exit_code, 128 + signal) << "after " << share << ": " << test::get_file(log());
-    EXPECT_LT(ended.cpu_after_signal_s, kSlowdown) << "after " << share;
-    EXPECT_NE(test::get_file(log()).find("interrupted"), std::string::npos);
-    expect_kept(target_folder(), before);
-  }
-  // merge-study keeps the maps of runs before and gets quicker.
-  EXPECT_GE(num_interrupted, std::string_view(GetParam().name) == "merge_study" ? 2 : 3);
+  // A run that ends before its share of the time was quicker than those before (warm caches, an idle machine;
+  // merge-study keeps maps): the same share of its time is tried next.
+  const auto interrupt = [&](double share, int signal) {
+    for (int attempt = 0; attempt < 4; ++attempt) {
+      std::filesystem::remove_all(target());
+      put_old_output(target());
+      const std::map<std::string, std::string> before = tree_of(target_folder());
+      const Ended ended = test::Process(words, log()).signal_after(share * whole_s, signal);
+      if (ended.exit_code == 0) {
+        whole_s = std::min(whole_s, ended.cpu_s);
+        continue;
+      }
+      ++num_interrupted;
+      EXPECT_EQ(ended.exit_code, 128 + signal) << "after " << share << ": " << test::get_file(log());
+      EXPECT_LT(ended.cpu_after_signal_s, kSlowdown) << "after " << share;
+      EXPECT_NE(test::get_file(log()).find("interrupted"), std::string::npos);
+      expect_kept(target_folder(), before);
+      return;
+    }
+  };
+  for (const double share : {0.1, 0.3, 0.5, 0.7, 0.85}) interrupt(share, share == 0.5 ? SIGTERM : SIGINT);
+  EXPECT_GE(num_interrupted, 3);
 }
 
 TEST_P(Writing, AFullDiskIsAnErrorAndKeepsWhatWasSaved) {

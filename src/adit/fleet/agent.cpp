@@ -295,7 +295,7 @@ std::vector<Message> Agent::addressed(RobotId peer, Replies bodies) const {
 }
 
 OdometryChain Agent::chain_by(RobotId robot) const {
-  return chain_of(known().robots.at(robot), config_.adaptive.merge_check.odometry_slack);
+  return chain_of(known().robots.at(robot));
 }
 
 Discernment& Agent::discernment() {

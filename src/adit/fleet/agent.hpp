@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "adit/fleet/joint/fleet_estimate.hpp"
 #include "adit/fleet/joint/fleet_solution.hpp"
 #include "adit/fleet/merge/adaptive_config.hpp"
 #include "adit/fleet/merge/discernment.hpp"
@@ -74,6 +75,11 @@ class Agent {
   [[nodiscard]] FleetSolution solve(const BackEndConfig& config) const {
     return adit::solve(known(), config);
   }
+  /// Where all that it knows of is, while it drives and meets others: costs what changed since the last call.
+  FleetEstimate::Step update_estimate(const BackEndConfig& config) {
+    return estimate_.update(known(), config);
+  }
+  [[nodiscard]] const FleetEstimate& estimate() const { return estimate_; }
 
  private:
   using Replies = std::vector<MessageBody>;
@@ -117,6 +123,7 @@ class Agent {
   std::shared_ptr<const RobotMap> map_;
   AgentConfig config_;
   FleetLedger ledger_;
+  FleetEstimate estimate_;
   std::map<RobotId, PeerSession> sessions_;
   std::map<RobotId, MergeChecker> checks_;  ///< Under way.
   std::shared_ptr<FeatureStore> features_;

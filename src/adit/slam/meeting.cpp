@@ -11,10 +11,12 @@ namespace {
 /// first.
 constexpr std::size_t kRounds = 2;
 
-Result<> all_meet(const std::vector<Agent>& agents, LoopbackBus& bus, const Phase& phase) {
+Result<> all_meet(std::vector<Agent>& agents, const BackEndConfig& back_end, LoopbackBus& bus,
+                  const Phase& phase) {
   for (std::size_t a = 0; a < agents.size(); ++a) {
     for (std::size_t b = a + 1; b < agents.size(); ++b) {
       if (const Result<> met = bus.meet(agents[a].id(), agents[b].id()); !met) return met;
+      if (a == 0) agents[a].update_estimate(back_end);
       phase.advance();
     }
   }
@@ -38,7 +40,8 @@ Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps, 
     phase.advance();
   }
   for (std::size_t round = 0; round < kRounds; ++round) {
-    if (const Result<> met = all_meet(meeting.agents, bus, phase); !met) return tl::unexpected(met.error());
+    if (const Result<> met = all_meet(meeting.agents, config.back_end, bus, phase); !met)
+      return tl::unexpected(met.error());
   }
   for (const Agent& agent : meeting.agents) meeting.bytes_sent.push_back(bus.bytes_sent(agent.id()));
   meeting.failures = bus.failures();

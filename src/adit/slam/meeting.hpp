@@ -12,7 +12,8 @@
 namespace adit {
 
 /// The agents of some robots after each has met every other over the loopback bus and has heard what the
-/// others' meetings brought. All of them know the same, so any of them can solve.
+/// others' meetings brought. All of them know the same, so any of them can solve. The first has kept its
+/// estimate up to date from meeting to meeting, as a robot does while it drives.
 struct Meeting {
   std::vector<std::shared_ptr<const RobotMap>> maps;
   std::vector<Agent> agents;              ///< One per map.

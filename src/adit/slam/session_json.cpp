@@ -59,6 +59,19 @@ Json pairs_json(const Session& session) {
   return pairs;
 }
 
+/// What each robot's odometry, and the loops of each pair, turned out to be worth.
+Json variances_json(const Session& session) {
+  Json variances = Json::array();
+  for (const auto& [source, found] : session.solution.variances)
+    variances.push_back(
+        {{"source", source.kind == EdgeKind::loop ? "loops" : "odometry"},
+         {"robots", {session.name_of(source.robots.first), session.name_of(source.robots.second)}},
+         {"variance", found.variance},
+         {"redundancy", found.redundancy},
+         {"edges", found.num_edges}});
+  return variances;
+}
+
 Json components_json(const Session& session) {
   Json components = Json::array();
   for (const Component& component : session.solution.components) {
@@ -114,6 +127,10 @@ std::string session_metrics(const SlamRun& run) {
                         {"robots", robots_json(run)},
                         {"pairs", pairs_json(run.session)},
                         {"components", components_json(run.session)},
+                        {"variances", variances_json(run.session)},
+                        {"online",
+                         {{"largest_difference_m", run.online.largest_m},
+                          {"loops_judged_otherwise", run.online.num_judged_otherwise}}},
                         {"failed", failed}};
   return metrics.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -42,6 +42,9 @@ Result<SlamRun> slam(std::vector<Recording> recordings, const SlamConfig& config
     const Phase phase("solving");
     run.session.solution = meeting->agents.front().solve(config.back_end);
     measure_merges(run.session.solution);
+    Agent& first = meeting->agents.front();
+    first.update_estimate(config.back_end);
+    run.online = difference(first.estimate(), run.session.solution);
   }
   run.session.maps = std::move(meeting->maps);
   run.bytes_sent = std::move(meeting->bytes_sent);

@@ -22,6 +22,7 @@ namespace adit {
 struct SlamRun {
   Session session;  ///< Its provenance says what ran; the caller fills in command and inputs.
   std::vector<std::uint64_t> bytes_sent;  ///< Per robot of the session.
+  EstimateDifference online;              ///< Of the first robot's estimate, kept from meeting to meeting.
   std::vector<FailedRobot> failed;        ///< Recordings that could not be mapped; the others went on.
   std::vector<std::string> notes;         ///< Fallbacks, changed names, messages left out, one line each.
 };

@@ -131,6 +131,29 @@ void decide_merges(const FleetGraph& fleet, const BackEndConfig& config, const L
   }
 }
 
+MeasurementSource source_of(const PoseGraph& graph, const PoseGraph::Edge& edge) {
+  const RobotId from = keyframe_id(graph.nodes[edge.from].key).robot;
+  const RobotId to = keyframe_id(graph.nodes[edge.to].key).robot;
+  return {edge.kind, {std::min(from, to), std::max(from, to)}};
+}
+
+/// What each source is worth, estimated with the poses, from the poses and weights of `solved`.
+Solution<Pose> balanced(PoseGraph graph, const Solution<Pose>& solved, const OptimizerConfig& config,
+                        std::map<MeasurementSource, VarianceComponent>& variances) {
+  std::map<MeasurementSource, std::size_t> numbers;
+  std::vector<std::size_t> sources;
+  for (const PoseGraph::Edge& edge : graph.edges)
+    sources.push_back(numbers.try_emplace(source_of(graph, edge), numbers.size()).first->second);
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) graph.nodes[i].pose = solved.poses[i];
+  BalancedSolution<Pose> found =
+      optimize_balanced(graph, sources, numbers.size(), config, solved.edge_weights);
+  if (!found.solution.ok()) return solved;
+  for (const auto& [source, number] : numbers) variances[source] = found.components[number];
+  found.solution.edge_weights = solved.edge_weights;
+  found.solution.iterations += solved.iterations;
+  return std::move(found.solution);
+}
+
 /// Poses of one group of robots that share a frame, with the loops between them that are in use.
 void solve_group(const FleetGraph& fleet, const std::vector<RobotId>& robots, const BackEndConfig& config,
                  FleetSolution& solution) {
@@ -143,8 +166,11 @@ void solve_group(const FleetGraph& fleet, const std::vector<RobotId>& robots, co
   }
   const PoseGraph graph =
       build_graph(part_of(fleet, robots), std::vector<const LoopOutcome*>(loops.begin(), loops.end()));
-  const Solution<Pose> solved =
+  Solution<Pose> solved =
       config.gnc_on ? solve_robustly(graph, config.gnc) : optimize(graph, config.gnc.optimizer);
+  // The paper's policies state fixed sigmas, and are compared as they are.
+  if (config.balance_on && fleet.policy == MergePolicy::adaptive && solved.ok() && !loops.empty())
+    solved = balanced(graph, solved, config.gnc.optimizer, solution.variances);
   const std::size_t first_loop = graph.edges.size() - loops.size();
   for (std::size_t l = 0; l < loops.size(); ++l) {
     loops[l]->weight = solved.ok() ? solved.edge_weights[first_loop + l] : 0.0;
@@ -177,6 +203,10 @@ PoseGraph optimized_graph(const FleetGraph& fleet, const FleetSolution& solution
     if (outcome.in_use()) used.push_back(&outcome);
   }
   PoseGraph graph = build_graph(fleet, used);
+  for (PoseGraph::Edge& edge : graph.edges) {
+    const auto known = solution.variances.find(source_of(graph, edge));
+    if (known != solution.variances.end()) edge.information /= known->second.variance;
+  }
   std::size_t node = 0;
   for (const auto& [robot, poses] : solution.T_world_keyframe) {
     for (const Pose& pose : poses) graph.nodes[node++].pose = pose;
@@ -194,6 +224,8 @@ Fields fields_of(BackEndConfig& c) {
        "take back merges that passed the merge check where merges with third robots contradict them"},
       {"joint_evidence", &c.joint_evidence, "", 0, 0,
        "also join maps for which several pairs of robots have enough evidence only together"},
+      {"balance_on", &c.balance_on, "", 0, 0,
+       "weigh each robot's odometry, and the loops of each pair, by how well they fit the rest (adaptive)"},
       {"min_loops", &c.min_loops, "", 1, 10000, "loops in use that two robots need to share a map"},
       {"one_place_m", &c.one_place_m, "m", 0.1, 1000.0,
        "places that several pairs compared this near to one another count once"}};

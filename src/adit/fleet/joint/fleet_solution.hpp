@@ -14,6 +14,7 @@
 #include "adit/posegraph/optimizer.hpp"
 #include "adit/posegraph/pcm.hpp"
 #include "adit/posegraph/pose_graph.hpp"
+#include "adit/posegraph/variance_components.hpp"
 
 namespace adit {
 
@@ -23,7 +24,9 @@ struct BackEndConfig {
   /// Under MergePolicy::adaptive pairs with an accepted MergeCheck share a map,
   bool cycles_needed = true;   ///< as long as cycles of merges do not contradict it,
   bool joint_evidence = true;  ///< and pairs whose evidence suffices only when it is added up.
-  int min_loops = 1;           ///< Loops in use between two robots before they count as merged.
+  /// and each robot's odometry, and the loops of each pair, count by what they turn out to be worth.
+  bool balance_on = true;
+  int min_loops = 1;  ///< Loops in use between two robots before they count as merged.
   CycleConfig cycles;
   double one_place_m = 4.0;  ///< Comparisons of several pairs this near to one another count once.
   PcmConfig pcm;
@@ -74,6 +77,13 @@ struct Component {
   double cost = 0.0;
 };
 
+/// Whose measurements: the odometry of one robot (twice the same) or the loops between two.
+struct MeasurementSource {
+  EdgeKind kind = EdgeKind::odometry;
+  RobotPair robots;
+  auto operator<=>(const MeasurementSource&) const = default;
+};
+
 struct FleetSolution {
   std::map<RobotId, std::vector<Pose>> T_world_keyframe;
   std::vector<LoopOutcome> loops;
@@ -81,10 +91,13 @@ struct FleetSolution {
   std::vector<Component> components;
   PoseGraph initial;    ///< All accepted loops, robots placed in a common frame by their loops.
   PoseGraph after_pcm;  ///< The same with only the loops that PCM kept.
+  /// With the information that each source turned out to have, where `BackEndConfig::balance_on`.
   PoseGraph optimized;
+  std::map<MeasurementSource, VarianceComponent> variances;  ///< Empty where nothing was balanced.
 };
 
-/// Selects loops (select_loops), then solves each connected component by GNC with odometry as known inliers.
+/// Selects loops (select_loops), then solves each connected component by GNC with odometry as known inliers,
+/// and balances what is in use (optimize_balanced).
 /// A robot without loops is a component of its own, at its odometry. Loops whose keyframes are not (yet)
 /// known take no part.
 [[nodiscard]] FleetSolution solve(const FleetGraph& fleet, const BackEndConfig& config);

@@ -45,8 +45,6 @@ Fields fields_of(MergeCheckConfig& c) {
       {"max_hypotheses", &c.max_hypotheses, "", 1, 1000,
        "sets of consistent loops that are tested, the largest ones"},
       {"min_loops", &c.min_loops, "", 1, 1000, "loops that have to agree in a hypothesis that joins maps"},
-      {"odometry_slack", &c.odometry_slack, "", 1.0, 100.0,
-       "loops make one hypothesis if they agree within this many times the noise of odometry"},
       {"same_alignment_m", &c.same_alignment_m, "m", 0.0, 1000.0,
        "hypotheses are one if they put the other robot within this distance of one another"},
       {"agreement_at_worst", &c.agreement_at_worst, "", 0.5, 0.999999,

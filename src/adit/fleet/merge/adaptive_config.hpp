@@ -37,7 +37,6 @@ struct MergeCheckConfig {
   int first_checks = 8;
   int max_hypotheses = 12;
   int min_loops = 1;
-  double odometry_slack = 1.0;
   double same_alignment_m = 3.0;
   double agreement_at_worst = 0.95;
   double gross_difference = 3.0;

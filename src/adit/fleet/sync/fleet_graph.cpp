@@ -17,12 +17,12 @@ PcmLoop pcm_loop_of(const LoopClosure& loop) {
   return {loop.from.index, loop.to.index, loop.T_from_to, loop.information};
 }
 
-OdometryChain chain_of(const RobotGraph& graph, double slack) {
+OdometryChain chain_of(const RobotGraph& graph) {
   std::vector<Pose> poses;
   std::vector<Matrix6> steps;
   for (std::size_t k = 0; k < graph.nodes.size(); ++k) {
     poses.push_back(graph.nodes[k].T_odom_base);
-    if (k > 0) steps.push_back(slack * slack * graph.nodes[k].step_covariance);
+    if (k > 0) steps.push_back(graph.nodes[k].step_covariance);
   }
   return {std::move(poses), steps};
 }

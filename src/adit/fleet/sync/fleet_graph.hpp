@@ -44,7 +44,7 @@ struct FleetGraph {
 /// The loop as odometry chains see it.
 [[nodiscard]] PcmLoop pcm_loop_of(const LoopClosure& loop);
 
-/// The odometry of a robot, with `slack` times the sigmas of its steps.
-[[nodiscard]] OdometryChain chain_of(const RobotGraph& graph, double slack = 1.0);
+/// The odometry of a robot.
+[[nodiscard]] OdometryChain chain_of(const RobotGraph& graph);
 
 }  // namespace adit
