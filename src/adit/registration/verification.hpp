@@ -25,8 +25,9 @@ struct Evidence {
 /// surface's normal twice, as cloud a and as cloud b saw it, and the noise of the two is independent: the
 /// products n_a n_b^T that stand in the Hessian instead of n_a n_a^T have no noise floor. A smooth tube then
 /// has no information along its axis, where the plain Hessian of noisy normals pretends some (with sigma 6
-/// degrees, 1 % of that across). Scaled by the variance of the residuals, and divided by half the number of
-/// points that share one normal's neighbourhood, since their errors are not independent.
+/// degrees, 1 % of that across). The squares of the residuals count by regions of the cloud, within which
+/// they err alike (cluster-robust covariance, K.-Y. Liang and S. L. Zeger, "Longitudinal data analysis using
+/// generalized linear models", Biometrika 1986).
 [[nodiscard]] Evidence gather_evidence(const Features& a, const KdTree& tree_a, const Features& b,
                                        const KdTree& tree_b, const Pose& T_a_b,
                                        const RegistrationConfig& config);
