@@ -50,6 +50,8 @@ class IncrementalOptimizer {
   /// From the next update on.
   void set_use(std::size_t edge, EdgeUse use);
   [[nodiscard]] bool is_used(std::size_t edge) const;
+  /// Of an edge in use, at the poses, after a successful update.
+  [[nodiscard]] double chi2(std::size_t edge) const;
 
   struct Update {
     SolveStatus status = SolveStatus::converged;
