@@ -44,9 +44,9 @@ struct IncrementalOptimizer<P>::Impl {
                       model.graph().nodes[*free].key);
     return false;
   }
-  [[nodiscard]] bool linearize_changed(Update& u, const std::vector<std::size_t>& edges, double change) {
+  [[nodiscard]] bool linearize_changed(Update& u, const std::vector<std::size_t>& terms, double change) {
     const std::size_t before_it = u.num_linearized;
-    const auto free = model.linearize_changed(edges, change, u.num_linearized);
+    const auto free = model.linearize_changed(terms, change, u.num_linearized);
     return u.num_linearized == before_it || is_renewed(u, free);
   }
 
@@ -78,13 +78,13 @@ struct IncrementalOptimizer<P>::Impl {
         continue;
       }
       const Replaced replaced = model.take(step);
-      u.num_evaluated += replaced.edges.size();
+      u.num_evaluated += replaced.terms.size();
       if (replaced.poses.empty()) return converge(u, "the steps are below a micrometre");
       const bool falls = replaced.cost < 0.0;
       if (falls) {
         keep(replaced);
         u.cost += replaced.cost;
-        if (!linearize_changed(u, replaced.edges, kStaleChange)) return;
+        if (!linearize_changed(u, replaced.terms, kStaleChange)) return;
         // The gain of the next step is at most of the order of what the model missed in this one.
         if (std::abs(gain + replaced.cost) <= negligible(u))
           return converge(u, "the cost fell as the model said");
@@ -94,7 +94,7 @@ struct IncrementalOptimizer<P>::Impl {
       }
       if (!falls || gain > kSlowGain * last_gain) {
         all_are_fresh = !falls;
-        if (!linearize_changed(u, falls ? replaced.edges : model.all_edges(), kFreshChange)) return;
+        if (!linearize_changed(u, falls ? replaced.terms : model.all_terms(), kFreshChange)) return;
       }
       last_gain = gain;
     }
@@ -116,7 +116,7 @@ struct IncrementalOptimizer<P>::Impl {
     for (P& pose : solution.poses) pose = back * pose;
     keep(model.take_all(solution.poses));
     u.cost = solution.cost_final;
-    (void)linearize_changed(u, model.all_edges(), kFreshChange);
+    (void)linearize_changed(u, model.all_terms(), kFreshChange);
   }
 
   static void converge(Update& u, const char* why) {

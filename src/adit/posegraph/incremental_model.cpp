@@ -23,6 +23,38 @@ double angle_between(const Pose& a, const Pose& b) {
 }
 double angle_between(const Pose2& a, const Pose2& b) { return std::abs(wrap_angle(a.theta() - b.theta())); }
 
+Pose between(const Pose& a, const Pose& b) { return a.inverse() * b; }
+Pose2 between(const Pose2& a, const Pose2& b) {
+  const double c = std::cos(a.theta());
+  const double s = std::sin(a.theta());
+  const Eigen::Vector2d t = b.translation() - a.translation();
+  return {c * t.x() + s * t.y(), c * t.y() - s * t.x(), b.theta() - a.theta()};
+}
+
+// chi2 of an edge at T_from_to = `now`, and half its derivatives by the perturbations of both nodes.
+double gradients(const PoseGraph::Edge& edge, const Pose& now, Vector6& from, Vector6& to) {
+  const BetweenFactor<Pose> f = linearize(edge.T_from_to, now);
+  const Vector6 weighted = edge.information * f.residual;
+  from.noalias() = f.d_from.transpose() * weighted;
+  to.noalias() = f.d_to.transpose() * weighted;
+  return f.residual.dot(weighted);
+}
+// The same as by `linearize`, written out: of all edges of a large map it is what an update spends most on.
+double gradients(const PoseGraph2::Edge& edge, const Pose2& now, Vector3& from, Vector3& to) {
+  const double angle = wrap_angle(now.theta() - edge.T_from_to.theta());
+  const double c = std::cos(edge.T_from_to.theta());
+  const double s = std::sin(edge.T_from_to.theta());
+  const Eigen::Vector2d t = now.translation() - edge.T_from_to.translation();
+  const Vector3 r(c * t.x() + s * t.y(), c * t.y() - s * t.x(), angle);
+  const Vector3 w = edge.information * r;
+  const Eigen::Vector2d turned(c * w.x() - s * w.y(), s * w.x() + c * w.y());  // R_from_to w
+  const double ce = std::cos(angle);
+  const double se = std::sin(angle);
+  from << -turned, turned.x() * now.translation().y() - turned.y() * now.translation().x() - w.z();
+  to << ce * w.x() + se * w.y(), ce * w.y() - se * w.x(), w.z();
+  return r.dot(w);
+}
+
 }  // namespace
 
 template <class P>
@@ -35,19 +67,23 @@ void IncrementalModel<P>::add_node(std::uint64_t key, const P& pose) {
 template <class P>
 void IncrementalModel<P>::add_edge(const Edge& edge) {
   graph_.edges.push_back(edge);
-  State state;
-  constexpr int kTranslation = P::kDof == 6 ? 3 : 2;
-  const auto weights = edge.information.diagonal();
-  state.weight_of_translation = weights.template head<kTranslation>().mean();
-  state.weight_of_rotation = weights.template tail<D - kTranslation>().mean();
-  states_.push_back(state);
-  costs_.push_back(0.0);
+  term_of_.push_back(kNone);
 }
 
 template <class P>
 void IncrementalModel<P>::set_use(std::size_t edge, bool is_used) {
-  if (states_[edge].is_used == is_used) return;
-  states_[edge].is_used = is_used;
+  if (this->is_used(edge) == is_used) return;
+  if (term_of_[edge] == kNone) {
+    constexpr int kTranslation = D == 6 ? 3 : 2;
+    term_of_[edge] = terms_.size();
+    Term& term = terms_.emplace_back();
+    costs_.push_back(0.0);
+    term.edge = graph_.edges[edge];
+    const auto weights = term.edge.information.diagonal();
+    term.weight_of_translation = weights.template head<kTranslation>().mean();
+    term.weight_of_rotation = weights.template tail<D - kTranslation>().mean();
+  }
+  terms_[term_of_[edge]].is_used = is_used;
   changed_.push_back(edge);
 }
 
@@ -56,61 +92,55 @@ double IncrementalModel<P>::cost() const {
   return std::accumulate(costs_.begin(), costs_.end(), 0.0);
 }
 
-// The terms of an edge, as it was linearized: residuals and Jacobians depend on the relative pose only.
+// What an edge adds to the Hessian, as it was linearized: Jacobians depend on the relative pose only.
 template <class P>
-void IncrementalModel<P>::change_terms(std::size_t e, Terms terms) {
+void IncrementalModel<P>::change_factor(Term& term, Change change) {
   using Matrix = typename P::Jacobian;
-  const Edge& edge = graph_.edges[e];
-  const BetweenFactor<P> f = linearize(edge.T_from_to, states_[e].T_linear);
+  const Edge& edge = term.edge;
+  const BetweenFactor<P> f = linearize(edge.T_from_to, term.T_linear);
   const Matrix from_information = f.d_from.transpose() * edge.information;
-  const auto change = [&](std::size_t i, std::size_t j, const Matrix& term) {
+  const auto apply = [&](std::size_t i, std::size_t j, const Matrix& block) {
     if (i == 0 || j == 0) return;
-    if (terms == Terms::added)
-      cholesky_.add(variable(i), variable(j), term);
+    if (change == Change::added)
+      cholesky_.add(variable(i), variable(j), block);
     else
-      cholesky_.remove(variable(i), variable(j), term);
+      cholesky_.remove(variable(i), variable(j), block);
   };
-  change(edge.from, edge.from, from_information * f.d_from);
-  change(edge.to, edge.to, f.d_to.transpose() * edge.information * f.d_to);
-  change(edge.from, edge.to, from_information * f.d_to);
-  states_[e].is_in_factor = terms == Terms::added;
+  apply(edge.from, edge.from, from_information * f.d_from);
+  apply(edge.to, edge.to, f.d_to.transpose() * edge.information * f.d_to);
+  apply(edge.from, edge.to, from_information * f.d_to);
+  term.is_in_factor = change == Change::added;
 }
 
 template <class P>
-void IncrementalModel<P>::linearize_anew(std::size_t e) {
-  State& state = states_[e];
-  if (state.is_in_factor) change_terms(e, Terms::removed);
-  state.T_linear = relative(graph_.edges[e]);
-  state.turned = 0.0;
-  state.moved = 0.0;
-  change_terms(e, Terms::added);
+void IncrementalModel<P>::linearize_anew(Term& term) {
+  if (term.is_in_factor) change_factor(term, Change::removed);
+  term.T_linear = relative(term.edge);
+  term.turned = 0.0;
+  term.moved = 0.0;
+  change_factor(term, Change::added);
 }
 
 template <class P>
-double IncrementalModel<P>::change(std::size_t e) const {
-  const State& state = states_[e];
-  return std::max(state.turned, state.moved / (1.0 + state.T_linear.translation().norm()));
+double IncrementalModel<P>::change(const Term& term) {
+  return std::max(term.turned, term.moved / (1.0 + term.T_linear.translation().norm()));
 }
 
 template <class P>
-void IncrementalModel<P>::evaluate(std::size_t e) {
-  const Edge& edge = graph_.edges[e];
-  State& state = states_[e];
-  const P now = relative(edge);
-  const BetweenFactor<P> f = linearize(edge.T_from_to, now);
-  state.turned = angle_between(state.T_linear, now);
-  state.moved = (now.translation() - state.T_linear.translation()).norm();
-  const Tangent weighted = edge.information * f.residual;
-  costs_[e] = f.residual.dot(weighted);
-  state.from.noalias() = f.d_from.transpose() * weighted;
-  state.to.noalias() = f.d_to.transpose() * weighted;
+void IncrementalModel<P>::evaluate(std::size_t t) {
+  Term& term = terms_[t];
+  const Edge& edge = term.edge;
+  const P now = between(poses_[edge.from], poses_[edge.to]);
+  term.turned = angle_between(term.T_linear, now);
+  term.moved = (now.translation() - term.T_linear.translation()).norm();
+  costs_[t] = gradients(edge, now, term.from, term.to);
 }
 
 template <class P>
 void IncrementalModel<P>::sum_gradient(std::size_t node) {
   Tangent sum = Tangent::Zero();
-  for (const std::size_t e : nodes_[node].edges)
-    sum += graph_.edges[e].from == node ? states_[e].from : states_[e].to;
+  for (const std::size_t t : nodes_[node].terms)
+    sum += terms_[t].edge.from == node ? terms_[t].from : terms_[t].to;
   nodes_[node].gradient = sum;
   if (node == 0 || nodes_[node].is_active) return;
   nodes_[node].is_active = true;
@@ -121,24 +151,24 @@ void IncrementalModel<P>::sum_gradient(std::size_t node) {
 template <class P>
 void IncrementalModel<P>::apply_changes() {
   for (const std::size_t e : changed_) {
-    State& state = states_[e];
-    const Edge& edge = graph_.edges[e];
-    if (state.is_used == state.is_in_factor) continue;
-    for (const std::size_t node : {edge.from, edge.to}) {
-      if (state.is_used)
-        nodes_[node].edges.push_back(e);
+    const std::size_t t = term_of_[e];
+    Term& term = terms_[t];
+    if (term.is_used == term.is_in_factor) continue;
+    for (const std::size_t node : {term.edge.from, term.edge.to}) {
+      if (term.is_used)
+        nodes_[node].terms.push_back(t);
       else
-        std::erase(nodes_[node].edges, e);
+        std::erase(nodes_[node].terms, t);
     }
-    if (state.is_used) {
-      evaluate(e);
-      linearize_anew(e);
+    if (term.is_used) {
+      evaluate(t);
+      linearize_anew(term);
     } else {
-      change_terms(e, Terms::removed);
-      costs_[e] = 0.0;
+      change_factor(term, Change::removed);
+      costs_[t] = 0.0;
     }
-    sum_gradient(edge.from);
-    sum_gradient(edge.to);
+    sum_gradient(term.edge.from);
+    sum_gradient(term.edge.to);
   }
   changed_.clear();
 }
@@ -157,21 +187,21 @@ std::optional<std::size_t> IncrementalModel<P>::renew() {
   if (!broken_) return refresh();
   cholesky_ = IncrementalCholesky(D);
   while (cholesky_.size() + 1 < graph_.nodes.size()) (void)cholesky_.add_variable();
-  for (std::size_t e = 0; e < states_.size(); ++e) {
-    states_[e].is_in_factor = false;
-    if (states_[e].is_used) linearize_anew(e);
+  for (Term& term : terms_) {
+    term.is_in_factor = false;
+    if (term.is_used) linearize_anew(term);
   }
   return refresh();
 }
 
 template <class P>
-std::optional<std::size_t> IncrementalModel<P>::linearize_changed(const std::vector<std::size_t>& edges,
+std::optional<std::size_t> IncrementalModel<P>::linearize_changed(const std::vector<std::size_t>& terms,
                                                                   double least_change,
                                                                   std::size_t& num_linearized) {
   bool any = false;
-  for (const std::size_t e : edges) {
-    if (!states_[e].is_used || change(e) <= least_change) continue;
-    linearize_anew(e);
+  for (const std::size_t t : terms) {
+    if (!terms_[t].is_used || change(terms_[t]) <= least_change) continue;
+    linearize_anew(terms_[t]);
     ++num_linearized;
     any = true;
   }
@@ -179,8 +209,8 @@ std::optional<std::size_t> IncrementalModel<P>::linearize_changed(const std::vec
 }
 
 template <class P>
-std::vector<std::size_t> IncrementalModel<P>::all_edges() const {
-  std::vector<std::size_t> all(states_.size());
+std::vector<std::size_t> IncrementalModel<P>::all_terms() const {
+  std::vector<std::size_t> all(terms_.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   return all;
 }
@@ -233,22 +263,22 @@ std::vector<std::size_t> IncrementalModel<P>::stale_for(const Step& step, double
     const double moved2 = d.template head<kTranslation>().squaredNorm();
     const double turned2 = d.template tail<D - kTranslation>().squaredNorm();
     if (moved2 + turned2 < kSmallestStep * kSmallestStep) continue;
-    for (const std::size_t e : nodes_[step.variables[k] + 1].edges) {
-      if (!visit(states_[e].visited_in)) continue;
-      const State& state = states_[e];
-      const double turn2 = state.turned * state.turned;
+    for (const std::size_t t : nodes_[step.variables[k] + 1].terms) {
+      Term& term = terms_[t];
+      if (!visit(term.visited_in)) continue;
+      const double turn2 = term.turned * term.turned;
       const double error =
-          state.weight_of_translation * (turn2 * moved2 + state.moved * state.moved * turned2) +
-          state.weight_of_rotation * turn2 * turned2;
-      errors.emplace_back(e, error);
+          term.weight_of_translation * (turn2 * moved2 + term.moved * term.moved * turned2) +
+          term.weight_of_rotation * turn2 * turned2;
+      errors.emplace_back(t, error);
       sum += error;
     }
   }
   std::vector<std::size_t> stale;
   if (sum <= kStaleShare * gain) return stale;
   const double smallest = 0.1 * kStaleShare * gain / static_cast<double>(errors.size());
-  for (const auto& [e, error] : errors)
-    if (error > smallest) stale.push_back(e);
+  for (const auto& [t, error] : errors)
+    if (error > smallest) stale.push_back(t);
   return stale;
 }
 
@@ -272,13 +302,13 @@ void IncrementalModel<P>::evaluate_around(Replaced& replaced) {
   ++pass_;
   std::vector<std::size_t> around;
   for (const auto& [node, pose] : replaced.poses) {
-    for (const std::size_t e : nodes_[node].edges) {
-      if (!visit(states_[e].visited_in)) continue;
-      replaced.edges.push_back(e);
-      replaced.cost -= costs_[e];
-      evaluate(e);
-      replaced.cost += costs_[e];
-      for (const std::size_t end : {graph_.edges[e].from, graph_.edges[e].to})
+    for (const std::size_t t : nodes_[node].terms) {
+      if (!visit(terms_[t].visited_in)) continue;
+      replaced.terms.push_back(t);
+      replaced.cost -= costs_[t];
+      evaluate(t);
+      replaced.cost += costs_[t];
+      for (const std::size_t end : {terms_[t].edge.from, terms_[t].edge.to})
         if (visit(nodes_[end].visited_in)) around.push_back(end);
     }
   }

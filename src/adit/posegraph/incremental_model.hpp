@@ -34,9 +34,11 @@ class IncrementalModel {
 
   [[nodiscard]] const BasicPoseGraph<P>& graph() const { return graph_; }
   [[nodiscard]] const std::vector<P>& poses() const { return poses_; }
-  [[nodiscard]] bool is_used(std::size_t edge) const { return states_[edge].is_used; }
+  [[nodiscard]] bool is_used(std::size_t edge) const {
+    return term_of_[edge] != kNone && terms_[term_of_[edge]].is_used;
+  }
   /// chi2 of an edge in use at the present poses, as of the last `renew`.
-  [[nodiscard]] double cost(std::size_t edge) const { return costs_[edge]; }
+  [[nodiscard]] double cost(std::size_t edge) const { return costs_[term_of_[edge]]; }
   /// Of all edges in use.
   [[nodiscard]] double cost() const;
   [[nodiscard]] const IncrementalCholesky& cholesky() const { return cholesky_; }
@@ -49,23 +51,23 @@ class IncrementalModel {
   /// Brings cost, gradient and factor up to date. This and all below: returns a node that is free to move, or
   /// nothing when all is well. After a failure the next `renew` makes the factor from nothing.
   [[nodiscard]] std::optional<std::size_t> renew();
-  /// Linearizes anew those of the edges that have changed by more than this, radians and share of the length
+  /// Linearizes anew those of the terms that have changed by more than this, radians and share of the length
   /// plus a metre. Adds how many to `num_linearized`.
-  [[nodiscard]] std::optional<std::size_t> linearize_changed(const std::vector<std::size_t>& edges,
+  [[nodiscard]] std::optional<std::size_t> linearize_changed(const std::vector<std::size_t>& terms,
                                                              double change, std::size_t& num_linearized);
-  [[nodiscard]] std::vector<std::size_t> all_edges() const;
+  [[nodiscard]] std::vector<std::size_t> all_terms() const;
 
   /// The step to the minimum of the model, as far as it matters; empty where no gradient matters.
   [[nodiscard]] Step step();
   /// By how much the model falls with it.
   [[nodiscard]] double gain(const Step& step) const;
-  /// Edges that were linearized where this step makes the model err, if they err by more than a share of the
+  /// Terms that were linearized where this step makes the model err, if they err by more than a share of the
   /// gain.
   [[nodiscard]] std::vector<std::size_t> stale_for(const Step& step, double gain);
 
   struct Replaced {
     std::vector<std::pair<std::size_t, P>> poses;  ///< As they were.
-    std::vector<std::size_t> edges;                ///< That were evaluated.
+    std::vector<std::size_t> terms;                ///< That were evaluated.
     double cost = 0.0;                             ///< By how much it rose.
   };
   Replaced take(const Step& step);
@@ -74,8 +76,11 @@ class IncrementalModel {
   Replaced take_all(const std::vector<P>& poses);
 
  private:
-  // An edge at the present poses, and as the factor has it.
-  struct State {
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  // An edge that is or was in use, at the present poses, and as the factor has it. Most loops never are in
+  // use: terms lie by themselves, so that they are near one another.
+  struct Term {
+    Edge edge;
     bool is_used = false;
     bool is_in_factor = false;
     P T_linear;  // T_from_to where the factor's terms were linearized
@@ -89,19 +94,19 @@ class IncrementalModel {
   };
   struct Node {
     Tangent gradient = Tangent::Zero();
-    std::vector<std::size_t> edges;  // in use
+    std::vector<std::size_t> terms;  // in use
     bool is_active = false;
     std::size_t visited_in = 0;
   };
-  enum class Terms { added, removed };
+  enum class Change { added, removed };
 
-  void change_terms(std::size_t e, Terms terms);
-  void linearize_anew(std::size_t e);
-  void evaluate(std::size_t e);
+  void change_factor(Term& term, Change change);
+  void linearize_anew(Term& term);
+  void evaluate(std::size_t t);
   void evaluate_around(Replaced& replaced);
   void sum_gradient(std::size_t node);
   void apply_changes();
-  [[nodiscard]] double change(std::size_t e) const;
+  [[nodiscard]] static double change(const Term& term);
   [[nodiscard]] std::optional<std::size_t> refresh();
   [[nodiscard]] Step right_side();
   // Whether this is the first time in the present pass.
@@ -112,8 +117,9 @@ class IncrementalModel {
   BasicPoseGraph<P> graph_;
   std::vector<P> poses_;
   std::vector<Node> nodes_;
-  std::vector<State> states_;
-  std::vector<double> costs_;         // of the edges in use; 0 of others
+  std::vector<std::size_t> term_of_;  // edge; kNone of those that never were in use
+  std::vector<Term> terms_;
+  std::vector<double> costs_;         // of the terms in use; 0 of others
   std::vector<std::size_t> changed_;  // edges whose use changed
   std::vector<std::size_t> active_;   // nodes whose gradient may matter
   std::size_t pass_ = 0;              // over edges or nodes
