@@ -33,6 +33,7 @@ struct IncrementalOptimizer<P>::Impl {
   std::vector<std::pair<std::size_t, P>> before;  // poses at the start of this update, of nodes moved
   std::vector<std::size_t> moved_in;              // update that moved each node last
   std::size_t num_updates = 0;
+  bool is_settled = false;  // the last update converged
 
   // Whether the factor is as it should be, given the node that is free to move.
   [[nodiscard]] bool is_renewed(Update& u, std::optional<std::size_t> free) const {
@@ -85,9 +86,6 @@ struct IncrementalOptimizer<P>::Impl {
         keep(replaced);
         u.cost += replaced.cost;
         if (!linearize_changed(u, replaced.terms, kStaleChange)) return;
-        // The gain of the next step is at most of the order of what the model missed in this one.
-        if (std::abs(gain + replaced.cost) <= negligible(u))
-          return converge(u, "the cost fell as the model said");
       } else {
         model.put_back(replaced.poses);
         if (all_are_fresh) return solve_as_a_whole(u);
@@ -198,6 +196,7 @@ typename IncrementalOptimizer<P>::Update IncrementalOptimizer<P>::update() {
   if (impl.model.poses().size() < 2) return u;
   ++impl.num_updates;
   impl.before.clear();
+  const bool was_settled = std::exchange(impl.is_settled, false);
   if (impl.refuse_indefinite(u)) return u;
   if (!impl.is_renewed(u, impl.model.renew())) return u;
   u.cost = impl.model.cost();
@@ -206,7 +205,11 @@ typename IncrementalOptimizer<P>::Update IncrementalOptimizer<P>::update() {
     u.reason = "the cost of the start is not a finite number";
     return u;
   }
-  impl.minimize(u);
+  if (was_settled && !impl.model.has_new_gradient())
+    Impl::converge(u, "nothing pulls at the poses");
+  else
+    impl.minimize(u);
+  impl.is_settled = u.status == SolveStatus::converged;
   if (u.status != SolveStatus::converged && u.status != SolveStatus::max_iterations)
     impl.model.put_back(impl.before);
   for (const auto& [node, pose] : impl.before) u.moved.push_back(node);

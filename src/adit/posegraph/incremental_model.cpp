@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kSmallestGain = 1e-13;  // in chi2, by one node alone, below which its gradient is left
 constexpr double kSmallestDiagonal = 1e-12;
-constexpr double kStaleShare = 0.1;  // of the gain: error of the linear model that is tolerated
+constexpr double kStaleShare = 0.5;  // of the gain: error of the linear model that is tolerated
+constexpr double kNoResidual = 1e-12;  // chi2 that is rounding
 
 // Radians from one rotation to another, for small angles.
 double angle_between(const Pose& a, const Pose& b) {
@@ -150,6 +151,7 @@ void IncrementalModel<P>::sum_gradient(std::size_t node) {
 // Edges whose use changed enter the sums and the factor, or leave them.
 template <class P>
 void IncrementalModel<P>::apply_changes() {
+  has_new_gradient_ = false;
   for (const std::size_t e : changed_) {
     const std::size_t t = term_of_[e];
     Term& term = terms_[t];
@@ -163,7 +165,9 @@ void IncrementalModel<P>::apply_changes() {
     if (term.is_used) {
       evaluate(t);
       linearize_anew(term);
+      has_new_gradient_ = has_new_gradient_ || costs_[t] > kNoResidual;
     } else {
+      has_new_gradient_ = true;
       change_factor(term, Change::removed);
       costs_[t] = 0.0;
     }

@@ -51,6 +51,9 @@ class IncrementalModel {
   /// Brings cost, gradient and factor up to date. This and all below: returns a node that is free to move, or
   /// nothing when all is well. After a failure the next `renew` makes the factor from nothing.
   [[nodiscard]] std::optional<std::size_t> renew();
+  /// Whether the last `renew` changed the gradient. An edge without residual does not, such as the odometry to
+  /// a new node that starts where it leads.
+  [[nodiscard]] bool has_new_gradient() const { return has_new_gradient_; }
   /// Linearizes anew those of the terms that have changed by more than this, radians and share of the length
   /// plus a metre. Adds how many to `num_linearized`.
   [[nodiscard]] std::optional<std::size_t> linearize_changed(const std::vector<std::size_t>& terms,
@@ -124,6 +127,7 @@ class IncrementalModel {
   std::vector<std::size_t> active_;   // nodes whose gradient may matter
   std::size_t pass_ = 0;              // over edges or nodes
   IncrementalCholesky cholesky_{D};
+  bool has_new_gradient_ = false;
   bool broken_ = false;  // the last refresh failed: the factor is of no use
 };
 
