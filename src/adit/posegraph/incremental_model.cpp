@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSmallestGain = 1e-13;  // in chi2, by one node alone, below which its gradient is left
 constexpr double kSmallestDiagonal = 1e-12;
-constexpr double kStaleShare = 0.5;  // of the gain: error of the linear model that is tolerated
+constexpr double kStaleShare = 0.5;    // of the gain: error of the linear model that is tolerated
 constexpr double kNoResidual = 1e-12;  // chi2 that is rounding
 
 // Radians from one rotation to another, for small angles.
@@ -271,9 +271,8 @@ std::vector<std::size_t> IncrementalModel<P>::stale_for(const Step& step, double
       Term& term = terms_[t];
       if (!visit(term.visited_in)) continue;
       const double turn2 = term.turned * term.turned;
-      const double error =
-          term.weight_of_translation * (turn2 * moved2 + term.moved * term.moved * turned2) +
-          term.weight_of_rotation * turn2 * turned2;
+      const double error = term.weight_of_translation * (turn2 * moved2 + term.moved * term.moved * turned2) +
+                           term.weight_of_rotation * turn2 * turned2;
       errors.emplace_back(t, error);
       sum += error;
     }

@@ -51,8 +51,8 @@ class IncrementalModel {
   /// Brings cost, gradient and factor up to date. This and all below: returns a node that is free to move, or
   /// nothing when all is well. After a failure the next `renew` makes the factor from nothing.
   [[nodiscard]] std::optional<std::size_t> renew();
-  /// Whether the last `renew` changed the gradient. An edge without residual does not, such as the odometry to
-  /// a new node that starts where it leads.
+  /// Whether the last `renew` changed the gradient. An edge without residual does not, such as the odometry
+  /// to a new node that starts where it leads.
   [[nodiscard]] bool has_new_gradient() const { return has_new_gradient_; }
   /// Linearizes anew those of the terms that have changed by more than this, radians and share of the length
   /// plus a metre. Adds how many to `num_linearized`.
