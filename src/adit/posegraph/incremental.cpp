@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "adit/core/check.hpp"
@@ -46,9 +47,9 @@ struct IncrementalOptimizer<P>::Impl {
     return false;
   }
   [[nodiscard]] bool linearize_changed(Update& u, const std::vector<std::size_t>& terms, double change) {
-    const std::size_t before_it = u.num_linearized;
+    const std::size_t num_before = u.num_linearized;
     const auto free = model.linearize_changed(terms, change, u.num_linearized);
-    return u.num_linearized == before_it || is_renewed(u, free);
+    return u.num_linearized == num_before || is_renewed(u, free);
   }
 
   void keep(const Replaced& replaced) {
