@@ -20,14 +20,16 @@ enum class EdgeUse { in_use, out_of_use };
 ///
 /// Cost of an update: that of what changes. The factor is renewed on the paths from changed nodes to the root
 /// of the elimination tree, the right side is eliminated along the paths of nodes whose gradient is not
-/// negligible, and steps are solved for downwards from the root as long as they exceed a micrometre or
-/// microradian. Only edges of nodes that moved are evaluated again. A sum over the costs of all edges is what
+/// negligible, and steps are solved for downwards from the root as long as they exceed ten micrometres or
+/// microradians. Only edges of nodes that moved are evaluated again. An update after one that converged,
+/// where no edge was added that pulls at the poses, solves nothing. A sum over the costs of all edges is what
 /// remains linear in the size of the graph.
 ///
 /// Each edge contributes to the factor as linearized when it was added. In the local frames of factors.hpp
 /// that depends on its relative pose only, which a loop hardly changes even where it moves the whole
-/// trajectory. An edge whose relative pose has changed by more than a tenth is linearized anew, all edges
-/// that have changed are where steps converge slowly. The gradient is exact at every step.
+/// trajectory. An edge is linearized anew where its relative pose has changed by more than a tenth, where the
+/// errors that a step makes by such changes would reach half of its gain, and, if it has changed at all,
+/// where steps converge slowly. The gradient is exact at every step.
 ///
 /// Gauge: the first node keeps its pose. When `update` is called, edges in use must connect every node to it.
 /// Source: Kaess, Johannsson, Roberts, Ila, Leonard, Dellaert, "iSAM2" (IJRR 2012); unlike there, an edge is
@@ -50,6 +52,8 @@ class IncrementalOptimizer {
   /// From the next update on.
   void set_use(std::size_t edge, EdgeUse use);
   [[nodiscard]] bool is_used(std::size_t edge) const;
+  /// Of an edge in use, at the poses, after a successful update.
+  [[nodiscard]] double chi2(std::size_t edge) const;
 
   struct Update {
     SolveStatus status = SolveStatus::converged;

@@ -70,14 +70,22 @@ void IncrementalCholesky::add(Index i, Index j, const Eigen::Ref<const Eigen::Ma
 void IncrementalCholesky::remove(Index i, Index j, const Eigen::Ref<const Eigen::MatrixXd>& term) {
   add(i, j, -term);
   if (i == j) return;
-  const auto known = std::ranges::find(neighbours_[i], j, &Neighbour::variable);
-  const Index b = known->block;
+  const Index b = std::ranges::find(neighbours_[i], j, &Neighbour::variable)->block;
   uses_[b] -= 2;
-  if (uses_[b] > 0) return;
-  neighbours_[i].erase(known);
-  neighbours_[j].erase(std::ranges::find(neighbours_[j], i, &Neighbour::variable));
-  std::fill_n(block(b), d_ * d_, 0.0);
-  free_blocks_.push_back(b);
+  if (uses_[b] == 0) unused_.emplace_back(i, j);
+}
+
+// Only now: a term that was replaced by another has left its pair as it was.
+void IncrementalCholesky::forget_unused() {
+  for (const auto& [i, j] : unused_) {
+    const auto known = std::ranges::find(neighbours_[i], j, &Neighbour::variable);
+    if (known == neighbours_[i].end() || uses_[known->block] > 0) continue;
+    std::fill_n(block(known->block), d_ * d_, 0.0);
+    free_blocks_.push_back(known->block);
+    neighbours_[i].erase(known);
+    neighbours_[j].erase(std::ranges::find(neighbours_[j], i, &Neighbour::variable));
+  }
+  unused_.clear();
 }
 
 IncrementalCholesky::Removed IncrementalCholesky::remove_touched() {
@@ -111,6 +119,7 @@ IncrementalCholesky::Removed IncrementalCholesky::remove_touched() {
 
 std::optional<Index> IncrementalCholesky::refresh() {
   num_renewed_ = 0;
+  forget_unused();
   std::vector<Index> renewed;
   if (!touched_.empty()) {
     const Removed removed = remove_touched();

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace adit {
@@ -88,6 +89,7 @@ class IncrementalCholesky {
     std::vector<std::size_t> orphans;  ///< Cliques that have lost their parent.
   };
   Removed remove_touched();
+  void forget_unused();
   [[nodiscard]] BlockSymbolic analyze(const Removed& removed) const;
   std::vector<std::size_t> make_cliques(const BlockSymbolic& symbolic,
                                         const std::vector<std::size_t>& variables);
@@ -109,6 +111,7 @@ class IncrementalCholesky {
   std::vector<std::size_t> free_blocks_;  ///< Places in blocks_ that are not in use.
   std::vector<std::size_t> diagonal_;     ///< Block of each variable.
   std::vector<std::vector<Neighbour>> neighbours_;
+  std::vector<std::pair<std::size_t, std::size_t>> unused_;  ///< Pairs whose last term may have gone.
   std::vector<std::size_t>
       touched_;                     ///< Variables that are new or have new neighbours since the last refresh.
   std::vector<std::size_t> dirty_;  ///< Variables whose terms have changed since then.

@@ -14,6 +14,12 @@ namespace {
 
 using Index = std::size_t;
 
+// For a handful of numbers, where the call of memmove would cost more than the copy.
+double* copy_few(const double* from, Index n, double* to) {
+  for (Index i = 0; i < n; ++i) to[i] = from[i];
+  return to + n;
+}
+
 }  // namespace
 
 std::vector<Index> IncrementalCholesky::paths_to_root(const std::vector<Index>& variables) {
@@ -43,11 +49,11 @@ void IncrementalCholesky::forward(const Clique& clique, double* work) {
   const Index columns = clique.own.size() * d_;
   front_.assign(columns + clique.below.size() * d_, 0.0);
   double* to = front_.data();
-  for (const Index v : clique.own) to = std::copy_n(work + v * d_, d_, to);
+  for (const Index v : clique.own) to = copy_few(work + v * d_, d_, to);
   dense::solve_lower(clique.panel.data(), front_.size(), columns, front_.data());
   const double* from = front_.data();
   for (const Index v : clique.own) {
-    std::copy_n(from, d_, work + v * d_);
+    copy_few(from, d_, work + v * d_);
     from += d_;
   }
   for (const Index v : clique.below) {
@@ -59,12 +65,12 @@ void IncrementalCholesky::backward(const Clique& clique, double* work) {
   const Index columns = clique.own.size() * d_;
   front_.resize(columns + clique.below.size() * d_);
   double* to = front_.data();
-  for (const Index v : clique.own) to = std::copy_n(work + v * d_, d_, to);
-  for (const Index v : clique.below) to = std::copy_n(work + v * d_, d_, to);
+  for (const Index v : clique.own) to = copy_few(work + v * d_, d_, to);
+  for (const Index v : clique.below) to = copy_few(work + v * d_, d_, to);
   dense::solve_lower_transposed(clique.panel.data(), front_.size(), columns, front_.data());
   const double* from = front_.data();
   for (const Index v : clique.own) {
-    std::copy_n(from, d_, work + v * d_);
+    copy_few(from, d_, work + v * d_);
     from += d_;
   }
 }

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "adit/core/parallel.hpp"
+#include "adit/posegraph/factors.hpp"
 #include "adit/posegraph/incremental_cholesky.hpp"
 #include "support/graphs.hpp"
 
@@ -196,6 +197,34 @@ TEST(IncrementalCholesky, RemovedTermsLeaveNoTrace) {
   g.expect_solves();
 }
 
+// What an edge does that is linearized anew: its pair is without a term for a moment only.
+TEST(IncrementalCholesky, ReplacedTermsCountAsTheLastOnes) {
+  Rng rng(13);
+  Growing g(3);
+  for (std::size_t i = 0; i < 60; ++i) {
+    g.add_variable(rng);
+    if (i > 0) g.add_term(i - 1, i, rng);
+  }
+  const Eigen::Matrix3d term = 0.1 * Eigen::Matrix3d::Identity();
+  g.cholesky.add(5, 50, term);
+  ASSERT_FALSE(g.cholesky.refresh());
+  const std::size_t num_supernodes = g.cholesky.num_supernodes();
+  g.cholesky.remove(5, 50, term);
+  g.cholesky.add(5, 50, 2.0 * term);
+  ASSERT_FALSE(g.cholesky.refresh());
+  EXPECT_EQ(g.cholesky.num_supernodes(), num_supernodes);
+  // Removed twice, in use in between, and another pair that takes a place that became free.
+  g.cholesky.remove(50, 5, 2.0 * term);
+  g.cholesky.add(50, 5, term);
+  g.cholesky.remove(5, 50, term);
+  g.cholesky.add(7, 30, term);
+  ASSERT_FALSE(g.cholesky.refresh());
+  g.cholesky.add(9, 40, -term);
+  g.cholesky.remove(7, 30, term);
+  g.cholesky.remove(9, 40, -term);
+  g.expect_solves();
+}
+
 TEST(IncrementalCholesky, QuadraticFormsAndSparseSolutionsAreThoseOfTheDenseInverse) {
   Rng rng(12);
   Growing g(3);
@@ -243,6 +272,34 @@ TYPED_TEST(Incremental, EdgesTakenOutOfUseCountNoMore) {
   optimizer.set_use(e, EdgeUse::out_of_use);
   EXPECT_NEAR(optimizer.update().cost, cost, 1e-4 * cost);
   EXPECT_FALSE(optimizer.is_used(e));
+}
+
+TYPED_TEST(Incremental, SolvesNothingWhereNothingHasChanged) {
+  using P = TypeParam;
+  Rng rng(14);
+  const auto made = test::make_graph<P>(rng, 80, 12, 0.02);
+  IncrementalOptimizer<P> optimizer;
+  feed(made.graph, optimizer, [](const auto&) {});
+  const auto again = optimizer.update();
+  EXPECT_EQ(again.status, SolveStatus::converged);
+  EXPECT_EQ(again.iterations, 0);
+  EXPECT_TRUE(again.moved.empty());
+  double sum = 0.0;
+  for (std::size_t e = 0; e < optimizer.graph().edges.size(); ++e) {
+    const auto& edge = optimizer.graph().edges[e];
+    const auto r = between_residual(edge.T_from_to, optimizer.poses()[edge.from], optimizer.poses()[edge.to]);
+    EXPECT_NEAR(optimizer.chi2(e), r.dot(edge.information * r), 1e-9 * (1.0 + optimizer.chi2(e)));
+    sum += optimizer.chi2(e);
+  }
+  EXPECT_NEAR(again.cost, sum, 1e-9 * sum);
+  // An edge that pulls, and the same taken out again, both count.
+  auto pulls = made.graph.edges.front();
+  pulls.from = 5;
+  pulls.to = 60;
+  const std::size_t e = optimizer.add_edge(pulls);
+  EXPECT_GT(optimizer.update().iterations, 0);
+  optimizer.set_use(e, EdgeUse::out_of_use);
+  EXPECT_GT(optimizer.update().iterations, 0);
 }
 
 // What a new measurement adds to the cost is, to first order, its chi2 by the predicted covariance and its

@@ -202,7 +202,7 @@ struct RobustIncremental<P>::Impl {
       moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
       for (const std::size_t node : moved) {
         for (const std::size_t e : kept_at[node]) {
-          const double chi2 = own_chi2(e);
+          const double chi2 = optimizer.chi2(e);
           if (chi2 <= largest) continue;
           largest = chi2;
           worst = e;
