@@ -88,35 +88,48 @@ struct RobustIncremental<P>::Impl {
     return (squares / n - (sum / n).cwiseAbs2()).maxCoeff();
   }
 
+  struct Innovation {
+    Eigen::VectorXd residual;
+    Eigen::MatrixXd covariance;
+  };
   // How well loops agree with the rest of the graph, and with one another.
   struct Weight {
     double chi2 = 0.0;      // by the variance limit
     double log_odds = 0.0;  // that all are true, beyond what is asked
   };
-  [[nodiscard]] Weight weigh(const std::vector<std::size_t>& loops) {
-    const auto prediction = optimizer.predict(loops);
-    Eigen::MatrixXd covariance = prediction.covariance;
-    Eigen::VectorXd anywhere(covariance.rows());
-    constexpr int kTranslation = D == 6 ? 3 : 2;
+  // What is predicted of loops, with the noise of their own measurements.
+  [[nodiscard]] Innovation innovation_of(const std::vector<std::size_t>& loops) {
+    auto [residual, covariance] = optimizer.predict(loops);
     for (std::size_t k = 0; k < loops.size(); ++k) {
       const auto at = static_cast<Eigen::Index>(k) * D;
       covariance.block(at, at, D, D) += edge(loops[k]).information.llt().solve(P::Jacobian::Identity());
+    }
+    return {std::move(residual), std::move(covariance)};
+  }
+  [[nodiscard]] Weight weigh(const Innovation& innovation) const {
+    const Eigen::Index rows = innovation.residual.size();
+    Eigen::VectorXd anywhere(rows);
+    constexpr int kTranslation = D == 6 ? 3 : 2;
+    for (Eigen::Index at = 0; at < rows; at += D) {
       anywhere.segment(at, D).setConstant(std::numbers::pi * std::numbers::pi / 3.0);
       anywhere.segment(at, kTranslation).setConstant(2.0 * map_spread);
     }
-    const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+    const Eigen::LLT<Eigen::MatrixXd> factor(innovation.covariance);
     Weight out;
-    const double unscaled = prediction.residual.dot(factor.solve(prediction.residual));
+    const double unscaled = innovation.residual.dot(factor.solve(innovation.residual));
     out.chi2 = unscaled / variance_limit;
     const double log_det = 2.0 * factor.matrixLLT().diagonal().array().log().sum() +
-                           static_cast<double>(covariance.rows()) * std::log(variance);
+                           static_cast<double>(rows) * std::log(variance);
     const double false_share = static_cast<double>(verdicts_of_loops[1] + 1) /
                                static_cast<double>(verdicts_of_loops[0] + verdicts_of_loops[1] + 2);
     const double asked = std::log(config.true_share / (1.0 - config.true_share));
     const double prior = std::log(false_share / (1.0 - false_share));
     out.log_odds = 0.5 * (anywhere.array().log().sum() - log_det) - 0.5 * unscaled / variance -
-                   static_cast<double>(loops.size()) * prior - asked;
+                   static_cast<double>(rows / D) * prior - asked;
     return out;
+  }
+  [[nodiscard]] bool is_accepted(const Weight& weight) const {
+    return weight.chi2 <= bounds[1] && weight.log_odds > 0.0;
   }
   double map_spread = 1.0;
   std::size_t verdicts_of_loops[2] = {0, 0};  // in use, left out
@@ -164,7 +177,7 @@ struct RobustIncremental<P>::Impl {
 
   // A loop by itself, then with those that wait near it.
   bool judge(std::size_t e, Step& step) {
-    const Weight alone = weigh({e});
+    const Weight alone = weigh(innovation_of({e}));
     if (alone.chi2 > bounds[1]) {
       leave(e, Verdict::left_out);
       return true;
@@ -183,13 +196,48 @@ struct RobustIncremental<P>::Impl {
       if (!(near(a.from, b.from) && near(a.to, b.to)) && !(near(a.from, b.to) && near(a.to, b.from)))
         continue;
       ++compared;
-      const Weight both = weigh({e, others[k]});
+      const Weight both = weigh(innovation_of({e, others[k]}));
       if (both.chi2 > bounds[2] || both.log_odds <= 0.0) continue;
       take(e, step);
       take(others[k], step);
       return solve(step);
     }
     leave(e, Verdict::waits);
+    return true;
+  }
+
+  // Of loops that are accepted by themselves, those that are still accepted after the ones before them: what
+  // a loop makes of the prediction of the others follows from their joint covariance, without a solution.
+  [[nodiscard]] std::vector<std::size_t> compatible(const std::vector<std::size_t>& loops) {
+    if (loops.size() < 2) return loops;
+    Innovation all = innovation_of(loops);
+    std::vector<std::size_t> out;
+    for (std::size_t k = 0; k < loops.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(k) * D;
+      const Innovation one{all.residual.segment(at, D), all.covariance.block(at, at, D, D)};
+      if (!is_accepted(weigh(one))) continue;
+      out.push_back(loops[k]);
+      const Eigen::MatrixXd gain = one.covariance.llt().solve(all.covariance.middleRows(at, D)).transpose();
+      all.residual -= gain * one.residual;
+      all.covariance -= (gain * one.covariance * gain.transpose()).eval();
+    }
+    return out;
+  }
+
+  // New loops: those that are accepted together cost one solution; those that lack evidence are judged after
+  // it.
+  bool judge_new(const std::vector<std::size_t>& loops, Step& step) {
+    if (loops.size() < 2) return loops.empty() || judge(loops.front(), step);
+    std::vector<std::size_t> accepted;
+    for (const std::size_t e : loops) {
+      const Weight alone = weigh(innovation_of({e}));
+      if (is_accepted(alone)) accepted.push_back(e);
+      if (alone.chi2 > bounds[1]) leave(e, Verdict::left_out);
+    }
+    for (const std::size_t e : compatible(accepted)) take(e, step);
+    if (!step.accepted.empty() && !solve(step)) return false;
+    for (const std::size_t e : loops)
+      if (verdicts[e] == Verdict::unjudged && !judge(e, step)) return false;
     return true;
   }
 
@@ -238,8 +286,7 @@ struct RobustIncremental<P>::Impl {
     if (!solve(step)) return false;
     map_spread = std::max(spread(), kSmallestVariance);
     const std::vector<std::size_t> loops = std::exchange(new_loops, {});
-    for (const std::size_t e : loops)
-      if (!judge(e, step)) return false;
+    if (!judge_new(loops, step)) return false;
     if (!step.accepted.empty() || !loops.empty()) {
       if (!drop_contradicted(step)) return false;
     }
