@@ -117,6 +117,7 @@ class Minimizer {
         weights_(weights),
         structure_(structure),
         symbolic_(symbolic),
+        linearizer_(graph, structure, weights),
         lambda_(config.method == SolveMethod::gauss_newton ? 0.0 : config.initial_damping) {
     if (in_floats)
       quick_.emplace(symbolic, P::kDof);
@@ -132,12 +133,12 @@ class Minimizer {
 
  private:
   void iterate(Solution<P>& s) {
-    if (!current_) equations_ = linearize(graph_, structure_, s.poses, weights_);
+    if (!current_) equations_ = &linearizer_.at(s.poses);
     current_ = true;
     ++s.iterations;
     const double enough = config_.relative_tolerance * s.cost_final;
     std::optional<Eigen::VectorXd> step;
-    if (kept_ && lambda_ == 0.0) step = step_by_factor(equations_.values, enough);
+    if (kept_ && lambda_ == 0.0) step = step_by_factor(equations_->values, enough);
     if (!step) {
       const auto solved = step_by_new_factor();
       if (!solved) return give_up(s, graph_.nodes[structure_.node_of_variable[solved.error()]].key);
@@ -208,8 +209,8 @@ class Minimizer {
   // do not: where the matrix is too badly conditioned for them, doubles take over for good.
   [[nodiscard]] tl::expected<Eigen::VectorXd, std::size_t> step_by_new_factor() {
     std::vector<double> raised;
-    if (lambda_ > 0.0) raised = damped(structure_.pattern, equations_.values, P::kDof, lambda_);
-    const std::vector<double>& matrix = lambda_ > 0.0 ? raised : equations_.values;
+    if (lambda_ > 0.0) raised = damped(structure_.pattern, equations_->values, P::kDof, lambda_);
+    const std::vector<double>& matrix = lambda_ > 0.0 ? raised : equations_->values;
     kept_ = lambda_ == 0.0;
     if (quick_) {
       constexpr double kAnyGain = std::numeric_limits<double>::infinity();
@@ -221,7 +222,7 @@ class Minimizer {
     }
     kept_ = lambda_ == 0.0;
     if (const auto free = exact_->factorize(matrix)) return tl::unexpected(*free);
-    return exact_->solve(-equations_.gradient);
+    return exact_->solve(-equations_->gradient);
   }
 
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const {
@@ -233,8 +234,8 @@ class Minimizer {
   // round is enough where factor and matrix agree and the gain is below `little`.
   [[nodiscard]] std::optional<Eigen::VectorXd> step_by_factor(const std::vector<double>& matrix,
                                                               double little) {
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(equations_.gradient.size());
-    Eigen::VectorXd r = -equations_.gradient;
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(equations_->gradient.size());
+    Eigen::VectorXd r = -equations_->gradient;
     Eigen::VectorXd z = solve(r);
     Eigen::VectorXd p = z;
     double rz = r.dot(z);
@@ -260,8 +261,8 @@ class Minimizer {
 
   // Of the quadratic model: -2 g.x - x.H x.
   [[nodiscard]] double predicted_decrease(const Eigen::VectorXd& step) const {
-    return -2.0 * equations_.gradient.dot(step) -
-           step.dot(times<P::kDof>(structure_.pattern, equations_.values, step));
+    return -2.0 * equations_->gradient.dot(step) -
+           step.dot(times<P::kDof>(structure_.pattern, equations_->values, step));
   }
 
   static constexpr const char* kNoLongerFalls = "the cost no longer falls";
@@ -286,7 +287,8 @@ class Minimizer {
   std::optional<BasicBlockCholesky<float>> quick_;
   std::optional<BlockCholesky> exact_;
   bool kept_ = false;  // the latest factor belongs to an H of poses near by
-  NormalEquations equations_;
+  Linearizer<P> linearizer_;
+  const NormalEquations* equations_ = nullptr;
   bool current_ = false;  // equations_ belong to the present poses
   double lambda_;
   double growth_ = kFirstGrowth;    // factor on lambda_ after the next poor step
@@ -355,13 +357,19 @@ std::vector<double> edge_costs(const BasicPoseGraph<P>& graph, const std::vector
 
 template <class P>
 std::vector<std::size_t> indefinite_edges(const BasicPoseGraph<P>& graph, std::size_t first) {
+  const std::size_t count = graph.edges.size() - std::min(first, graph.edges.size());
+  std::vector<char> is_bad(count);
+  parallel_for(count, kEdgesPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& information = graph.edges[first + i].information;
+      // Most graphs repeat one matrix over and over.
+      const bool repeated = i > begin && information == graph.edges[first + i - 1].information;
+      is_bad[i] = repeated ? is_bad[i - 1] : static_cast<char>(is_indefinite(information));
+    }
+  });
   std::vector<std::size_t> out;
-  bool last = false;
-  for (std::size_t e = first; e < graph.edges.size(); ++e) {
-    // Most graphs repeat one matrix over and over.
-    const bool repeated = e > first && graph.edges[e].information == graph.edges[e - 1].information;
-    if (!repeated) last = is_indefinite(graph.edges[e].information);
-    if (last) out.push_back(e);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_bad[i] != 0) out.push_back(first + i);
   }
   return out;
 }
