@@ -21,13 +21,14 @@ std::size_t rounded_up(std::size_t bytes, std::size_t to) { return (bytes + to -
 
 }  // namespace
 
-LargeBuffer::LargeBuffer(std::size_t size) : size_(size) {
+template <class Real>
+BasicLargeBuffer<Real>::BasicLargeBuffer(std::size_t size) : size_(size) {
   if (size == 0) return;
-  if (size > kMostBytes / sizeof(double)) throw std::bad_alloc();
-  const std::size_t bytes = size * sizeof(double);
+  if (size > kMostBytes / sizeof(Real)) throw std::bad_alloc();
+  const std::size_t bytes = size * sizeof(Real);
   const std::size_t alignment = bytes < kHugePage ? kCacheLine : kHugePage;
   const std::size_t room = rounded_up(bytes, alignment);
-  data_.reset(static_cast<double*>(std::aligned_alloc(alignment, room)));
+  data_.reset(static_cast<Real*>(std::aligned_alloc(alignment, room)));
   if (data_ == nullptr) throw std::bad_alloc();
 #ifdef __linux__
   // A wish: where it is not granted, pages are small.
@@ -35,6 +36,12 @@ LargeBuffer::LargeBuffer(std::size_t size) : size_(size) {
 #endif
 }
 
-void LargeBuffer::Free::operator()(double* data) const noexcept { std::free(data); }
+template <class Real>
+void BasicLargeBuffer<Real>::Free::operator()(Real* data) const noexcept {
+  std::free(data);
+}
+
+template class BasicLargeBuffer<double>;
+template class BasicLargeBuffer<float>;
 
 }  // namespace adit

@@ -7,23 +7,25 @@
 
 namespace adit {
 
-/// `size` uninitialised numbers. Large buffers come in huge pages where the system has them: the first touch
-/// of each 4 kB page costs as much as computing with it.
-class LargeBuffer {
+/// `size` uninitialised numbers, double or float. Large buffers come in huge pages where the system has them:
+/// the first touch of each 4 kB page costs as much as computing with it.
+template <class Real>
+class BasicLargeBuffer {
  public:
-  LargeBuffer() = default;
-  explicit LargeBuffer(std::size_t size);
+  BasicLargeBuffer() = default;
+  explicit BasicLargeBuffer(std::size_t size);
 
   [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] double* data() { return data_.get(); }
-  [[nodiscard]] const double* data() const { return data_.get(); }
+  [[nodiscard]] Real* data() { return data_.get(); }
+  [[nodiscard]] const Real* data() const { return data_.get(); }
 
  private:
   struct Free {
-    void operator()(double* data) const noexcept;
+    void operator()(Real* data) const noexcept;
   };
-  std::unique_ptr<double[], Free> data_;
+  std::unique_ptr<Real[], Free> data_;
   std::size_t size_ = 0;
 };
+using LargeBuffer = BasicLargeBuffer<double>;
 
 }  // namespace adit

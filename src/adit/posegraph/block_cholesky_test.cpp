@@ -85,6 +85,47 @@ TEST(BlockCholesky, GivesTheSameBytesWithAnyNumberOfThreads) {
   EXPECT_LT((p.dense * solutions[0] - b).norm(), 1e-10);
 }
 
+// Widths and heights of fronts that fill the blocks of the dense kernels, and that do not.
+TEST(BlockCholesky, SolvesInFloatsToTheirPrecision) {
+  Rng rng(4);
+  for (const std::size_t d : {1U, 3U, 6U}) {
+    for (const std::size_t n : {1U, 9U, 90U}) {
+      const Problem p = random_problem(n, 2 * n, d, rng);
+      BasicBlockCholesky<float> cholesky(analyze(p.pattern), d);
+      ASSERT_FALSE(cholesky.factorize(p.values));
+      const Eigen::MatrixXd b = Eigen::MatrixXd::Random(p.dense.rows(), 2);
+      const Eigen::MatrixXd expected = p.dense.llt().solve(b);
+      EXPECT_LT((cholesky.solve(b) - expected).norm(), 1e-5 * expected.norm()) << n << ' ' << d;
+    }
+  }
+}
+
+// A chain of equal springs, held at one end.
+TEST(BlockCholesky, KnowsItsLeastPivot) {
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t i = 0; i + 1 < 30; ++i) pairs.emplace_back(i, i + 1);
+  const BlockPattern pattern = BlockPattern::of_pairs(30, pairs);
+  std::vector<double> values;
+  for (std::size_t j = 0; j < 30; ++j) {
+    values.push_back(j + 1 < 30 ? 2.0 : 1.0);
+    if (j + 1 < 30) values.push_back(-1.0);
+  }
+  BlockCholesky cholesky(analyze(pattern), 1);
+  ASSERT_FALSE(cholesky.factorize(values));
+  const Eigen::MatrixXd dense = [&] {
+    Eigen::MatrixXd m = Eigen::MatrixXd::Zero(30, 30);
+    for (int j = 0; j < 30; ++j) {
+      m(j, j) = values[static_cast<std::size_t>(2 * j)];
+      if (j < 29) m(j + 1, j) = m(j, j + 1) = -1.0;
+    }
+    return m;
+  }();
+  // However it is ordered, the last pivot is the inverse of an element of the inverse's diagonal.
+  const Eigen::VectorXd last = (dense.inverse().diagonal().array() * dense.diagonal().array()).inverse();
+  EXPECT_GE(cholesky.least_pivot(values), last.minCoeff() - 1e-12);
+  EXPECT_LE(cholesky.least_pivot(values), last.maxCoeff() + 1e-12);
+}
+
 TEST(BlockCholesky, NamesAFreeVariable) {
   Rng rng(3);
   Problem p = random_problem(10, 0, 3, rng);

@@ -43,12 +43,19 @@ struct EdgeModel {
   Eigen::Matrix<double, kRows, kRows> W;
 };
 
+template <int kRows, int kSides>
+struct LinearSolution {
+  std::vector<Eigen::Matrix<double, kRows, kSides>> x;
+  double least_pivot;
+};
+
 // `x` holds the anchors' values, which move to the right side; `model` gives the EdgeModel of an edge.
 template <class P, int kRows, int kSides, class Model>
-Result<std::vector<Eigen::Matrix<double, kRows, kSides>>> solve_linear(
-    const BasicPoseGraph<P>& graph, const GraphStructure& structure,
-    const std::shared_ptr<const BlockSymbolic>& symbolic, std::vector<Eigen::Matrix<double, kRows, kSides>> x,
-    const Model& model) {
+Result<LinearSolution<kRows, kSides>> solve_linear(const BasicPoseGraph<P>& graph,
+                                                   const GraphStructure& structure,
+                                                   const std::shared_ptr<const BlockSymbolic>& symbolic,
+                                                   std::vector<Eigen::Matrix<double, kRows, kSides>> x,
+                                                   const Model& model) {
   using Unknown = Eigen::Matrix<double, kRows, kSides>;
   using Square = Eigen::Matrix<double, kRows, kRows>;
   std::vector<EdgeTerms<kRows>> terms(structure.active_edges.size());
@@ -77,7 +84,8 @@ Result<std::vector<Eigen::Matrix<double, kRows, kSides>>> solve_linear(
     }
   }
   BlockCholesky cholesky(symbolic, kRows);
-  if (const auto variable = cholesky.factorize(sum_terms<kRows>(structure, terms))) {
+  const std::vector<double> matrix = sum_terms<kRows>(structure, terms);
+  if (const auto variable = cholesky.factorize(matrix)) {
     const std::size_t node = structure.node_of_variable[*variable];
     return fail("the edges leave node " + std::to_string(graph.nodes[node].key) + " free to move");
   }
@@ -86,7 +94,7 @@ Result<std::vector<Eigen::Matrix<double, kRows, kSides>>> solve_linear(
     x[structure.node_of_variable[v]] =
         solution.template middleRows<kRows>(static_cast<Eigen::Index>(v) * kRows);
   }
-  return x;
+  return LinearSolution<kRows, kSides>{std::move(x), cholesky.least_pivot(matrix)};
 }
 
 }  // namespace
@@ -119,13 +127,14 @@ Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph,
                                      const std::vector<double>& edge_weights) {
   const GraphStructure structure =
       structure_of(graph, connected_components(graph, edge_weights), edge_weights);
-  return chordal_poses(graph, edge_weights, structure, analyze(structure.pattern));
+  return chordal_start(graph, edge_weights, structure, analyze(structure.pattern))
+      .map([](ChordalStart<P>&& start) { return std::move(start.poses); });
 }
 
 template <class P>
-Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph, const std::vector<double>& edge_weights,
-                                     const GraphStructure& structure,
-                                     const std::shared_ptr<const BlockSymbolic>& symbolic) {
+Result<ChordalStart<P>> chordal_start(const BasicPoseGraph<P>& graph, const std::vector<double>& edge_weights,
+                                      const GraphStructure& structure,
+                                      const std::shared_ptr<const BlockSymbolic>& symbolic) {
   constexpr int D = kDim<P>;
   const auto weight = [&](std::size_t e) { return edge_weights.empty() ? 1.0 : edge_weights[e]; };
 
@@ -139,7 +148,7 @@ Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph, const std::
   };
   auto transposed = solve_linear<P, D, D>(graph, structure, symbolic, std::move(x), rotation_model);
   if (!transposed) return tl::unexpected(transposed.error());
-  std::vector<Rotation<P>>& rotations = *transposed;
+  std::vector<Rotation<P>>& rotations = transposed->x;
   parallel_for_each(
       rotations.size(),
       [&](std::size_t i) { rotations[i] = nearest_rotation(Rotation<P>(rotations[i].transpose())); },
@@ -158,19 +167,19 @@ Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph, const std::
   const auto translations =
       solve_linear<P, 1, D>(graph, structure, symbolic, std::move(t), translation_model);
   if (!translations) return tl::unexpected(translations.error());
-  std::vector<P> poses = poses_of(graph);
+  ChordalStart<P> start{poses_of(graph), translations->least_pivot};
   for (const std::size_t node : structure.node_of_variable) {
-    poses[node] = pose_of(rotations[node], Point<P>((*translations)[node].transpose()));
+    start.poses[node] = pose_of(rotations[node], Point<P>(translations->x[node].transpose()));
   }
-  return poses;
+  return start;
 }
 
-template Result<std::vector<Pose>> chordal_poses(const PoseGraph&, const std::vector<double>&,
-                                                 const GraphStructure&,
-                                                 const std::shared_ptr<const BlockSymbolic>&);
-template Result<std::vector<Pose2>> chordal_poses(const PoseGraph2&, const std::vector<double>&,
+template Result<ChordalStart<Pose>> chordal_start(const PoseGraph&, const std::vector<double>&,
                                                   const GraphStructure&,
                                                   const std::shared_ptr<const BlockSymbolic>&);
+template Result<ChordalStart<Pose2>> chordal_start(const PoseGraph2&, const std::vector<double>&,
+                                                   const GraphStructure&,
+                                                   const std::shared_ptr<const BlockSymbolic>&);
 template Result<std::vector<Pose>> chordal_poses(const PoseGraph&, const std::vector<double>&);
 template Result<std::vector<Pose2>> chordal_poses(const PoseGraph2&, const std::vector<double>&);
 

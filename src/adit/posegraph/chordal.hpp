@@ -26,9 +26,14 @@ template <class P>
 
 /// The same where the structure of the graph with these weights is known already.
 template <class P>
-[[nodiscard]] Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph,
-                                                   const std::vector<double>& edge_weights,
-                                                   const GraphStructure& structure,
-                                                   const std::shared_ptr<const BlockSymbolic>& symbolic);
+struct ChordalStart {
+  std::vector<P> poses;
+  double least_pivot = 1.0;  ///< Of the system for the translations, see `BlockCholesky::least_pivot`.
+};
+template <class P>
+[[nodiscard]] Result<ChordalStart<P>> chordal_start(const BasicPoseGraph<P>& graph,
+                                                    const std::vector<double>& edge_weights,
+                                                    const GraphStructure& structure,
+                                                    const std::shared_ptr<const BlockSymbolic>& symbolic);
 
 }  // namespace adit

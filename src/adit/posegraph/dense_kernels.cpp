@@ -12,24 +12,34 @@
 namespace adit::dense {
 namespace {
 
-constexpr std::size_t kPanelColumns = 24;  // columns that are factorized together before the rest is updated
+constexpr std::size_t kBlock = 8;  // columns of a tile, and columns that are factorized together
+// Columns that are factorized before all columns right of them are updated: a multiple of kBlock and kStrip.
+constexpr std::size_t kPanelColumns = 48;
 
-template <std::size_t kWidth>
-using VectorOf = simd::Unaligned<double, kWidth>;
+template <class Real, std::size_t kWidth>
+struct Lanes {
+  using Type = typename simd::Unaligned<Real, kWidth>::Type;
+};
+template <class Real>
+struct Lanes<Real, 1> {
+  using Type = Real;
+};
+template <class Real, std::size_t kWidth>
+using VectorOf = typename Lanes<Real, kWidth>::Type;
 
 // Written once, compiled for several vector widths: always inlined into a function of each instruction set.
 #define ADIT_INLINE [[gnu::always_inline]] inline
 
-// C -= A B^T for one strip of kStrip rows and kColumns columns. `b` points at the first of the columns inside
-// its strip. The sums stay in registers: kStrip * kColumns / kWidth of them, eight for each instruction set,
-// which hides the latency of the additions.
-template <std::size_t kWidth, std::size_t kColumns, Into kInto>
-ADIT_INLINE void update_columns(double* c, std::size_t stride, const double* a, const double* b,
+// C -= A B^T for one strip of rows and kColumns columns. `b` points at the first of the columns inside its
+// strip. The sums stay in registers, eight for each instruction set, which hides the latency of the
+// additions.
+template <class Real, std::size_t kWidth, std::size_t kColumns, Into kInto>
+ADIT_INLINE void update_columns(Real* c, std::size_t stride, const Real* a, const Real* b,
                                 std::size_t depth) {
-  using Vector = typename VectorOf<kWidth>::Type;
-  constexpr std::size_t kVectors = kStrip / kWidth;
+  using Vector = VectorOf<Real, kWidth>;
+  constexpr std::size_t kVectors = kStrip<Real> / kWidth;
   Vector sum[kColumns][kVectors] = {};
-  for (std::size_t k = 0; k < depth; ++k, a += kStrip, b += kStrip) {
+  for (std::size_t k = 0; k < depth; ++k, a += kStrip<Real>, b += kStrip<Real>) {
     const Vector* row = reinterpret_cast<const Vector*>(a);
     for (std::size_t j = 0; j < kColumns; ++j) {
       for (std::size_t v = 0; v < kVectors; ++v) sum[j][v] += row[v] * b[j];
@@ -42,215 +52,276 @@ ADIT_INLINE void update_columns(double* c, std::size_t stride, const double* a, 
   }
 }
 
-// A tile of kStrip x kStrip elements.
-template <std::size_t kWidth, std::size_t kColumns, Into kInto>
-ADIT_INLINE void update_tile(double* c, std::size_t stride, const double* a, const double* b,
-                             std::size_t depth) {
-  for (std::size_t j = 0; j < kStrip; j += kColumns)
-    update_columns<kWidth, kColumns, kInto>(c + j * stride, stride, a, b + j, depth);
+// A tile of kStrip x kBlock elements.
+template <class Real, std::size_t kWidth, std::size_t kColumns, Into kInto>
+ADIT_INLINE void update_tile(Real* c, std::size_t stride, const Real* a, const Real* b, std::size_t depth) {
+  for (std::size_t j = 0; j < kBlock; j += kColumns)
+    update_columns<Real, kWidth, kColumns, kInto>(c + j * stride, stride, a, b + j, depth);
 }
 
-// y -= X f for four columns of X, `stride` apart, with factors `step` apart.
-template <std::size_t kWidth>
-ADIT_INLINE void subtract_four_columns(double* y, const double* x, std::size_t stride, const double* factor,
-                                       std::size_t step, std::size_t n) {
-  using Vector = typename VectorOf<kWidth>::Type;
-  const double f0 = factor[0];
-  const double f1 = factor[step];
-  const double f2 = factor[2 * step];
-  const double f3 = factor[3 * step];
+// The lower triangle of a factorized block, row by row, and the inverses of its diagonal.
+template <class Real>
+struct Triangle {
+  Real row[kBlock][kBlock];
+  Real inverse[kBlock];
+  std::size_t columns;
+};
+
+// kWidth rows below the triangle: X <- X L^-T. All columns of a row are in registers at a time.
+template <class Real, std::size_t kWidth>
+ADIT_INLINE void eliminate_row(Real* x, std::size_t stride, const Triangle<Real>& l) {
+  using Vector = VectorOf<Real, kWidth>;
+  Vector column[kBlock];
+#pragma GCC unroll 8
+  for (std::size_t q = 0; q < kBlock; ++q) {
+    if (q >= l.columns) return;
+    Vector& own = *reinterpret_cast<Vector*>(x + q * stride);
+    Vector value = own;
+#pragma GCC unroll 8
+    for (std::size_t p = 0; p < q; ++p) value -= l.row[q][p] * column[p];
+    column[q] = value * l.inverse[q];
+    own = column[q];
+  }
+}
+template <class Real, std::size_t kWidth>
+ADIT_INLINE void eliminate_all_rows(Real* x, std::size_t stride, const Triangle<Real>& l, std::size_t n) {
+  std::size_t i = 0;
+  for (; i + kWidth <= n; i += kWidth) eliminate_row<Real, kWidth>(x + i, stride, l);
+  for (; i < n; ++i) eliminate_row<Real, 1>(x + i, stride, l);
+}
+
+// y -= X f for four columns of X, `stride` apart.
+template <class Real, std::size_t kWidth>
+ADIT_INLINE void subtract_four_columns(Real* y, const Real* x, std::size_t stride, const Real* f,
+                                       std::size_t n) {
+  using Vector = VectorOf<Real, kWidth>;
   std::size_t i = 0;
   for (; i + kWidth <= n; i += kWidth, x += kWidth) {
     Vector& to = *reinterpret_cast<Vector*>(y + i);
-    to = (((to - f0 * *reinterpret_cast<const Vector*>(x)) -
-           f1 * *reinterpret_cast<const Vector*>(x + stride)) -
-          f2 * *reinterpret_cast<const Vector*>(x + 2 * stride)) -
-         f3 * *reinterpret_cast<const Vector*>(x + 3 * stride);
+    to = (((to - f[0] * *reinterpret_cast<const Vector*>(x)) -
+           f[1] * *reinterpret_cast<const Vector*>(x + stride)) -
+          f[2] * *reinterpret_cast<const Vector*>(x + 2 * stride)) -
+         f[3] * *reinterpret_cast<const Vector*>(x + 3 * stride);
   }
   for (; i < n; ++i, ++x)
-    y[i] = (((y[i] - f0 * x[0]) - f1 * x[stride]) - f2 * x[2 * stride]) - f3 * x[3 * stride];
+    y[i] = (((y[i] - f[0] * x[0]) - f[1] * x[stride]) - f[2] * x[2 * stride]) - f[3] * x[3 * stride];
 }
 
-// Products of four columns of X with y; each sum in eight parts, so that every width takes the same order.
-template <std::size_t kWidth>
-ADIT_INLINE void dot_four_columns(double* out, const double* x, std::size_t stride, const double* y,
+// Products of four columns of X with y; each sum in kStrip parts, so that every width takes the same order.
+template <class Real, std::size_t kWidth>
+ADIT_INLINE void dot_four_columns(Real* out, const Real* x, std::size_t stride, const Real* y,
                                   std::size_t n) {
-  using Vector = typename VectorOf<kWidth>::Type;
-  constexpr std::size_t kParts = 8 / kWidth;
+  using Vector = VectorOf<Real, kWidth>;
+  constexpr std::size_t kVectors = kStrip<Real> / kWidth;
   for (std::size_t j = 0; j < 4; ++j, x += stride) {
-    Vector sum[kParts] = {};
+    Vector sum[kVectors] = {};
     std::size_t i = 0;
-    for (; i + 8 <= n; i += 8) {
-      for (std::size_t v = 0; v < kParts; ++v)
+    for (; i + kStrip<Real> <= n; i += kStrip<Real>) {
+      for (std::size_t v = 0; v < kVectors; ++v)
         sum[v] += *reinterpret_cast<const Vector*>(x + i + v * kWidth) *
                   *reinterpret_cast<const Vector*>(y + i + v * kWidth);
     }
-    double rest = 0.0;
+    Real rest = 0;
     for (; i < n; ++i) rest += x[i] * y[i];
-    double parts[8];
-    for (std::size_t v = 0; v < kParts; ++v) {
+    Real parts[kStrip<Real>];
+    for (std::size_t v = 0; v < kVectors; ++v) {
       for (std::size_t q = 0; q < kWidth; ++q) parts[v * kWidth + q] = sum[v][q];
     }
-    out[j] = ((parts[0] + parts[1]) + (parts[2] + parts[3])) +
-             ((parts[4] + parts[5]) + (parts[6] + parts[7])) + rest;
+    for (std::size_t left = kStrip<Real> / 2; left > 0; left /= 2) {
+      for (std::size_t q = 0; q < left; ++q) parts[q] = parts[2 * q] + parts[2 * q + 1];
+    }
+    out[j] = parts[0] + rest;
   }
-}
-
-using Tile = void (*)(double* c, std::size_t stride, const double* a, const double* b, std::size_t depth);
-using SubtractColumns = void (*)(double* y, const double* x, std::size_t stride, const double* factor,
-                                 std::size_t step, std::size_t n);
-using DotColumns = void (*)(double* out, const double* x, std::size_t stride, const double* y, std::size_t n);
-
-#if defined(__x86_64__)
-template <Into kInto>
-[[gnu::target("avx2")]] void tile_avx2(double* c, std::size_t stride, const double* a, const double* b,
-                                       std::size_t depth) {
-  update_tile<4, 4, kInto>(c, stride, a, b, depth);
-}
-[[gnu::target("avx2")]] void subtract_columns_avx2(double* y, const double* x, std::size_t stride,
-                                                   const double* factor, std::size_t step, std::size_t n) {
-  subtract_four_columns<4>(y, x, stride, factor, step, n);
-}
-[[gnu::target("avx2")]] void dot_columns_avx2(double* out, const double* x, std::size_t stride,
-                                              const double* y, std::size_t n) {
-  dot_four_columns<4>(out, x, stride, y, n);
-}
-template <Into kInto>
-[[gnu::target("avx512f")]] void tile_avx512(double* c, std::size_t stride, const double* a, const double* b,
-                                            std::size_t depth) {
-  update_tile<8, 8, kInto>(c, stride, a, b, depth);
-}
-#endif
-template <Into kInto>
-void tile_baseline(double* c, std::size_t stride, const double* a, const double* b, std::size_t depth) {
-  update_tile<2, 2, kInto>(c, stride, a, b, depth);
-}
-void subtract_columns_baseline(double* y, const double* x, std::size_t stride, const double* factor,
-                               std::size_t step, std::size_t n) {
-  subtract_four_columns<2>(y, x, stride, factor, step, n);
-}
-void dot_columns_baseline(double* out, const double* x, std::size_t stride, const double* y, std::size_t n) {
-  dot_four_columns<2>(out, x, stride, y, n);
 }
 
 // One binary, the widest vectors of the machine it runs on.
+template <class Real>
 struct Kernels {
+  using Tile = void (*)(Real* c, std::size_t stride, const Real* a, const Real* b, std::size_t depth);
   Tile tile[2];  // by Into
-  SubtractColumns subtract_columns;
-  DotColumns dot_columns;
+  void (*eliminate_rows)(Real* x, std::size_t stride, const Triangle<Real>& l, std::size_t n);
+  void (*subtract_columns)(Real* y, const Real* x, std::size_t stride, const Real* factors, std::size_t n);
+  void (*dot_columns)(Real* out, const Real* x, std::size_t stride, const Real* y, std::size_t n);
 };
-Kernels widest_kernels() {
+
+// The kernels for one instruction set, with vectors of `bytes` and tiles of so many columns at a time.
+#define ADIT_KERNELS(name, attribute, bytes, columns)                                                       \
+  template <class Real>                                                                                     \
+  struct name {                                                                                             \
+    static constexpr std::size_t kWidth = bytes / sizeof(Real);                                             \
+    template <Into kInto>                                                                                   \
+    attribute static void tile(Real* c, std::size_t stride, const Real* a, const Real* b,                   \
+                               std::size_t depth) {                                                         \
+      update_tile<Real, kWidth, columns, kInto>(c, stride, a, b, depth);                                    \
+    }                                                                                                       \
+    attribute static void eliminate_rows(Real* x, std::size_t stride, const Triangle<Real>& l,              \
+                                         std::size_t n) {                                                   \
+      eliminate_all_rows<Real, kWidth>(x, stride, l, n);                                                    \
+    }                                                                                                       \
+    attribute static void subtract_columns(Real* y, const Real* x, std::size_t stride, const Real* factors, \
+                                           std::size_t n) {                                                 \
+      subtract_four_columns<Real, kWidth>(y, x, stride, factors, n);                                        \
+    }                                                                                                       \
+    attribute static void dot_columns(Real* out, const Real* x, std::size_t stride, const Real* y,          \
+                                      std::size_t n) {                                                      \
+      dot_four_columns<Real, kWidth>(out, x, stride, y, n);                                                 \
+    }                                                                                                       \
+    static constexpr Kernels<Real> kAll{                                                                    \
+        {tile<Into::subtract>, tile<Into::replace>}, eliminate_rows, subtract_columns, dot_columns};        \
+  };
+ADIT_KERNELS(Baseline, , 16, 2)
+#if defined(__x86_64__)
+ADIT_KERNELS(Avx2, [[gnu::target("avx2")]], 32, 4)
+ADIT_KERNELS(Avx512, [[gnu::target("avx512f")]], 64, 8)
+#endif
+#undef ADIT_KERNELS
+
+template <class Real>
+Kernels<Real> widest_kernels() {
 #if defined(__x86_64__)
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f"))
-    return {
-        {tile_avx512<Into::subtract>, tile_avx512<Into::replace>}, subtract_columns_avx2, dot_columns_avx2};
-  if (__builtin_cpu_supports("avx2"))
-    return {{tile_avx2<Into::subtract>, tile_avx2<Into::replace>}, subtract_columns_avx2, dot_columns_avx2};
+  if (__builtin_cpu_supports("avx512f")) return Avx512<Real>::kAll;
+  if (__builtin_cpu_supports("avx2")) return Avx2<Real>::kAll;
 #endif
-  return {{tile_baseline<Into::subtract>, tile_baseline<Into::replace>},
-          subtract_columns_baseline,
-          dot_columns_baseline};
+  return Baseline<Real>::kAll;
 }
-const Kernels kKernels = widest_kernels();
+template <class Real>
+const Kernels<Real> kKernels = widest_kernels<Real>();
 
-// Columns [first, last) of the panel, everything left of `first` having been subtracted already.
-std::size_t factorize_columns(double* a, std::size_t stride, std::size_t rows, std::size_t first,
-                              std::size_t last, const double* min_pivot) {
-  for (std::size_t j = first; j < last; ++j) {
-    double* column = a + j * stride + j;
-    std::size_t p = first;
-    for (; p + 4 <= j; p += 4) {
-      const double* x = a + p * stride + j;
-      kKernels.subtract_columns(column, x, stride, x, stride, rows - j);
+// The square of `l.columns` columns at `a`, and `l` from it. Returns the first column without a pivot.
+template <class Real>
+std::size_t factorize_square(Real* a, std::size_t stride, const Real* min_pivot, Triangle<Real>& l) {
+  for (std::size_t i = 0; i < l.columns; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      Real value = a[j * stride + i];
+      for (std::size_t k = 0; k < j; ++k) value -= l.row[i][k] * l.row[j][k];
+      if (i > j) {
+        l.row[i][j] = value * l.inverse[j];
+      } else {
+        if (!(value > min_pivot[i])) return i;
+        l.row[i][i] = std::sqrt(value);
+        l.inverse[i] = Real{1} / l.row[i][i];
+      }
+      a[j * stride + i] = l.row[i][j];
     }
-    for (; p < j; ++p) {
-      const double* x = a + p * stride + j;
-      const double factor = *x;
-      for (std::size_t i = 0; i < rows - j; ++i) column[i] -= factor * x[i];
-    }
-    if (!(*column > min_pivot[j])) return j;
-    const double pivot = std::sqrt(*column);
-    const double inverse = 1.0 / pivot;
-    *column = pivot;
-    for (std::size_t i = 1; i < rows - j; ++i) column[i] *= inverse;
   }
-  return last;
+  return l.columns;
+}
+
+// C -= A B^T by the first `depth` columns of A, for up to kBlock columns of C from `begin` on.
+template <class Real>
+void subtract_block(Real* c, std::size_t stride, const PackedPanel<Real>& a, std::size_t begin,
+                    std::size_t width, std::size_t depth, Into into) {
+  constexpr std::size_t kRows = kStrip<Real>;
+  const auto whole_tile = kKernels<Real>.tile[static_cast<int>(into)];
+  const auto into_copy = kKernels<Real>.tile[static_cast<int>(Into::replace)];
+  const Real* b = a.strip(begin / kRows) + begin % kRows;
+  for (std::size_t s = begin / kRows; s * kRows < a.rows(); ++s) {
+    Real* to = c + begin * stride + s * kRows;
+    const std::size_t height = std::min(kRows, a.rows() - s * kRows);
+    if (width == kBlock && height == kRows) {
+      whole_tile(to, stride, a.strip(s), b, depth);
+      continue;
+    }
+    Real tile[kRows * kBlock];
+    into_copy(tile, kRows, a.strip(s), b, depth);
+    for (std::size_t q = 0; q < width; ++q) {
+      for (std::size_t i = 0; i < height; ++i) {
+        Real& element = to[q * stride + i];
+        element = (into == Into::replace ? Real{0} : element) + tile[q * kRows + i];
+      }
+    }
+  }
+}
+
+// The first `columns` columns at `a`; `packed` takes them where anything right of them needs them. Returns
+// the first column without a pivot.
+template <class Real>
+std::size_t factorize_columns(Real* a, std::size_t stride, std::size_t rows, std::size_t columns,
+                              const Real* min_pivot, PackedPanel<Real>& packed) {
+  Triangle<Real> l;
+  for (std::size_t j = 0; j < columns; j += kBlock) {
+    l.columns = std::min(kBlock, columns - j);
+    if (j > 0) subtract_block(a, stride, packed, j, l.columns, j, Into::subtract);
+    Real* square = a + j * stride + j;
+    const std::size_t done = factorize_square(square, stride, min_pivot + j, l);
+    if (done < l.columns) return j + done;
+    kKernels<Real>.eliminate_rows(square + l.columns, stride, l, rows - j - l.columns);
+    packed.pack_columns(a, stride, j, l.columns);
+  }
+  return columns;
 }
 
 }  // namespace
 
-void PackedPanel::pack(const double* a, std::size_t stride, std::size_t rows, std::size_t depth) {
+template <class Real>
+void PackedPanel<Real>::resize(std::size_t rows, std::size_t depth) {
   rows_ = rows;
   depth_ = depth;
-  const std::size_t strips = (rows + kStrip - 1) / kStrip;
-  data_.resize(strips * depth * kStrip);
-  for (std::size_t s = 0; s < strips; ++s) {
-    const std::size_t height = std::min(kStrip, rows - s * kStrip);
-    double* to = data_.data() + s * depth * kStrip;
-    for (std::size_t k = 0; k < depth; ++k, to += kStrip) {
-      const double* from = a + s * kStrip + k * stride;
-      if (height == kStrip) {
-        std::memcpy(to, from, kStrip * sizeof(double));
+  data_.resize((rows + kStrip<Real> - 1) / kStrip<Real> * depth * kStrip<Real>);
+}
+
+template <class Real>
+void PackedPanel<Real>::pack_columns(const Real* a, std::size_t stride, std::size_t first,
+                                     std::size_t count) {
+  constexpr std::size_t kRows = kStrip<Real>;
+  for (std::size_t s = first / kRows; s * kRows < rows_; ++s) {
+    const std::size_t height = std::min(kRows, rows_ - s * kRows);
+    Real* to = data_.data() + (s * depth_ + first) * kRows;
+    for (std::size_t k = first; k < first + count; ++k, to += kRows) {
+      const Real* from = a + s * kRows + k * stride;
+      if (height == kRows) {
+        std::memcpy(to, from, kRows * sizeof(Real));
       } else {
-        for (std::size_t i = 0; i < kStrip; ++i) to[i] = i < height ? from[i] : 0.0;
+        for (std::size_t i = 0; i < kRows; ++i) to[i] = i < height ? from[i] : Real{0};
       }
     }
   }
 }
 
-void subtract_outer_product(double* c, std::size_t stride, const PackedPanel& a, std::size_t begin,
+template <class Real>
+void PackedPanel<Real>::pack(const Real* a, std::size_t stride, std::size_t rows, std::size_t depth) {
+  resize(rows, depth);
+  pack_columns(a, stride, 0, depth);
+}
+
+template <class Real>
+void subtract_outer_product(Real* c, std::size_t stride, const PackedPanel<Real>& a, std::size_t begin,
                             std::size_t end, Into into) {
-  const Tile whole_tile = kKernels.tile[static_cast<int>(into)];
-  const Tile into_copy = kKernels.tile[static_cast<int>(Into::replace)];
-  for (std::size_t j = begin; j < end; j += kStrip) {
-    const std::size_t width = std::min(kStrip, end - j);
-    const double* b = a.strip(j / kStrip);
-    for (std::size_t s = j / kStrip; s * kStrip < a.rows(); ++s) {
-      double* to = c + j * stride + s * kStrip;
-      const std::size_t height = std::min(kStrip, a.rows() - s * kStrip);
-      if (width == kStrip && height == kStrip) {
-        whole_tile(to, stride, a.strip(s), b, a.depth());
-        continue;
-      }
-      double tile[kStrip * kStrip];
-      into_copy(tile, kStrip, a.strip(s), b, a.depth());
-      for (std::size_t q = 0; q < width; ++q) {
-        for (std::size_t i = 0; i < height; ++i) {
-          double& element = to[q * stride + i];
-          element = (into == Into::replace ? 0.0 : element) + tile[q * kStrip + i];
-        }
-      }
-    }
-  }
+  for (std::size_t j = begin; j < end; j += kBlock)
+    subtract_block(c, stride, a, j, std::min(kBlock, end - j), a.depth(), into);
 }
 
-std::size_t factorize_panel(double* a, std::size_t stride, std::size_t rows, std::size_t columns,
-                            const double* min_pivot) {
-  PackedPanel packed;
+template <class Real>
+std::size_t factorize_panel(Real* a, std::size_t stride, std::size_t rows, std::size_t columns,
+                            const Real* min_pivot) {
+  PackedPanel<Real> packed;
   for (std::size_t first = 0; first < columns; first += kPanelColumns) {
-    const std::size_t last = std::min(columns, first + kPanelColumns);
-    const std::size_t done = factorize_columns(a, stride, rows, first, last, min_pivot);
-    if (done < last) return done;
-    if (last == columns) break;
-    packed.pack(a + first * stride + last, stride, rows - last, last - first);
+    const std::size_t count = std::min(columns - first, kPanelColumns);
+    Real* corner = a + first * stride + first;
+    packed.resize(rows - first, count);
+    const std::size_t done =
+        factorize_columns(corner, stride, rows - first, count, min_pivot + first, packed);
+    if (done < count) return first + done;
+    if (first + count == columns) break;
     // A wide front is shared between threads by columns; each element is still one sum in one order.
-    parallel_for(columns - last, kStripe, [&](std::size_t begin, std::size_t end) {
-      subtract_outer_product(a + last * stride + last, stride, packed, begin, end);
+    parallel_for(columns - first - count, kStripe, [&](std::size_t begin, std::size_t end) {
+      subtract_outer_product(corner, stride, packed, count + begin, count + end);
     });
   }
   return columns;
 }
 
-void solve_lower(const double* panel, std::size_t rows, std::size_t columns, double* x) {
+template <class Real>
+void solve_lower(const Real* panel, std::size_t rows, std::size_t columns, Real* x) {
   std::size_t j = 0;
   for (; j + 4 <= columns; j += 4) {
-    const double* a = panel + j * rows;
+    const Real* a = panel + j * rows;
     for (std::size_t p = j; p < j + 4; ++p) {
       for (std::size_t q = j; q < p; ++q) x[p] -= panel[q * rows + p] * x[q];
       x[p] /= panel[p * rows + p];
     }
-    kKernels.subtract_columns(x + j + 4, a + j + 4, rows, x + j, 1, rows - j - 4);
+    kKernels<Real>.subtract_columns(x + j + 4, a + j + 4, rows, x + j, rows - j - 4);
   }
   for (; j < columns; ++j) {
     x[j] /= panel[j * rows + j];
@@ -258,24 +329,37 @@ void solve_lower(const double* panel, std::size_t rows, std::size_t columns, dou
   }
 }
 
-void solve_lower_transposed(const double* panel, std::size_t rows, std::size_t columns, double* x) {
+template <class Real>
+void solve_lower_transposed(const Real* panel, std::size_t rows, std::size_t columns, Real* x) {
   std::size_t j = columns;
   for (; j % 4 != 0; --j) {
-    const double* a = panel + (j - 1) * rows;
+    const Real* a = panel + (j - 1) * rows;
     for (std::size_t i = j; i < rows; ++i) x[j - 1] -= a[i] * x[i];
     x[j - 1] /= a[j - 1];
   }
   for (; j > 0; j -= 4) {
-    const double* a = panel + (j - 4) * rows;
-    double sum[4];
-    kKernels.dot_columns(sum, a + j, rows, x + j, rows - j);
+    const Real* a = panel + (j - 4) * rows;
+    Real sum[4];
+    kKernels<Real>.dot_columns(sum, a + j, rows, x + j, rows - j);
     for (std::size_t p = 4; p-- > 0;) {
-      double& own = x[j - 4 + p];
+      Real& own = x[j - 4 + p];
       own -= sum[p];
       for (std::size_t q = p + 1; q < 4; ++q) own -= a[p * rows + j - 4 + q] * x[j - 4 + q];
       own /= a[p * rows + j - 4 + p];
     }
   }
 }
+
+template class PackedPanel<double>;
+template class PackedPanel<float>;
+#define ADIT_INSTANTIATE(Real)                                                                     \
+  template void subtract_outer_product(Real*, std::size_t, const PackedPanel<Real>&, std::size_t,  \
+                                       std::size_t, Into);                                         \
+  template std::size_t factorize_panel(Real*, std::size_t, std::size_t, std::size_t, const Real*); \
+  template void solve_lower(const Real*, std::size_t, std::size_t, Real*);                         \
+  template void solve_lower_transposed(const Real*, std::size_t, std::size_t, Real*);
+ADIT_INSTANTIATE(double)
+ADIT_INSTANTIATE(float)
+#undef ADIT_INSTANTIATE
 
 }  // namespace adit::dense

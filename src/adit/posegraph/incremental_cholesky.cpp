@@ -232,7 +232,7 @@ std::optional<Index> IncrementalCholesky::eliminate(Clique& clique) {
   const Index done = dense::factorize_panel(clique.panel.data(), rows, rows, columns, min_pivot.data());
   if (done == columns) {
     clique.update.assign(below * below, 0.0);
-    dense::PackedPanel packed;
+    dense::PackedPanel<double> packed;
     packed.pack(clique.panel.data() + columns, rows, below, columns);
     dense::subtract_outer_product(clique.update.data(), below, packed, 0, below, dense::Into::replace);
     for (const Index child : clique.children) add_update(cliques_[child], clique, Part::update);

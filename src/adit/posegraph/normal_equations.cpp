@@ -57,10 +57,11 @@ GraphStructure structure_of(const BasicPoseGraph<P>& graph, const Components& co
 }
 
 template <int D>
-std::vector<double> sum_terms(const GraphStructure& structure, const std::vector<EdgeTerms<D>>& edges) {
+void sum_terms(const GraphStructure& structure, const std::vector<EdgeTerms<D>>& edges,
+               std::vector<double>& values) {
   using Block = Eigen::Matrix<double, D, D>;
   using Part = GraphStructure::Term::Part;
-  std::vector<double> values(structure.pattern.num_blocks() * D * D);
+  values.resize(structure.pattern.num_blocks() * D * D);
   parallel_for_each(
       structure.pattern.num_blocks(),
       [&](std::size_t b) {
@@ -85,7 +86,6 @@ std::vector<double> sum_terms(const GraphStructure& structure, const std::vector
         Eigen::Map<Block>(values.data() + b * D * D) = sum;
       },
       kGrain);
-  return values;
 }
 
 template <int D>
@@ -110,59 +110,72 @@ Eigen::VectorXd times(const BlockPattern& pattern, const std::vector<double>& va
 }
 
 template <class P>
+Linearizer<P>::Linearizer(const BasicPoseGraph<P>& graph, const GraphStructure& structure,
+                          const std::vector<double>& edge_weights)
+    : graph_(graph),
+      structure_(structure),
+      edge_weights_(edge_weights),
+      terms_(structure.active_edges.size()),
+      gradients_(structure.active_edges.size()) {
+  equations_.gradient.resize(static_cast<Eigen::Index>(structure.node_of_variable.size() * P::kDof));
+}
+
+template <class P>
+void Linearizer<P>::linearize_edge(std::size_t a, const std::vector<P>& poses) {
+  const std::size_t e = structure_.active_edges[a];
+  const auto& edge = graph_.edges[e];
+  const BetweenFactor<P> f = adit::linearize(edge.T_from_to, poses[edge.from], poses[edge.to]);
+  const double weight = edge_weights_.empty() ? 1.0 : edge_weights_[e];
+  const typename P::Jacobian information = weight * edge.information;
+  const typename P::Jacobian from_information = f.d_from.transpose() * information;
+  const typename P::Jacobian to_information = f.d_to.transpose() * information;
+  terms_[a].from_from.noalias() = from_information * f.d_from;
+  terms_[a].from_to.noalias() = from_information * f.d_to;
+  terms_[a].to_to.noalias() = to_information * f.d_to;
+  gradients_[a].from.noalias() = from_information * f.residual;
+  gradients_[a].to.noalias() = to_information * f.residual;
+}
+
+template <class P>
+const NormalEquations& Linearizer<P>::at(const std::vector<P>& poses) {
+  constexpr int D = P::kDof;
+  parallel_for_each(
+      terms_.size(), [&](std::size_t a) { linearize_edge(a, poses); }, kGrain);
+  sum_terms<D>(structure_, terms_, equations_.values);
+  parallel_for_each(
+      structure_.node_of_variable.size(),
+      [&](std::size_t v) {
+        const std::size_t diagonal = structure_.pattern.column_start[v];
+        typename P::Tangent sum = P::Tangent::Zero();
+        for (std::size_t t = structure_.term_start[diagonal]; t < structure_.term_start[diagonal + 1]; ++t) {
+          const GraphStructure::Term& term = structure_.terms[t];
+          const bool from = term.part == GraphStructure::Term::Part::from_from;
+          sum += from ? gradients_[term.active_edge].from : gradients_[term.active_edge].to;
+        }
+        equations_.gradient.template segment<D>(static_cast<Eigen::Index>(v * D)) = sum;
+      },
+      kGrain);
+  return equations_;
+}
+
+template <class P>
 NormalEquations linearize(const BasicPoseGraph<P>& graph, const GraphStructure& structure,
                           const std::vector<P>& poses, const std::vector<double>& edge_weights) {
-  constexpr int D = P::kDof;
-  using Tangent = typename P::Tangent;
-  const std::size_t num_edges = structure.active_edges.size();
-  std::vector<EdgeTerms<D>> terms(num_edges);
-  std::vector<Tangent> gradient_from(num_edges);
-  std::vector<Tangent> gradient_to(num_edges);
-  parallel_for_each(
-      num_edges,
-      [&](std::size_t a) {
-        const std::size_t e = structure.active_edges[a];
-        const auto& edge = graph.edges[e];
-        const BetweenFactor<P> f = linearize(edge.T_from_to, poses[edge.from], poses[edge.to]);
-        const double weight = edge_weights.empty() ? 1.0 : edge_weights[e];
-        const typename P::Jacobian information = weight * edge.information;
-        const typename P::Jacobian from_information = f.d_from.transpose() * information;
-        const typename P::Jacobian to_information = f.d_to.transpose() * information;
-        terms[a].from_from.noalias() = from_information * f.d_from;
-        terms[a].from_to.noalias() = from_information * f.d_to;
-        terms[a].to_to.noalias() = to_information * f.d_to;
-        gradient_from[a].noalias() = from_information * f.residual;
-        gradient_to[a].noalias() = to_information * f.residual;
-      },
-      kGrain);
-  NormalEquations out{sum_terms<D>(structure, terms), {}};
-  out.gradient.resize(static_cast<Eigen::Index>(structure.node_of_variable.size() * D));
-  parallel_for_each(
-      structure.node_of_variable.size(),
-      [&](std::size_t v) {
-        const std::size_t diagonal = structure.pattern.column_start[v];
-        Tangent sum = Tangent::Zero();
-        for (std::size_t t = structure.term_start[diagonal]; t < structure.term_start[diagonal + 1]; ++t) {
-          const GraphStructure::Term& term = structure.terms[t];
-          const bool from = term.part == GraphStructure::Term::Part::from_from;
-          sum += from ? gradient_from[term.active_edge] : gradient_to[term.active_edge];
-        }
-        out.gradient.template segment<D>(static_cast<Eigen::Index>(v * D)) = sum;
-      },
-      kGrain);
-  return out;
+  return Linearizer<P>(graph, structure, edge_weights).at(poses);
 }
 
 template GraphStructure structure_of(const PoseGraph&, const Components&, const std::vector<double>&);
 template GraphStructure structure_of(const PoseGraph2&, const Components&, const std::vector<double>&);
-template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<1>>&);
-template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<2>>&);
-template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<3>>&);
-template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<4>>&);
-template std::vector<double> sum_terms(const GraphStructure&, const std::vector<EdgeTerms<6>>&);
+template void sum_terms(const GraphStructure&, const std::vector<EdgeTerms<1>>&, std::vector<double>&);
+template void sum_terms(const GraphStructure&, const std::vector<EdgeTerms<2>>&, std::vector<double>&);
+template void sum_terms(const GraphStructure&, const std::vector<EdgeTerms<3>>&, std::vector<double>&);
+template void sum_terms(const GraphStructure&, const std::vector<EdgeTerms<4>>&, std::vector<double>&);
+template void sum_terms(const GraphStructure&, const std::vector<EdgeTerms<6>>&, std::vector<double>&);
 template Eigen::VectorXd times<3>(const BlockPattern&, const std::vector<double>&, const Eigen::VectorXd&);
 template Eigen::VectorXd times<4>(const BlockPattern&, const std::vector<double>&, const Eigen::VectorXd&);
 template Eigen::VectorXd times<6>(const BlockPattern&, const std::vector<double>&, const Eigen::VectorXd&);
+template class Linearizer<Pose>;
+template class Linearizer<Pose2>;
 template NormalEquations linearize(const PoseGraph&, const GraphStructure&, const std::vector<Pose>&,
                                    const std::vector<double>&);
 template NormalEquations linearize(const PoseGraph2&, const GraphStructure&, const std::vector<Pose2>&,

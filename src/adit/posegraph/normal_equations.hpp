@@ -40,18 +40,50 @@ struct NormalEquations {
 template <int D>
 [[nodiscard]] Eigen::VectorXd times(const BlockPattern& pattern, const std::vector<double>& values,
                                     const Eigen::VectorXd& x);
-template <class P>
-[[nodiscard]] NormalEquations linearize(const BasicPoseGraph<P>& graph, const GraphStructure& structure,
-                                        const std::vector<P>& poses, const std::vector<double>& edge_weights);
-
 /// The contribution of one edge to the normal matrix, in blocks of size D. The caller fills it in,
 /// `sum_terms` adds it up.
 template <int D>
 struct EdgeTerms {
+  EdgeTerms() {
+  }  // NOLINT(modernize-use-equals-default): a defaulted one would fill arrays of them with zeros
   Eigen::Matrix<double, D, D> from_from, to_to, from_to;
 };
 template <int D>
+void sum_terms(const GraphStructure& structure, const std::vector<EdgeTerms<D>>& edges,
+               std::vector<double>& values);
+template <int D>
 [[nodiscard]] std::vector<double> sum_terms(const GraphStructure& structure,
-                                            const std::vector<EdgeTerms<D>>& edges);
+                                            const std::vector<EdgeTerms<D>>& edges) {
+  std::vector<double> values;
+  sum_terms<D>(structure, edges, values);
+  return values;
+}
+
+/// Linearizes one graph again and again in the same memory: to get it from the system anew takes as long as
+/// the work. Graph, structure and weights must outlive it.
+template <class P>
+class Linearizer {
+ public:
+  Linearizer(const BasicPoseGraph<P>& graph, const GraphStructure& structure,
+             const std::vector<double>& edge_weights);
+  /// Valid until the next call.
+  [[nodiscard]] const NormalEquations& at(const std::vector<P>& poses);
+
+ private:
+  struct EdgeGradient {
+    typename P::Tangent from, to;
+  };
+  void linearize_edge(std::size_t active_edge, const std::vector<P>& poses);
+
+  const BasicPoseGraph<P>& graph_;
+  const GraphStructure& structure_;
+  const std::vector<double>& edge_weights_;
+  std::vector<EdgeTerms<P::kDof>> terms_;
+  std::vector<EdgeGradient> gradients_;
+  NormalEquations equations_;
+};
+template <class P>
+[[nodiscard]] NormalEquations linearize(const BasicPoseGraph<P>& graph, const GraphStructure& structure,
+                                        const std::vector<P>& poses, const std::vector<double>& edge_weights);
 
 }  // namespace adit
