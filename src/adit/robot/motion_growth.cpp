@@ -10,7 +10,6 @@ namespace {
 
 constexpr std::ptrdiff_t kMostShift = 25;  // grid steps: half a second
 constexpr double kCurves = 0.03;           // rad/s: with less turning there is nothing to compare
-constexpr std::size_t kFewPairs = 500;     // ten seconds
 constexpr double kClearly = 0.7;           // correlation
 
 std::vector<double> rates_on_grid(const Growth& growth, Stamp begin, Stamp end, Duration half_window) {
@@ -23,23 +22,29 @@ std::vector<double> rates_on_grid(const Growth& growth, Stamp begin, Stamp end, 
 }  // namespace
 
 void Growth::add(Stamp stamp, double value) {
+  const std::size_t piece = pieces_.empty() ? 0 : pieces_.back();
+  pieces_.push_back(std::isnan(value) ? piece + 1 : piece);
   stamps_.push_back(stamp);
   values_.push_back(value);
 }
 
-double Growth::at(Stamp stamp) const {
+Growth::Value Growth::find(Stamp stamp) const {
   const auto after = std::ranges::lower_bound(stamps_, stamp);
-  if (after == stamps_.end() || (after == stamps_.begin() && *after != stamp)) return kNothing;
+  if (after == stamps_.end() || (after == stamps_.begin() && *after != stamp)) return {};
   const auto i = static_cast<std::size_t>(after - stamps_.begin());
-  if (*after == stamp) return values_[i];
+  if (*after == stamp) return {values_[i], pieces_[i]};
   const Duration gap = stamps_[i] - stamps_[i - 1];
-  if (gap > longest_gap_) return kNothing;
-  return values_[i - 1] +
-         (values_[i] - values_[i - 1]) * to_seconds(stamp - stamps_[i - 1]) / to_seconds(gap);
+  if (gap > longest_gap_) return {};
+  return {
+      values_[i - 1] + (values_[i] - values_[i - 1]) * to_seconds(stamp - stamps_[i - 1]) / to_seconds(gap),
+      pieces_[i]};
 }
 
 double Growth::rate(Stamp stamp, Duration half) const {
-  return (at(stamp + half) - at(stamp - half)) / (2.0 * to_seconds(half));
+  const Value before = find(stamp - half);
+  const Value after = find(stamp + half);
+  if (before.piece != after.piece) return kNothing;
+  return (after.value - before.value) / (2.0 * to_seconds(half));
 }
 
 Growths growths_of(const Trajectory& wheel) {
@@ -72,7 +77,7 @@ Regression regress(const std::vector<double>& x, const std::vector<double>& y, s
   return {static_cast<std::size_t>(n), c / std::sqrt(vx * vy), c / vx, std::sqrt(vx)};
 }
 
-bool TurnComparison::has_curves() const { return best.num >= kFewPairs && best.sigma >= kCurves; }
+bool TurnComparison::has_curves() const { return best.num >= num_enough && best.sigma >= kCurves; }
 
 bool TurnComparison::agrees() const { return has_curves() && std::abs(best.correlation) >= kClearly; }
 

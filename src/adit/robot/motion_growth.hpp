@@ -19,7 +19,7 @@ class Growth {
   /// Nothing is known between samples that are further apart than `longest_gap`.
   explicit Growth(Duration longest_gap = std::chrono::milliseconds(200)) : longest_gap_(longest_gap) {}
 
-  /// Stamps ascend. Nothing is known on either side of a value of `kNothing`.
+  /// Stamps ascend. A value of `kNothing` begins another piece, which has nothing to do with the one before.
   void add(Stamp stamp, double value);
   [[nodiscard]] bool empty() const { return stamps_.empty(); }
   [[nodiscard]] double last() const { return values_.empty() ? 0.0 : values_.back(); }
@@ -27,12 +27,19 @@ class Growth {
   [[nodiscard]] Stamp end() const { return stamps_.back(); }
 
   /// `kNothing` outside and in gaps.
-  [[nodiscard]] double at(Stamp stamp) const;
-  /// The mean rate within `half` of `stamp`, per second.
+  [[nodiscard]] double at(Stamp stamp) const { return find(stamp).value; }
+  /// The mean rate within `half` of `stamp`, per second; of one piece alone.
   [[nodiscard]] double rate(Stamp stamp, Duration half) const;
 
  private:
+  struct Value {
+    double value = kNothing;
+    std::size_t piece = 0;
+  };
+  [[nodiscard]] Value find(Stamp stamp) const;
+
   Duration longest_gap_;
+  std::vector<std::size_t> pieces_;  ///< Of each sample, counted.
   std::vector<Stamp> stamps_;
   std::vector<double> values_;
 };
@@ -61,11 +68,12 @@ inline constexpr Duration kRateGrid = std::chrono::milliseconds(20);
 /// The turning of wheels and of another sensor at the shift of clocks, up to half a second, at which they
 /// agree best.
 struct TurnComparison {
-  Regression best;           ///< The other sensor's turning by the wheels'.
-  double late_s = 0.0;       ///< By how much the wheels' stamps are too late.
-  double unexplained = 1.0;  ///< Share of the error at no shift that is left at the best one.
+  Regression best;               ///< The other sensor's turning by the wheels'.
+  double late_s = 0.0;           ///< By how much the wheels' stamps are too late.
+  double unexplained = 1.0;      ///< Share of the error at no shift that is left at the best one.
+  std::size_t num_enough = 500;  ///< Rates that suffice to say anything.
 
-  /// Whether there was turning enough to say anything: ten seconds with more than 0.03 rad/s.
+  /// Whether there was turning enough to say anything: so many rates that differ by more than 0.03 rad/s.
   [[nodiscard]] bool has_curves() const;
   /// Whether both turn together, or against one another.
   [[nodiscard]] bool agrees() const;

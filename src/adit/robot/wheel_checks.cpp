@@ -125,9 +125,9 @@ double forward_correlation(const Growth& wheels, const Growth& imu) {
                 (2.0 * to_seconds(kHalf)));
     f.push_back(imu.rate(stamp, 2 * kHalf));
   }
-  constexpr std::size_t kFewPairs = 500;  // ten seconds
+  constexpr std::size_t kTenSeconds = 500;
   const Regression fit = regress(w, f, 0);
-  return fit.num < kFewPairs || fit.sigma < kSpeedingUp ? 0.0 : fit.correlation;
+  return fit.num < kTenSeconds || fit.sigma < kSpeedingUp ? 0.0 : fit.correlation;
 }
 
 constexpr double kScaleTolerance = 0.05;  // share; skid steering is known no better

@@ -7,22 +7,28 @@
 
 #include "adit/core/decompositions.hpp"
 #include "adit/core/parallel.hpp"
+#include "adit/geometry/deskew.hpp"
 #include "adit/odometry/plane_icp.hpp"
+#include "adit/odometry/preprocess.hpp"
 #include "adit/robot/sensor_checks.hpp"
 #include "adit/robot/wheel_comparison.hpp"
 
 namespace adit {
 namespace {
 
-constexpr std::size_t kStretches = 8;
-constexpr std::size_t kLength = 25;   // scans of a stretch
-constexpr std::size_t kSettling = 4;  // of those, until the odometry knows how fast the robot is
-constexpr std::size_t kPoints = 20'000;
+constexpr std::size_t kStretches = 12;
+constexpr std::size_t kLength = 25;      // scans of a stretch
+constexpr std::size_t kSettling = 4;     // of those, until the odometry knows how fast the robot is
+constexpr std::size_t kPoints = 20'000;  // of a scan; more measure no better
 constexpr Duration kLongestStep = std::chrono::milliseconds(300);  // three scans of a usual LiDAR
-constexpr double kTurnSigma = 0.005;  // radians in a step, that count as measured
-constexpr double kAheadSigma = 0.02;  // metres
-constexpr double kUnknown = 10.0;     // metres and radians, along directions that the scan leaves open
-constexpr double kLeastDriven = 0.5;  // metres of a stretch that tell forward from backward
+constexpr Duration kHalfWindow = std::chrono::milliseconds(100);   // of rates: a scan to either side
+constexpr std::size_t kEnoughRates = 150;  // three seconds; the turning between scans has little noise
+// Deviations of a step, as stated, up to which it counts as measured. Where the scene fixes all six
+// directions they are a fifth of that; above, steps were seen that were off by far more than they stated.
+constexpr double kTurnSigma = 0.0005;  // radians
+constexpr double kAheadSigma = 0.005;  // metres
+constexpr double kUnknown = 10.0;      // metres and radians, along directions that the scan leaves open
+constexpr double kLeastDriven = 0.5;   // metres of a stretch that tell its scale
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -127,19 +133,48 @@ struct Stretch {
   bool has_times = true;
 };
 
-// A scan that cannot be read ends the stretch: whoever makes the map says so.
-Stretch measured(const Recording& recording, Indices scans) {
-  PlaneIcp odometry({}, recording.T_base_lidar);
-  Stretch stretch;
-  OdometryStep before;
+// The odometry of clouds without times of their points.
+std::vector<OdometryStep> registered(const std::vector<Scan>& scans, const Pose& T_base_lidar) {
+  PlaneIcpConfig config;
+  config.scan_to_map.deskew = false;
+  PlaneIcp odometry(config, T_base_lidar);
+  std::vector<OdometryStep> steps;
+  for (const Scan& scan : scans) steps.push_back(odometry.register_scan(scan, {}));
+  return steps;
+}
+
+// The clouds as if each had been taken at the scan's stamp, base frame. Deskewing within the odometry goes by
+// the motion that is sought, and answers errors of one scan with others of the next. So sweeps are registered
+// bent as they are first, which gives the motion at their middles, and straightened by that.
+std::vector<Scan> straightened(const std::vector<Scan>& scans, const Pose& T_base_lidar) {
+  const std::vector<OdometryStep> bent = registered(scans, T_base_lidar);
+  std::vector<Scan> out;
   for (std::size_t k = 0; k < scans.size(); ++k) {
-    const Result<Scan> scan = recording.read_scan(scans[k]);
+    const std::size_t before = k == 0 ? 0 : k - 1;
+    const std::size_t after = std::min(k + 1, scans.size() - 1);
+    const Pose motion = bent[before].T_odom_base.inverse() * bent[after].T_odom_base;
+    PointCloud straight;
+    preprocess(scans[k].cloud, {}, T_base_lidar, sweep_of({motion, bent[after].stamp - bent[before].stamp}),
+               straight);
+    out.push_back({scans[k].stamp, std::move(straight)});
+  }
+  return out;
+}
+
+// A scan that cannot be read ends the stretch: whoever makes the map says so.
+Stretch measured(const Recording& recording, Indices indices) {
+  Stretch stretch;
+  std::vector<Scan> scans;
+  for (const std::size_t i : indices) {
+    const Result<Scan> scan = recording.read_scan(i);
     if (!scan) break;
     stretch.has_times = stretch.has_times && scan->cloud.has_times();
-    const OdometryStep step = odometry.register_scan({scan->stamp, thinned(scan->cloud)}, {});
-    if (k >= kSettling) stretch.steps.push_back(step_between(before, step));
-    before = step;
+    scans.push_back({scan->stamp, thinned(scan->cloud)});
   }
+  if (scans.size() < 2) return stretch;
+  const std::vector<OdometryStep> steps = registered(straightened(scans, recording.T_base_lidar), Pose());
+  for (std::size_t k = kSettling; k < steps.size(); ++k)
+    stretch.steps.push_back(step_between(steps[k - 1], steps[k]));
   return stretch;
 }
 
@@ -207,7 +242,8 @@ std::vector<SensorFinding> check_wheels_with_scans(Recording& recording) {
   const Growth turn = turns_of(stretches);
   if (turn.empty()) return {};
   WheelComparison comparison;
-  comparison.turns = compare_turns(wheels.turn, turn, std::chrono::milliseconds(100));
+  comparison.turns = compare_turns(wheels.turn, turn, kHalfWindow);
+  comparison.turns.num_enough = kEnoughRates;
   const Duration late = comparison.turns.agrees() ? from_seconds(comparison.turns.late_s) : Duration(0);
   comparison.ahead = scale_ahead(stretches, wheels.forward, late);
   if (comparison.ahead && *comparison.ahead < 0.0) {
