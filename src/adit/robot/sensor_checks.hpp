@@ -4,7 +4,7 @@
 ///
 /// What would spoil a map is repaired where the repair is certain (a clock that is late, a value that jumps),
 /// and else its sensor is left out. Wheels and IMU are compared with one another; without an IMU, wheels are
-/// compared with some 200 scans. On a drive without curves less can be seen, and slip is left to odometry.
+/// compared with some 300 scans. On a drive without curves less can be seen, and slip is left to odometry.
 #pragma once
 
 #include <string>
@@ -58,7 +58,7 @@ struct SensorFinding {
 /// The wheels' motion against the IMU's: signs, scale, clocks.
 [[nodiscard]] std::vector<SensorFinding> check_wheels_with_imu(Recording& recording);
 /// The wheels' motion against that between scans, where there is no IMU: signs, scale, clocks. Registers
-/// about 200 scans, where by the wheels the robot turns most; nothing is said where the scans leave a motion
+/// about 300 scans, where by the wheels the robot turns most; nothing is said where the scans leave a motion
 /// open.
 [[nodiscard]] std::vector<SensorFinding> check_wheels_with_scans(Recording& recording);
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <span>
 
@@ -16,7 +17,7 @@
 namespace adit {
 namespace {
 
-constexpr std::size_t kStretches = 12;
+constexpr std::size_t kBatch = 12;       // stretches; a second batch follows where one tells too little
 constexpr std::size_t kLength = 25;      // scans of a stretch
 constexpr std::size_t kSettling = 4;     // of those, until the odometry knows how fast the robot is
 constexpr std::size_t kPoints = 20'000;  // of a scan; more measure no better
@@ -69,7 +70,7 @@ std::optional<double> unevenness(const Recording& recording, const Growth& turn,
   return squares / n - sum * sum / (n * n);
 }
 
-// Stretches of `scans` that do not overlap, by time.
+// Stretches of `scans` that do not overlap, the best first.
 std::vector<Indices> choose_stretches(const Recording& recording, const Growth& turn, Indices scans) {
   struct Candidate {
     std::size_t first;
@@ -85,9 +86,8 @@ std::vector<Indices> choose_stretches(const Recording& recording, const Growth& 
     const bool is_free = std::ranges::all_of(chosen, [&](std::size_t other) {
       return candidate.first + kLength <= other || other + kLength <= candidate.first;
     });
-    if (is_free && chosen.size() < kStretches) chosen.push_back(candidate.first);
+    if (is_free && chosen.size() < 2 * kBatch) chosen.push_back(candidate.first);
   }
-  std::ranges::sort(chosen);
   std::vector<Indices> stretches;
   for (const std::size_t first : chosen) stretches.push_back(scans.subspan(first, kLength));
   return stretches;
@@ -229,6 +229,21 @@ std::optional<double> scale_ahead(const std::vector<Stretch>& stretches, const G
   return middle;
 }
 
+// Compares the wheels with stretches of scans; these are by time.
+WheelComparison compare(const Growths& wheels, const std::vector<Stretch>& stretches) {
+  constexpr double kSweep = 0.1;
+  WheelComparison comparison;
+  const Growth turn = turns_of(stretches);
+  if (!turn.empty()) comparison.turns = compare_turns(wheels.turn, turn, kHalfWindow);
+  comparison.turns.num_enough = kEnoughRates;
+  const Duration late = comparison.turns.agrees() ? from_seconds(comparison.turns.late_s) : Duration(0);
+  comparison.ahead = scale_ahead(stretches, wheels.forward, late);
+  comparison.is_backward = comparison.ahead && *comparison.ahead < 0.0;
+  // Without times of the points it is not known where in a sweep its stamp lies.
+  if (!std::ranges::all_of(stretches, &Stretch::has_times)) comparison.clock_tolerance_s += kSweep;
+  return comparison;
+}
+
 }  // namespace
 
 std::vector<SensorFinding> check_wheels_with_scans(Recording& recording) {
@@ -237,23 +252,18 @@ std::vector<SensorFinding> check_wheels_with_scans(Recording& recording) {
   const Growths wheels = growths_of(recording.wheel);
   const std::vector<std::size_t> scans = used_scans(recording);
   const std::vector<Indices> chosen = choose_stretches(recording, wheels.turn, scans);
-  std::vector<Stretch> stretches(chosen.size());
-  parallel_for_each(chosen.size(), [&](std::size_t i) { stretches[i] = measured(recording, chosen[i]); });
-  const Growth turn = turns_of(stretches);
-  if (turn.empty()) return {};
+  std::vector<Stretch> stretches;
   WheelComparison comparison;
-  comparison.turns = compare_turns(wheels.turn, turn, kHalfWindow);
-  comparison.turns.num_enough = kEnoughRates;
-  const Duration late = comparison.turns.agrees() ? from_seconds(comparison.turns.late_s) : Duration(0);
-  comparison.ahead = scale_ahead(stretches, wheels.forward, late);
-  if (comparison.ahead && *comparison.ahead < 0.0) {
-    comparison.is_backward = true;
-    comparison.ahead.reset();
+  for (std::size_t first = 0; first < chosen.size(); first += kBatch) {
+    std::vector<Stretch> batch(std::min(kBatch, chosen.size() - first));
+    parallel_for_each(batch.size(),
+                      [&](std::size_t i) { batch[i] = measured(recording, chosen[first + i]); });
+    std::ranges::move(batch, std::back_inserter(stretches));
+    std::erase_if(stretches, [](const Stretch& stretch) { return stretch.steps.empty(); });
+    std::ranges::sort(stretches, {}, [](const Stretch& stretch) { return stretch.steps.front().begin; });
+    comparison = compare(wheels, stretches);
+    if (comparison.turns.has_curves() && comparison.ahead) break;
   }
-  // Without times of the points it is not known when in a sweep its stamp lies.
-  constexpr double kSweep = 0.1;
-  if (std::ranges::any_of(stretches, [](const Stretch& stretch) { return !stretch.has_times; }))
-    comparison.clock_tolerance_s += kSweep;
   return judge_wheels(recording, comparison, kReference);
 }
 
