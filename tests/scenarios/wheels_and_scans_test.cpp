@@ -17,13 +17,14 @@
 namespace adit {
 namespace {
 
-/// Half a minute through a hall with corners to see, with curves to both sides.
+/// Twice a figure of eight in a hall, whose walls are all in sight.
 Recording drive_with(const WheelConfig& wheels, const std::string& lidar = "os2-32", std::uint64_t seed = 1) {
   World world;
   world.name = "hall";
-  world.mesh = test::room({-10, -12, 0}, {60, 12, 6});
+  world.mesh = test::room({-15, -10, 0}, {17, 11, 6});
   Route route{"robot_0", 1.5, {}};
-  for (int i = 0; i <= 45; ++i) route.waypoints.emplace_back(i, 3.0 * std::sin(0.35 * i), 0.0);
+  for (int i = 0; i <= 120; ++i)
+    route.waypoints.emplace_back(10.0 * std::sin(0.105 * i), 5.0 * std::sin(0.21 * i), 0.0);
   world.routes = {route};
   ScenarioConfig config;
   config.lidar = lidar_preset(lidar).value();
@@ -56,14 +57,13 @@ void expect_finding(Recording recording, Finding finding, Consequence consequenc
 }
 
 TEST(WheelsAndScans, SoundWheelsOfSeveralSensorsGiveNoFinding) {
+  std::uint64_t seed = 0;
   for (const std::string lidar : {"os2-32", "vlp-16", "livox-mid-360"}) {
-    for (const std::uint64_t seed : {1, 2}) {
-      Recording recording = drive_with({}, lidar, seed);
-      const std::size_t num_poses = recording.wheel.size();
-      const std::vector<SensorFinding> findings = use_sound_sensors(recording);
-      EXPECT_TRUE(findings.empty()) << lidar << ": " << findings.front().sentence;
-      EXPECT_EQ(recording.wheel.size(), num_poses);
-    }
+    Recording recording = drive_with({}, lidar, ++seed);
+    const std::size_t num_poses = recording.wheel.size();
+    const std::vector<SensorFinding> findings = use_sound_sensors(recording);
+    EXPECT_TRUE(findings.empty()) << lidar << ": " << findings.front().sentence;
+    EXPECT_EQ(recording.wheel.size(), num_poses);
   }
 }
 
@@ -80,13 +80,14 @@ TEST(WheelsAndScans, WheelsOfTheWrongSignAreLeftOut) {
 TEST(WheelsAndScans, AWrongScaleIsNoted) {
   WheelConfig wheels;
   wheels.scale = 1.1;
-  expect_finding(drive_with(wheels), Finding::wheels_wrong_scale, Consequence::noted, "% too far");
+  expect_finding(drive_with(wheels), Finding::wheels_wrong_scale, Consequence::noted, "and they drive 1");
   wheels.scale = 0.9;
-  expect_finding(drive_with(wheels), Finding::wheels_wrong_scale, Consequence::noted, "% too little");
+  expect_finding(drive_with(wheels), Finding::wheels_wrong_scale, Consequence::noted,
+                 "% too little by the scans");
 }
 
 TEST(WheelsAndScans, LateWheelsAreMovedByWhatTheyAreLate) {
-  for (const std::string lidar : {"os2-32", "livox-mid-360"}) {
+  for (const std::string lidar : {"os2-32", "vlp-16"}) {
     for (const double late : {0.1, -0.1}) {
       WheelConfig wheels;
       wheels.time_offset = late;
@@ -99,7 +100,7 @@ TEST(WheelsAndScans, LateWheelsAreMovedByWhatTheyAreLate) {
   }
 }
 
-/// Largest error of the map's odometry, metres; one that the checks see, and that they do not.
+/// Largest error of the odometry that the map rests on, metres.
 double map_error(const Recording& recording) {
   const Mapping mapping = map_robots({recording}, {}).value();
   return ate(mapping.robots.front().map->odometry, recording.truth)->max_m;
@@ -107,14 +108,22 @@ double map_error(const Recording& recording) {
 
 TEST(WheelsAndScans, NoFaultSpoilsTheMap) {
   const double sound = map_error(drive_with({}));
+  Recording none = drive_with({});
+  none.wheel.clear();
+  const double without = map_error(none);
   EXPECT_LT(sound, 0.2);
-  std::vector<WheelConfig> faults(4);
-  faults[0].sign = WheelSign::swapped;
-  faults[1].sign = WheelSign::reversed;
-  faults[2].scale = 1.1;
-  faults[3].time_offset = 0.1;
-  for (std::size_t i = 0; i < faults.size(); ++i)
-    EXPECT_LT(map_error(drive_with(faults[i])), sound + 0.15) << "fault " << i;
+  EXPECT_LT(without, 0.5);
+  WheelConfig wheels;
+  wheels.sign = WheelSign::swapped;
+  EXPECT_EQ(map_error(drive_with(wheels)), without);
+  wheels.sign = WheelSign::reversed;
+  EXPECT_EQ(map_error(drive_with(wheels)), without);
+  wheels = {};
+  wheels.scale = 1.1;
+  EXPECT_LT(map_error(drive_with(wheels)), sound + 0.1);
+  wheels = {};
+  wheels.time_offset = 0.1;
+  EXPECT_LT(map_error(drive_with(wheels)), sound + 0.1);
 }
 
 TEST(WheelsAndScans, TheAnswerDoesNotDependOnTheNumberOfThreads) {
