@@ -42,6 +42,8 @@ void add_recording_options(const Command& command, RecordingConfig& config) {
           "recordings say")
       .check(mount_fault);
   command.add_option("--points", config.points, "Topic of the clouds, for recordings with several");
+  command.add_option("--wheel", config.wheel,
+                     "Topic of the wheel odometry, for recordings with several; none: without");
   command.add_option("--imu", config.imu, "Topic of the IMU, for recordings with several; none: without");
   command.add_option("--imu-mount", config.imu_mount, "Pose of the IMU on the robot, as --mount")
       .check(mount_fault);
@@ -58,6 +60,7 @@ Result<Recording> open_input(const std::string& input, const RecordingConfig& co
 RecordingConfig recording_config(RecordingConfig config, const RecordingConfig& options) {
   if (!options.mount.empty()) config.mount = options.mount;
   if (!options.points.empty()) config.points = options.points;
+  if (!options.wheel.empty()) config.wheel = options.wheel;
   if (!options.imu.empty()) config.imu = options.imu;
   if (!options.imu_mount.empty()) config.imu_mount = options.imu_mount;
   return config;
@@ -67,6 +70,7 @@ Result<Inputs> open_inputs(const std::vector<std::string>& inputs, const RunConf
   if (inputs.size() == 1 && is_routes_file(inputs.front())) {
     ScenarioConfig simulation = config.simulation;
     if (config.recording.imu == kNoImu) simulation.imu.on = false;
+    if (config.recording.wheel == kNoWheel) simulation.wheels.on = false;
     return simulated(inputs.front(), simulation);
   }
   Inputs opened;

@@ -15,7 +15,7 @@
 
 namespace adit::app {
 
-/// The options --mount, --points, --imu and --imu-mount of a command that opens recordings.
+/// The options --mount, --points, --wheel, --imu and --imu-mount of a command that opens recordings.
 void add_recording_options(const Command& command, RecordingConfig& config);
 
 /// A recording (see open_recording). What had to be assumed to read it goes to stderr, one line per

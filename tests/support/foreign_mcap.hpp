@@ -56,11 +56,17 @@ class ForeignFile {
     }
     return *this;
   }
-  ForeignFile& odometry(const std::string& topic, const std::string& child = "base_link") {
+  ForeignFile& odometry(const std::string& topic, const std::string& child = "base_link",
+                        const WheelCovariance& covariance = {}) {
+    return odometry(topic, child, {covariance, covariance, covariance});
+  }
+  /// Three poses, with a covariance each.
+  ForeignFile& odometry(const std::string& topic, const std::string& child,
+                        const std::vector<WheelCovariance>& covariances) {
     const std::uint16_t id = channel(2, topic);
     for (std::size_t i = 0; i < 3; ++i) {
       const Stamp stamp = make_scan(i, 0).stamp;
-      message(id, stamp, ros::encode_odometry({"odom", child, {stamp, Pose()}}));
+      message(id, stamp, ros::encode_odometry({{"odom", child, {stamp, Pose()}}, covariances.at(i)}));
     }
     return *this;
   }

@@ -12,11 +12,16 @@ namespace adit {
 /// As RecordingConfig::imu: do without an IMU.
 inline constexpr std::string_view kNoImu = "none";
 
+/// As RecordingConfig::wheel: do without wheels.
+inline constexpr std::string_view kNoWheel = "none";
+
 /// How recordings are opened (io/recording_files.hpp).
 struct RecordingConfig {
   std::string mount =
       {};  ///< Overrides what a recording says of its mount, see io/mount.hpp. "": as it says.
   std::string points = {};  ///< Topic of the clouds, where a file has several. "": the only one.
+  std::string wheel =
+      {};  ///< Topic of wheel odometry, where a file has several. "": the only one; "none": do without.
   std::string imu =
       {};  ///< Topic of the IMU, where a file has several. "": the only one; "none": do without.
   std::string imu_mount = {};  ///< As `mount`, of the IMU.
@@ -28,6 +33,9 @@ struct RecordingConfig {
        "pose of the LiDAR on the robot, 'x y z' or 'x y z roll pitch yaw'; empty: as each recording says"},
       {"points", &c.points, "", 0, 0,
        "topic of the clouds, where a recording has several; empty: the only one"},
+      {"wheel", &c.wheel, "", 0, 0,
+       "topic of the wheel odometry, where a recording has several; empty: the only one; none: without "
+       "wheels"},
       {"imu", &c.imu, "", 0, 0,
        "topic of the IMU, where a recording has several; empty: the only one; none: without an IMU"},
       {"imu_mount", &c.imu_mount, "m, deg", 0, 0,

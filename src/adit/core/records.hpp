@@ -60,6 +60,14 @@ struct ImuCovariance {
   Matrix3 specific_force = Matrix3::Zero();    ///< (m/s^2)^2
 };
 
+/// Covariances as the messages of the wheels state them: of the first message, or of the first one that
+/// states what cannot be. Order x, y, z, rotation about x, y, z; zero where nothing is stated. adit does not
+/// use them as noise: a pose's covariance is that of a whole drive (decision 0028).
+struct WheelCovariance {
+  Matrix6 pose = Matrix6::Zero();   ///< m^2, rad^2
+  Matrix6 twist = Matrix6::Zero();  ///< (m/s)^2, (rad/s)^2
+};
+
 /// What the robot's other sensors measured from one scan to the next.
 struct SensedMotion {
   std::optional<WheelDelta> wheel = {};  ///< None without wheels, or where they were silent.
@@ -90,10 +98,11 @@ struct Recording {
   std::vector<Stamp> scan_stamps;                      ///< Strictly ascending.
   std::function<Result<Scan>(std::size_t)> read_scan;  ///< Thread-safe; scan i has stamp scan_stamps[i].
   Trajectory wheel;                                    ///< T_wheelodom_base; empty when there are no wheels.
-  std::vector<ImuSample> imu;                          ///< Strictly ascending; empty when there is no IMU.
-  Pose T_base_imu;                                     ///< The mount of the IMU.
-  std::string imu_mount_source;                        ///< As mount_source; "" when there is no IMU.
-  std::string imu_name;                                ///< The IMU's model, "" when unknown.
+  WheelCovariance wheel_covariance;
+  std::vector<ImuSample> imu;    ///< Strictly ascending; empty when there is no IMU.
+  Pose T_base_imu;               ///< The mount of the IMU.
+  std::string imu_mount_source;  ///< As mount_source; "" when there is no IMU.
+  std::string imu_name;          ///< The IMU's model, "" when unknown.
   ImuCovariance imu_covariance;
   std::vector<SensorFault> faults;  ///< Of simulated sensors, by begin.
   Trajectory truth;                 ///< T_world_base; empty when unknown.

@@ -14,6 +14,7 @@
 #include "adit/io/ros_messages.hpp"
 #include "adit/io/text.hpp"
 #include "adit/io/tum.hpp"
+#include "adit/robot/wheel_covariance.hpp"
 
 namespace adit {
 namespace {
@@ -92,11 +93,15 @@ Result<Topics> choose_topics(Topics topics, const RecordingConfig& config) {
     return fail("no topic of sensor_msgs/msg/PointCloud2 in CDR; there are no scans to read");
   if (config.imu == kNoImu) topics.imu.clear();
   const std::string imu = config.imu == kNoImu ? "" : config.imu;
+  const bool has_wheels = config.wheel != kNoWheel;
   return choose_one(topics.points, {"PointCloud2", "--points", config.points})
       .and_then([&] {
         return choose_one(topics.imu, {"Imu", "--imu", imu});
       })
-      .and_then([&] { return check_single(topics.wheel, "wheel odometry"); })
+      .and_then([&]() -> Result<> {
+        if (!has_wheels) return {};
+        return choose_one(topics.wheel, {"wheel odometry", "--wheel", config.wheel});
+      })
       .and_then([&] { return check_single(topics.truth, "ground truth"); })
       .map([&] { return std::move(topics); });
 }
@@ -114,12 +119,23 @@ std::vector<MessageRef> messages_of(const mcap::Contents& contents,
 struct PoseTrack {
   Trajectory poses;
   std::string child;  ///< Frame of the body.
+  WheelCovariance covariance;
 };
+
+/// Keeps the first covariances, or the first that cannot be.
+void take_covariance(WheelCovariance& kept, const WheelCovariance& stated, bool is_first) {
+  if (is_first ||
+      (fault_of_pose_covariance(kept.pose).empty() && !fault_of_pose_covariance(stated.pose).empty()))
+    kept.pose = stated.pose;
+  if (is_first ||
+      (fault_of_twist_covariance(kept.twist).empty() && !fault_of_twist_covariance(stated.twist).empty()))
+    kept.twist = stated.twist;
+}
 
 Result<PoseTrack> read_poses(const mcap::Reader& reader, const std::vector<mcap::Channel>& channels) {
   PoseTrack track;
   for (const MessageRef& ref : messages_of(reader.contents(), channels)) {
-    const Result<ros::TransformMessage> pose = reader.read(ref).and_then(
+    const Result<ros::OdometryMessage> pose = reader.read(ref).and_then(
         [](const mcap::Message& message) { return ros::decode_odometry(message.data); });
     const std::string place = format("{}, message {}", channels.front().topic, track.poses.size());
     if (!pose) return fail(place, pose.error());
@@ -127,6 +143,7 @@ Result<PoseTrack> read_poses(const mcap::Reader& reader, const std::vector<mcap:
       return fail(format("{}: stamp {} is not after {}, that of the one before", place,
                          stamp_text(pose->pose.stamp), stamp_text(track.poses.back().stamp)));
     }
+    take_covariance(track.covariance, pose->covariance, track.poses.empty());
     track.poses.push_back(pose->pose);
     track.child = pose->child;
   }
@@ -159,6 +176,23 @@ Result<FrameTree> read_frames(const mcap::Reader& reader, const Topics& topics) 
       tree.add(link.frame, link.child, link.pose.T_world_body);
   }
   return tree;
+}
+
+/// The robot's frame as topics of wheel odometry name it that are not used; "" where they differ.
+Result<std::string> body_frame(const mcap::Reader& reader, const std::vector<mcap::Channel>& channels) {
+  std::string body;
+  for (const mcap::Channel& channel : channels) {
+    const std::vector<MessageRef> messages = messages_of(reader.contents(), {channel});
+    if (messages.empty()) continue;
+    const Result<ros::OdometryMessage> first =
+        reader.read(messages.front()).and_then([](const auto& message) {
+          return ros::decode_odometry(message.data);
+        });
+    if (!first) return fail(format("{}, message 0", channel.topic), first.error());
+    if (!body.empty() && FrameTree::bare(body) != FrameTree::bare(first->child)) return std::string();
+    body = first->child;
+  }
+  return body;
 }
 
 /// How the robot's frame and the LiDAR's are called in the file.
@@ -281,9 +315,18 @@ struct Tracks {
   ImuTrack imu;
 };
 
-Result<Tracks> read_tracks(const mcap::Reader& reader, const Topics& topics) {
+/// Without wheels (`kNoWheel`) only the frame that they are of.
+Result<PoseTrack> read_wheels(const mcap::Reader& reader, const Topics& topics,
+                              const RecordingConfig& config) {
+  if (config.wheel != kNoWheel) return read_poses(reader, topics.wheel);
+  return body_frame(reader, topics.wheel).map([](std::string&& child) {
+    return PoseTrack{{}, std::move(child), {}};
+  });
+}
+
+Result<Tracks> read_tracks(const mcap::Reader& reader, const Topics& topics, const RecordingConfig& config) {
   const mcap::Contents& contents = reader.contents();
-  Result<PoseTrack> wheel = read_poses(reader, topics.wheel);
+  Result<PoseTrack> wheel = read_wheels(reader, topics, config);
   if (!wheel) return tl::unexpected(wheel.error());
   Result<PoseTrack> truth = read_poses(reader, topics.truth);
   if (!truth) return tl::unexpected(truth.error());
@@ -300,12 +343,13 @@ Result<Recording> read_recording(const std::shared_ptr<const mcap::Reader>& read
   const mcap::Contents& contents = reader->contents();
   const Result<Topics> topics = choose_topics(find_topics(contents), config);
   if (!topics) return tl::unexpected(topics.error());
-  Result<Tracks> tracks = read_tracks(*reader, *topics);
+  Result<Tracks> tracks = read_tracks(*reader, *topics, config);
   if (!tracks) return tl::unexpected(tracks.error());
   Recording recording;
   take_metadata(recording, contents, topics->points.front().topic);
   recording.scan_stamps = std::move(tracks->scans);
   recording.wheel = std::move(tracks->wheel.poses);
+  recording.wheel_covariance = tracks->wheel.covariance;
   recording.truth = std::move(tracks->truth.poses);
   recording.imu = std::move(tracks->imu.samples);
   recording.imu_covariance = tracks->imu.covariance;

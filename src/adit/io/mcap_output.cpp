@@ -93,7 +93,7 @@ void add_poses(RecordingWriter& writer, const Recording& recording) {
   const auto add = [&](const Trajectory& poses, const std::string& topic, const std::string& frame) {
     if (poses.empty()) return;
     const auto encode = [&poses, frame, base = base_frame(recording)](std::size_t i) {
-      return ros::encode_odometry({frame, base, poses[i]});
+      return ros::encode_odometry({{frame, base, poses[i]}});
     };
     writer.tracks.push_back(
         {stamps_of(poses), encode, writer.file.add_channel("/" + recording.name + topic, "cdr", schema)});

@@ -25,6 +25,12 @@ std::optional<ScanSelection> parse_selection(const std::string& text) {
   return ScanSelection{*first, *step};
 }
 
+/// Beside a folder of clouds lies at most one file of wheels, so that there is nothing to choose.
+Recording with_chosen_wheels(Recording recording, const RecordingConfig& config) {
+  if (config.wheel == kNoWheel) recording.wheel.clear();
+  return recording;
+}
+
 Result<Recording> open_part(const std::filesystem::path& folder, const std::string& part,
                             const std::optional<Pose>& mount) {
   const std::optional<ScanSelection> selection = parse_selection(part);
@@ -44,12 +50,13 @@ Result<Recording> open_recording(const std::string& input, const RecordingConfig
   const Result<std::optional<Pose>> mount = mount_of(config);
   if (!mount) return tl::unexpected(mount.error());
   std::error_code ignored;
-  if (std::filesystem::is_directory(input, ignored)) return read_scan_folder(input, {}, *mount);
+  const auto choose = [&](Recording recording) { return with_chosen_wheels(std::move(recording), config); };
+  if (std::filesystem::is_directory(input, ignored)) return read_scan_folder(input, {}, *mount).map(choose);
   if (lower_case(std::filesystem::path(input).extension().string()) == ".mcap")
     return read_recording(input, config);
   const std::size_t at = input.rfind('@');
   if (at != std::string::npos && std::filesystem::is_directory(input.substr(0, at), ignored))
-    return open_part(input.substr(0, at), input.substr(at + 1), *mount);
+    return open_part(input.substr(0, at), input.substr(at + 1), *mount).map(choose);
   if (std::filesystem::exists(input, ignored))
     return fail(input + ": is not a recording; an .mcap file or a folder of clouds is");
   return fail(input + ": no such file or folder; a recording is an .mcap file or a folder of clouds");

@@ -224,26 +224,32 @@ Result<CloudMessage> decode_cloud(std::string_view message) {
   });
 }
 
-std::string encode_odometry(const TransformMessage& odometry) {
+std::string encode_odometry(const OdometryMessage& odometry) {
   CdrWriter writer;
   write_header(writer, odometry.pose.stamp, odometry.frame);
   writer.text(odometry.child);
   write_pose(writer, odometry.pose.T_world_body);
-  // Neither covariance nor twist is known: zeros, as ROS has it.
-  for (int i = 0; i < 36 + 6 + 36; ++i) writer.number(0.0);
+  write_rows(writer, odometry.covariance.pose);
+  write_rows(writer, Vector6(Vector6::Zero()));
+  write_rows(writer, odometry.covariance.twist);
   return writer.take();
 }
 
-Result<TransformMessage> decode_odometry(std::string_view message) {
+Result<OdometryMessage> decode_odometry(std::string_view message) {
   CdrReader reader(message);
-  TransformMessage out;
+  OdometryMessage out;
   out.pose.stamp = read_stamp(reader);
   out.frame = reader.text();
   out.child = reader.text();
-  return read_pose(reader).map([&](const Pose& pose) {
-    out.pose.T_world_body = pose;
-    return std::move(out);
-  });
+  const Result<Pose> pose = read_pose(reader);
+  if (!pose) return tl::unexpected(pose.error());
+  out.pose.T_world_body = *pose;
+  read_rows(reader, out.covariance.pose);
+  Vector6 twist;
+  read_rows(reader, twist);
+  read_rows(reader, out.covariance.twist);
+  if (!reader.ok()) return fail(format("byte {}: the Odometry message ends early", reader.offset()));
+  return out;
 }
 
 std::string encode_transforms(const std::vector<TransformMessage>& transforms) {

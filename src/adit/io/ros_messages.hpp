@@ -37,8 +37,12 @@ struct TransformMessage {
   std::string child;
   StampedPose pose;
 };
-[[nodiscard]] std::string encode_odometry(const TransformMessage& odometry);
-Result<TransformMessage> decode_odometry(std::string_view message);
+/// A pose with the covariances that its message states; its twist is not read, and written as zero.
+struct OdometryMessage : TransformMessage {
+  WheelCovariance covariance = {};
+};
+[[nodiscard]] std::string encode_odometry(const OdometryMessage& odometry);
+Result<OdometryMessage> decode_odometry(std::string_view message);
 [[nodiscard]] std::string encode_transforms(const std::vector<TransformMessage>& transforms);
 Result<std::vector<TransformMessage>> decode_transforms(std::string_view message);
 

@@ -28,9 +28,32 @@ TEST(RosMessages, EveryTruncationIsAnError) {
   for (std::size_t size = 0; size < transforms.size(); ++size) {
     EXPECT_FALSE(ros::decode_transforms(transforms.substr(0, size)));
   }
-  const std::string odometry = ros::encode_odometry({"a", "b", {{5}, Pose::planar(1, 2, 3)}});
-  EXPECT_FALSE(ros::decode_odometry(odometry.substr(0, 60)));
-  EXPECT_FALSE(ros::decode_odometry(""));
+  const std::string odometry = ros::encode_odometry({{"a", "b", {{5}, Pose::planar(1, 2, 3)}}});
+  for (std::size_t size = 0; size < odometry.size(); ++size)
+    EXPECT_FALSE(ros::decode_odometry(odometry.substr(0, size))) << size;
+}
+
+/// The bytes of the message, laid out by hand from the definition of nav_msgs/msg/Odometry.
+TEST(RosMessages, OdometryHasTheLayoutOfItsDefinition) {
+  ros::OdometryMessage odometry;
+  odometry.frame = "odom";
+  odometry.child = "base_link";
+  odometry.pose = {{1'700'000'000'123'456'789}, {Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), {1, 2, 3}}};
+  CdrWriter writer;
+  writer.number(std::int32_t{1'700'000'000}).number(std::uint32_t{123'456'789});
+  writer.text("odom").text("base_link");
+  for (const double x : {1.0, 2.0, 3.0, 0.5, -0.5, 0.5, 0.5}) writer.number(x);  // x y z w
+  for (int i = 0; i < 36; ++i) writer.number(odometry.covariance.pose(i / 6, i % 6) = i);
+  for (int i = 0; i < 6; ++i) writer.number(0.0);
+  for (int i = 0; i < 36; ++i) writer.number(odometry.covariance.twist(i / 6, i % 6) = 100.0 + i);
+  const std::string message = writer.take();
+  EXPECT_EQ(ros::encode_odometry(odometry), message);
+  const Result<ros::OdometryMessage> back = ros::decode_odometry(message);
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->child, "base_link");
+  EXPECT_EQ(back->pose.T_world_body.translation(), Vector3(1, 2, 3));
+  EXPECT_EQ(back->covariance.pose, odometry.covariance.pose);
+  EXPECT_EQ(back->covariance.twist, odometry.covariance.twist);
 }
 
 ros::ImuMessage some_imu() {

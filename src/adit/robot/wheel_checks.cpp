@@ -2,11 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "adit/core/format.hpp"
 #include "adit/robot/sensor_checks.hpp"
+#include "adit/robot/wheel_comparison.hpp"
+#include "adit/robot/wheel_covariance.hpp"
 
 namespace adit {
 namespace {
@@ -95,56 +96,7 @@ std::optional<SensorFinding> take_out_jumps(Trajectory& wheel) {
                    sentence + "; the jumps are taken out; check the encoders' counters for overflow");
 }
 
-// A quantity that grows with time, such as an angle turned; linear between the samples.
-class Growth {
- public:
-  void add(Stamp stamp, double value) {
-    stamps_.push_back(stamp);
-    values_.push_back(value);
-  }
-  [[nodiscard]] double last() const { return values_.empty() ? 0.0 : values_.back(); }
-  [[nodiscard]] Stamp begin() const { return stamps_.front(); }
-  [[nodiscard]] Stamp end() const { return stamps_.back(); }
-
-  /// Not a number outside and where samples are further apart than 0.2 s.
-  [[nodiscard]] double at(Stamp stamp) const {
-    const auto after = std::ranges::lower_bound(stamps_, stamp);
-    if (after == stamps_.end() || (after == stamps_.begin() && *after != stamp)) return kNothing;
-    const auto i = static_cast<std::size_t>(after - stamps_.begin());
-    if (*after == stamp) return values_[i];
-    const double gap = to_seconds(stamps_[i] - stamps_[i - 1]);
-    if (gap > 0.2) return kNothing;
-    return values_[i - 1] + (values_[i] - values_[i - 1]) * to_seconds(stamp - stamps_[i - 1]) / gap;
-  }
-  /// The mean rate within `half` of `stamp`, per second.
-  [[nodiscard]] double rate(Stamp stamp, Duration half) const {
-    return (at(stamp + half) - at(stamp - half)) / (2.0 * to_seconds(half));
-  }
-
- private:
-  static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-  std::vector<Stamp> stamps_;
-  std::vector<double> values_;
-};
-
-struct Growths {
-  Growth turn;
-  Growth forward;
-};
-
-Growths growths_of(const Trajectory& wheel) {
-  Growths out;
-  out.turn.add(wheel.front().stamp, 0.0);
-  out.forward.add(wheel.front().stamp, 0.0);
-  for (std::size_t i = 1; i < wheel.size(); ++i) {
-    const Pose step = motion(wheel, i);
-    out.turn.add(wheel[i].stamp, out.turn.last() + step.yaw());
-    out.forward.add(wheel[i].stamp, out.forward.last() + step.translation().x());
-  }
-  return out;
-}
-
-/// Of an IMU: the angle turned about the robot's upward axis, and the integral of the force ahead.
+// Of an IMU: the angle turned about the robot's upward axis, and the integral of the force ahead.
 Growths growths_of(const std::vector<ImuSample>& imu, const Pose& T_base_imu) {
   const Vector3 up = T_base_imu.rotation().conjugate() * Vector3::UnitZ();
   const Vector3 ahead = T_base_imu.rotation().conjugate() * Vector3::UnitX();
@@ -161,154 +113,125 @@ Growths growths_of(const std::vector<ImuSample>& imu, const Pose& T_base_imu) {
   return out;
 }
 
-struct Regression {
-  std::size_t num = 0;
-  double correlation = 0.0;
-  double slope = 0.0;  ///< Of y on x.
-  double sigma = 0.0;  ///< Standard deviation of x.
-};
-
-/// Pairs in which a number is missing do not count.
-Regression regress(const std::vector<double>& x, const std::vector<double>& y, std::ptrdiff_t shift) {
-  double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, syy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const std::ptrdiff_t k = static_cast<std::ptrdiff_t>(i) + shift;
-    if (k < 0 || k >= static_cast<std::ptrdiff_t>(y.size())) continue;
-    const double a = x[i];
-    const double b = y[static_cast<std::size_t>(k)];
-    if (!std::isfinite(a) || !std::isfinite(b)) continue;
-    n += 1.0, sx += a, sy += b, sxx += a * a, sxy += a * b, syy += b * b;
-  }
-  if (n < 2.0) return {};
-  const double vx = sxx / n - sx * sx / (n * n);
-  const double vy = syy / n - sy * sy / (n * n);
-  const double c = sxy / n - sx * sy / (n * n);
-  if (vx <= 0.0 || vy <= 0.0) return {};
-  return {static_cast<std::size_t>(n), c / std::sqrt(vx * vy), c / vx, std::sqrt(vx)};
-}
-
-constexpr Duration kGrid = std::chrono::milliseconds(20);
-constexpr Duration kHalfWindow = std::chrono::milliseconds(60);
-constexpr std::ptrdiff_t kMostShift = 25;  // grid steps: half a second
-constexpr double kCurves = 0.03;           // rad/s: with less turning there is nothing to compare
-constexpr std::size_t kFewPairs = 500;     // ten seconds
-constexpr double kClearly = 0.7;           // correlation
-constexpr double kLate = 0.04;             // seconds: two grid steps
-constexpr double kScaleTolerance = 0.05;   // share; skid steering is known no better
-
-/// The turning of wheels and gyroscope at the shift of clocks at which they agree best.
-struct TurnComparison {
-  Regression best;           ///< The gyroscope's turning by the wheels'.
-  double late_s = 0.0;       ///< By how much the wheels' stamps are too late.
-  double unexplained = 1.0;  ///< Share of the error at no shift that is left at the best one.
-};
-
-std::vector<double> rates_on_grid(const Growth& growth, Stamp begin, Stamp end) {
-  std::vector<double> rates;
-  for (Stamp stamp = begin; stamp <= end; stamp = stamp + kGrid)
-    rates.push_back(growth.rate(stamp, kHalfWindow));
-  return rates;
-}
-
-TurnComparison compare_turns(const Growth& wheels, const Growth& gyro) {
-  const Stamp begin = std::max(wheels.begin(), gyro.begin());
-  const Stamp end = std::min(wheels.end(), gyro.end());
-  const std::vector<double> w = rates_on_grid(wheels, begin, end);
-  const std::vector<double> g = rates_on_grid(gyro, begin, end);
-  const auto strength = [&](std::ptrdiff_t shift) { return std::abs(regress(w, g, shift).correlation); };
-  std::ptrdiff_t at = 0;
-  for (std::ptrdiff_t shift = -kMostShift; shift <= kMostShift; ++shift)
-    if (strength(shift) > strength(at) + 1e-12) at = shift;
-  TurnComparison out;
-  out.best = regress(w, g, at);
-  // The vertex of the parabola through the best shift and its neighbours.
-  const double before = strength(at - 1);
-  const double after = strength(at + 1);
-  const double bend = before - 2.0 * strength(at) + after;
-  const double beyond = bend < 0.0 ? 0.5 * (before - after) / bend : 0.0;
-  out.late_s = -(static_cast<double>(at) + beyond) * to_seconds(kGrid);
-  out.unexplained = (1.0 - std::pow(strength(at), 2)) / std::max(1e-12, 1.0 - std::pow(strength(0), 2));
-  return out;
-}
-
-/// Of the wheels' acceleration with the force ahead that the IMU feels; 0 where there is little of either.
+// Of the wheels' acceleration with the force ahead that the IMU feels; 0 where there is little of either.
 double forward_correlation(const Growth& wheels, const Growth& imu) {
   constexpr Duration kHalf = std::chrono::milliseconds(200);
   constexpr double kSpeedingUp = 0.05;  // m/s^2
   const Stamp begin = std::max(wheels.begin(), imu.begin());
   const Stamp end = std::min(wheels.end(), imu.end());
   std::vector<double> w, f;
-  for (Stamp stamp = begin; stamp <= end; stamp = stamp + kGrid) {
+  for (Stamp stamp = begin; stamp <= end; stamp = stamp + kRateGrid) {
     w.push_back((wheels.rate(stamp + kHalf, kHalf) - wheels.rate(stamp - kHalf, kHalf)) /
                 (2.0 * to_seconds(kHalf)));
     f.push_back(imu.rate(stamp, 2 * kHalf));
   }
+  constexpr std::size_t kTenSeconds = 500;
   const Regression fit = regress(w, f, 0);
-  return fit.num < kFewPairs || fit.sigma < kSpeedingUp ? 0.0 : fit.correlation;
+  return fit.num < kTenSeconds || fit.sigma < kSpeedingUp ? 0.0 : fit.correlation;
 }
 
-std::optional<SensorFinding> check_clock(Trajectory& wheel, const TurnComparison& turns) {
-  if (std::abs(turns.late_s) < kLate || turns.unexplained > 0.7) return std::nullopt;
+constexpr double kScaleTolerance = 0.05;  // share; skid steering is known no better
+
+std::optional<SensorFinding> check_clock(Trajectory& wheel, const WheelComparison& comparison,
+                                         const WheelReference& reference) {
+  const TurnComparison& turns = comparison.turns;
+  if (std::abs(turns.late_s) < comparison.clock_tolerance_s || turns.unexplained > 0.7) return std::nullopt;
   for (StampedPose& pose : wheel) pose.stamp = pose.stamp - from_seconds(turns.late_s);
   return on_wheels(Finding::wheels_late, Consequence::repaired,
-                   format("their stamps are {:.2f} s too {} by the gyroscope; they are moved by that; make "
-                          "both drivers use one clock",
-                          std::abs(turns.late_s), turns.late_s > 0.0 ? "late" : "early"));
+                   format("their stamps are {:.2f} s too {} by {}; they are moved by that; make both drivers "
+                          "use one clock",
+                          std::abs(turns.late_s), turns.late_s > 0.0 ? "late" : "early", reference.turns));
 }
 
-std::optional<SensorFinding> check_sign(double turn_slope, double forward) {
-  const bool is_turned = turn_slope < 0.0;
-  const bool is_backward = forward < -0.3;
+std::optional<SensorFinding> check_sign(bool is_turned, bool is_backward, const WheelReference& reference) {
   if (!is_turned && !is_backward) return std::nullopt;
-  const char* what = !is_turned    ? "count backward as forward by the accelerometer"
-                     : is_backward ? "count backward as forward and turn against the gyroscope"
-                                   : "turn against the gyroscope";
-  return on_wheels(
-      Finding::wheels_reversed, Consequence::left_out,
-      format("they are left out, as they {}; check the wiring of the encoders, or --imu-mount if "
-             "the IMU is the one that is wrong",
-             what));
+  const std::string backward = format("count backward as forward by {}", reference.ahead);
+  const std::string turned = format("turn against {}", reference.turns);
+  const std::string both = format("count backward as forward and turn against {}", reference.turns);
+  return on_wheels(Finding::wheels_reversed, Consequence::left_out,
+                   format("they are left out, as they {}; check the wiring of the encoders, or {}",
+                          !is_turned    ? backward
+                          : is_backward ? both
+                                        : turned,
+                          reference.remedy));
+}
+
+// By how much a count is off that is to be multiplied by `factor`; "" where it is near enough.
+std::string off_by(double factor) {
+  if (std::abs(factor - 1.0) <= kScaleTolerance) return "";
+  return format("{:.0f} % too {}", 100.0 * std::abs(1.0 / factor - 1.0), factor < 1.0 ? "far" : "little");
+}
+
+std::optional<SensorFinding> check_scale(const WheelComparison& comparison, const WheelReference& reference) {
+  const std::string turns = comparison.turns.agrees() ? off_by(comparison.turns.best.slope) : "";
+  const std::string ahead = comparison.ahead ? off_by(*comparison.ahead) : "";
+  if (turns.empty() && ahead.empty()) return std::nullopt;
+  std::string what;
+  if (!turns.empty()) what = format("they turn {} by {}", turns, reference.turns);
+  if (!ahead.empty())
+    what += format("{}they drive {} by {}", what.empty() ? "" : " and ", ahead, reference.ahead);
+  return on_wheels(Finding::wheels_wrong_scale, Consequence::noted,
+                   what + "; check the wheels' radius and track in the driver");
+}
+
+// Odometry does not use what drivers state of their own accuracy, so that it only needs to be said.
+std::optional<SensorFinding> check_covariance(const Recording& recording) {
+  const std::string of_pose = fault_of_pose_covariance(recording.wheel_covariance.pose);
+  const std::string of_twist = fault_of_twist_covariance(recording.wheel_covariance.twist);
+  if (of_pose.empty() && of_twist.empty()) return std::nullopt;
+  std::string faults;
+  if (!of_pose.empty()) faults = format("the covariance of their pose is {}", of_pose);
+  if (!of_twist.empty())
+    faults += format("{}the covariance of their twist is {}", faults.empty() ? "" : ", and ", of_twist);
+  return on_wheels(Finding::wheels_bad_covariance, Consequence::noted,
+                   faults + "; adit does not use it, but repair the driver for programs that do");
 }
 
 }  // namespace
+
+std::vector<SensorFinding> judge_wheels(Recording& recording, const WheelComparison& comparison,
+                                        const WheelReference& reference) {
+  std::vector<SensorFinding> findings;
+  const TurnComparison& turns = comparison.turns;
+  const bool agree = turns.agrees();
+  if (auto sign = check_sign(agree && turns.best.slope < 0.0, comparison.is_backward, reference)) {
+    recording.wheel.clear();
+    findings.push_back(std::move(*sign));
+    return findings;
+  }
+  if (turns.has_curves() && !agree) {
+    findings.push_back(on_wheels(
+        Finding::wheels_contradicted, Consequence::noted,
+        format("their turns and those of {} differ (correlation {:.2f}); check the wheels' heading and {}",
+               reference.turns, turns.best.correlation, reference.mount)));
+  }
+  const auto keep = [&](std::optional<SensorFinding> finding) {
+    if (finding) findings.push_back(std::move(*finding));
+  };
+  if (agree) keep(check_clock(recording.wheel, comparison, reference));
+  keep(check_scale(comparison, reference));
+  return findings;
+}
 
 std::vector<SensorFinding> check_wheels_alone(Recording& recording) {
   std::vector<SensorFinding> findings;
   for (const auto check : {leave_out_frozen, take_out_jumps})
     if (auto finding = check(recording.wheel)) findings.push_back(std::move(*finding));
+  if (auto covariance = check_covariance(recording)) findings.push_back(std::move(*covariance));
   return findings;
 }
 
 std::vector<SensorFinding> check_wheels_with_imu(Recording& recording) {
-  std::vector<SensorFinding> findings;
-  if (recording.wheel.size() < 2 || recording.imu.size() < 2) return findings;
+  if (recording.wheel.size() < 2 || recording.imu.size() < 2) return {};
+  constexpr Duration kHalfWindow = std::chrono::milliseconds(60);
+  constexpr WheelReference kReference{"the gyroscope", "the accelerometer",
+                                      "--imu-mount if the IMU is the one that is wrong", "--imu-mount"};
   const Growths wheels = growths_of(recording.wheel);
   const Growths imu = growths_of(recording.imu, recording.T_base_imu);
-  const TurnComparison turns = compare_turns(wheels.turn, imu.turn);
-  const bool has_curves = turns.best.num >= kFewPairs && turns.best.sigma >= kCurves;
-  const bool agree = has_curves && std::abs(turns.best.correlation) >= kClearly;
-  const double forward = forward_correlation(wheels.forward, imu.forward);
-  if (auto sign = check_sign(agree ? turns.best.slope : 1.0, forward)) {
-    recording.wheel.clear();
-    findings.push_back(std::move(*sign));
-    return findings;
-  }
-  if (has_curves && !agree) {
-    findings.push_back(on_wheels(
-        Finding::wheels_contradicted, Consequence::noted,
-        format("their turns and the gyroscope's differ (correlation {:.2f}); check the wheels' heading and "
-               "--imu-mount",
-               turns.best.correlation)));
-  }
-  if (!agree) return findings;
-  if (auto clock = check_clock(recording.wheel, turns)) findings.push_back(std::move(*clock));
-  if (std::abs(turns.best.slope - 1.0) > kScaleTolerance) {
-    findings.push_back(on_wheels(
-        Finding::wheels_wrong_scale, Consequence::noted,
-        format("they turn {:.0f} % too {} by the gyroscope; check the wheels' radius and track in the driver",
-               100.0 * std::abs(1.0 / turns.best.slope - 1.0), turns.best.slope < 1.0 ? "far" : "little")));
-  }
-  return findings;
+  WheelComparison comparison;
+  comparison.turns = compare_turns(wheels.turn, imu.turn, kHalfWindow);
+  comparison.is_backward = forward_correlation(wheels.forward, imu.forward) < -0.3;
+  return judge_wheels(recording, comparison, kReference);
 }
 
 }  // namespace adit

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "adit/robot/motion_growth.hpp"
+#include "adit/robot/sensor_checks.hpp"
+
+namespace adit {
+
+/// How findings name what the wheels were compared with.
+struct WheelReference {
+  std::string_view turns;   ///< "the gyroscope"
+  std::string_view ahead;   ///< "the accelerometer"
+  std::string_view remedy;  ///< "--imu-mount if the IMU is the one that is wrong"
+  std::string_view mount;   ///< "--imu-mount"
+};
+
+struct WheelComparison {
+  TurnComparison turns;
+  bool is_backward = false;         ///< They count backward as forward.
+  std::optional<double> ahead;      ///< Metres driven per metre that they count; none where nothing is known.
+  double clock_tolerance_s = 0.04;  ///< Two steps of the grid of rates.
+};
+
+/// Takes the wheels out of the recording or moves their stamps by what was found, and says so.
+[[nodiscard]] std::vector<SensorFinding> judge_wheels(Recording& recording, const WheelComparison& comparison,
+                                                      const WheelReference& reference);
+
+}  // namespace adit
