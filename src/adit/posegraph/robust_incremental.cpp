@@ -236,8 +236,12 @@ struct RobustIncremental<P>::Impl {
     }
     for (const std::size_t e : compatible(accepted)) take(e, step);
     if (!step.accepted.empty() && !solve(step)) return false;
-    for (const std::size_t e : loops)
-      if (verdicts[e] == Verdict::unjudged && !judge(e, step)) return false;
+    const double bound = bounds[1] * variance_limit;
+    for (const std::size_t e : loops) {
+      const bool may_fit_now =
+          !step.accepted.empty() && verdicts[e] == Verdict::left_out && own_chi2(e) <= bound;
+      if ((verdicts[e] == Verdict::unjudged || may_fit_now) && !judge(e, step)) return false;
+    }
     return true;
   }
 
