@@ -16,9 +16,12 @@ namespace {
 /// The recordings with what can be used of their wheels and IMUs, and a note per finding.
 std::vector<Recording> with_sound_sensors(std::vector<Recording> recordings,
                                           std::vector<std::string>& notes) {
-  for (Recording& recording : recordings)
+  const Phase phase("checking sensors", recordings.size());
+  for (Recording& recording : recordings) {
     for (const SensorFinding& finding : use_sound_sensors(recording))
       notes.push_back(format("{}: {}", recording.name, finding.sentence));
+    phase.advance();
+  }
   return recordings;
 }
 
