@@ -294,9 +294,7 @@ std::vector<Message> Agent::addressed(RobotId peer, Replies bodies) const {
   return messages;
 }
 
-OdometryChain Agent::chain_by(RobotId robot) const {
-  return chain_of(known().robots.at(robot));
-}
+OdometryChain Agent::chain_by(RobotId robot) const { return chain_of(known().robots.at(robot)); }
 
 Discernment& Agent::discernment() {
   if (!discernment_)
