@@ -145,6 +145,7 @@ struct Kernels {
 };
 
 // The kernels for one instruction set, with vectors of `bytes` and tiles of so many columns at a time.
+// NOLINTBEGIN(bugprone-macro-parentheses): attributes, types and names take none
 #define ADIT_KERNELS(name, attribute, bytes, columns)                                                       \
   template <class Real>                                                                                     \
   struct name {                                                                                             \
@@ -169,6 +170,7 @@ struct Kernels {
     static constexpr Kernels<Real> kAll{                                                                    \
         {tile<Into::subtract>, tile<Into::replace>}, eliminate_rows, subtract_columns, dot_columns};        \
   };
+// NOLINTEND(bugprone-macro-parentheses)
 ADIT_KERNELS(Baseline, , 16, 2)
 #if defined(__x86_64__)
 ADIT_KERNELS(Avx2, [[gnu::target("avx2")]], 32, 4)
@@ -352,12 +354,14 @@ void solve_lower_transposed(const Real* panel, std::size_t rows, std::size_t col
 
 template class PackedPanel<double>;
 template class PackedPanel<float>;
+// NOLINTBEGIN(bugprone-macro-parentheses): a type takes none
 #define ADIT_INSTANTIATE(Real)                                                                     \
   template void subtract_outer_product(Real*, std::size_t, const PackedPanel<Real>&, std::size_t,  \
                                        std::size_t, Into);                                         \
   template std::size_t factorize_panel(Real*, std::size_t, std::size_t, std::size_t, const Real*); \
   template void solve_lower(const Real*, std::size_t, std::size_t, Real*);                         \
   template void solve_lower_transposed(const Real*, std::size_t, std::size_t, Real*);
+// NOLINTEND(bugprone-macro-parentheses)
 ADIT_INSTANTIATE(double)
 ADIT_INSTANTIATE(float)
 #undef ADIT_INSTANTIATE

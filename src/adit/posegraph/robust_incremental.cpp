@@ -125,7 +125,7 @@ struct RobustIncremental<P>::Impl {
     const double asked = std::log(config.true_share / (1.0 - config.true_share));
     const double prior = std::log(false_share / (1.0 - false_share));
     out.log_odds = 0.5 * (anywhere.array().log().sum() - log_det) - 0.5 * unscaled / variance -
-                   static_cast<double>(rows / D) * prior - asked;
+                   static_cast<double>(rows) / D * prior - asked;
     return out;
   }
   [[nodiscard]] bool is_accepted(const Weight& weight) const {
