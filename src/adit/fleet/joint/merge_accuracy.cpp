@@ -54,7 +54,7 @@ void measure_merges(FleetSolution& solution) {
 }
 
 std::string to_string(const MergeAccuracy& accuracy) {
-  std::string text = format("known to {:.2f} m along, {:.2f} m across and {:.2f} m up, {:.2f} deg",
+  std::string text = format("known to {:.3f} m along, {:.3f} m across and {:.3f} m up, {:.2f} deg",
                             accuracy.along_m, accuracy.across_m, accuracy.up_m, accuracy.turn_deg);
   if (accuracy.num_loops == 1) text += "; one loop alone holds it: let both robots pass another common place";
   return text;
