@@ -75,7 +75,8 @@ class Agent {
   [[nodiscard]] FleetSolution solve(const BackEndConfig& config) const {
     return adit::solve(known(), config);
   }
-  /// Where all that it knows of is, while it drives and meets others: costs what changed since the last call.
+  /// Where all that it knows of is, while it drives and meets others: solves for what changed since the last
+  /// call.
   FleetEstimate::Step update_estimate(const BackEndConfig& config) {
     return estimate_.update(known(), config);
   }

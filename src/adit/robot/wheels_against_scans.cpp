@@ -29,7 +29,7 @@ constexpr std::size_t kEnoughRates = 150;  // three seconds; the turning between
 constexpr double kTurnSigma = 0.0005;  // radians
 constexpr double kAheadSigma = 0.005;  // metres
 constexpr double kUnknown = 10.0;      // metres and radians, along directions that the scan leaves open
-constexpr double kLeastDriven = 0.5;   // metres of a stretch that tell its scale
+constexpr double kLeastDriven = 0.5;   // metres: shorter stretches say too little of the scale
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -43,13 +43,14 @@ Result<SlamRun> slam(std::vector<Recording> recordings, const SlamConfig& config
     run.session.solution = meeting->agents.front().solve(config.back_end);
     measure_merges(run.session.solution);
     Agent& first = meeting->agents.front();
-    first.update_estimate(config.back_end);
+    for (const std::string& problem : first.update_estimate(config.back_end).problems)
+      run.notes.push_back("online estimate: " + problem);
     run.online = difference(first.estimate(), run.session.solution);
   }
   run.session.maps = std::move(meeting->maps);
   run.bytes_sent = std::move(meeting->bytes_sent);
   run.failed = std::move(mapping->failed);
-  run.notes = std::move(notes);
+  run.notes.insert(run.notes.end(), notes.begin(), notes.end());
   run.notes.insert(run.notes.end(), mapping->notes.begin(), mapping->notes.end());
   for (const std::string& failure : meeting->failures)
     run.notes.push_back("a message was left out: " + failure);

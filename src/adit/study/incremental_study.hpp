@@ -27,7 +27,7 @@ struct IncrementalRun {
   std::size_t num_true = 0;  ///< Loops.
   std::size_t num_false = 0;
   OverSteps precision;  ///< Share of true loops among those in use; 1 while none is.
-  OverSteps recall;     ///< Share of the true loops so far that are in use; 1 while there is none.
+  OverSteps recall;     ///< Share of the true loops so far that are in use; 1 before the first one comes.
   OverSteps ate_m;      ///< RMSE of the positions so far against the optimum of the whole graph's true edges.
   std::size_t most_false_in_use = 0;  ///< At any step.
   double median_ms = 0.0;             ///< Processor time per step, of all threads.

@@ -26,23 +26,6 @@ using Loops = std::vector<const LoopClosure*>;
 
 KeyframePair ends_of(const LoopClosure& loop) { return {loop.from, loop.to}; }
 
-/// Robots in groups that loops join, each ascending. Robots without keyframes are in none.
-std::vector<std::vector<RobotId>> groups_of(const FleetGraph& known, const Loops& loops) {
-  std::vector<RobotId> robots;
-  for (const auto& [robot, own] : known.robots)
-    if (!own.nodes.empty()) robots.push_back(robot);
-  const auto position = [&](RobotId robot) {
-    return static_cast<std::size_t>(std::ranges::lower_bound(robots, robot) - robots.begin());
-  };
-  DisjointSets sets(robots.size());
-  for (const LoopClosure* loop : loops) sets.join(position(loop->from.robot), position(loop->to.robot));
-  std::map<std::size_t, std::vector<RobotId>> by_set;
-  for (std::size_t i = 0; i < robots.size(); ++i) by_set[sets.find(i)].push_back(robots[i]);
-  std::vector<std::vector<RobotId>> groups;
-  for (auto& [set, group] : by_set) groups.push_back(std::move(group));
-  return groups;
-}
-
 /// Of each pair of robots that has to be joined, pairs with most loops first, the loop that fits the frame of
 /// all of them best.
 Loops joining_loops(const FleetGraph& known, const std::vector<RobotId>& robots, const Loops& loops,
@@ -135,7 +118,8 @@ FleetEstimate::Step FleetEstimate::update(const FleetGraph& known, const BackEnd
   for (const LoopOutcome& outcome : selection.loops)
     if (outcome.is_selected) selected.push_back(&outcome.loop);
   std::map<std::vector<RobotId>, Map> maps;
-  for (const std::vector<RobotId>& robots : groups_of(known, selected)) {
+  for (const std::vector<RobotId>& robots : linked_robots(known, selected)) {
+    if (known.robots.at(robots.front()).nodes.empty()) continue;  // no loop links it
     Loops loops;
     for (const LoopClosure* loop : selected)
       if (std::ranges::binary_search(robots, loop->from.robot)) loops.push_back(loop);

@@ -15,9 +15,10 @@ namespace adit {
 /// The poses of all keyframes that a robot knows of, kept up to date while messages come: what it navigates
 /// by between two solutions. New keyframes and loops are added to the graph of their map, and what they
 /// change is solved (RobustIncremental). A map is begun anew where robots join it or a merge is taken back.
+/// Selecting loops and copying poses takes time in proportion to all that is known.
 ///
 /// `solve` weighs all loops together and depends on nothing but what is known; this depends on the order in
-/// which it came, and follows `solve` to within the uncertainty of the poses. The loop that joins two robots
+/// which it came, and only follows `solve` (`difference`). The loop that joins two robots
 /// first is not doubted here, as nothing else is known of their frames: merges are decided beforehand
 /// (`select_loops`).
 class FleetEstimate {

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "adit/core/decompositions.hpp"
-#include "adit/core/disjoint_sets.hpp"
 #include "adit/core/format.hpp"
 #include "adit/fleet/joint/condensed_graph.hpp"
 #include "adit/fleet/joint/frames.hpp"
@@ -41,23 +40,13 @@ PoseGraph build_graph(const FleetGraph& fleet, const std::vector<const LoopOutco
   return graph;
 }
 
-/// Robots that loops in use link, each group in ascending order, groups by their smallest id.
+/// Groups of robots, by the loops in use.
 std::vector<std::vector<RobotId>> linked_robots(const FleetGraph& fleet,
-                                                const std::vector<LoopOutcome>& loops) {
-  std::vector<RobotId> robots;
-  for (const auto& [robot, graph] : fleet.robots) robots.push_back(robot);
-  const auto position = [&](RobotId robot) {
-    return static_cast<std::size_t>(std::ranges::lower_bound(robots, robot) - robots.begin());
-  };
-  DisjointSets sets(robots.size());
-  for (const LoopOutcome& outcome : loops)
-    if (outcome.in_use()) sets.join(position(outcome.loop.from.robot), position(outcome.loop.to.robot));
-  std::vector<std::vector<RobotId>> groups(robots.size());  // the group of a set is where its first robot is
-  std::map<std::size_t, std::size_t> group_of_set;
-  for (std::size_t i = 0; i < robots.size(); ++i)
-    groups[group_of_set.try_emplace(sets.find(i), i).first->second].push_back(robots[i]);
-  std::erase_if(groups, [](const std::vector<RobotId>& group) { return group.empty(); });
-  return groups;
+                                                const std::vector<LoopOutcome>& outcomes) {
+  std::vector<const LoopClosure*> in_use;
+  for (const LoopOutcome& outcome : outcomes)
+    if (outcome.in_use()) in_use.push_back(&outcome.loop);
+  return linked_robots(fleet, in_use);
 }
 
 /// The part of the fleet that these robots are.

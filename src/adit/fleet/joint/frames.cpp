@@ -3,8 +3,10 @@
 #include "adit/fleet/joint/frames.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "adit/core/decompositions.hpp"
+#include "adit/core/disjoint_sets.hpp"
 
 namespace adit {
 namespace {
@@ -35,6 +37,23 @@ Pose mean_frame(const FleetGraph& fleet, const std::vector<const LoopClosure*>& 
   flip(2, 2) = (u * v.transpose()).determinant();
   const Matrix3 R = u * flip * v.transpose();
   return {R, (seen_in_a - R * seen_in_b) / static_cast<double>(loops.size())};
+}
+
+std::vector<std::vector<RobotId>> linked_robots(const FleetGraph& fleet,
+                                                const std::vector<const LoopClosure*>& loops) {
+  std::vector<RobotId> robots;
+  for (const auto& [robot, graph] : fleet.robots) robots.push_back(robot);
+  const auto position = [&](RobotId robot) {
+    return static_cast<std::size_t>(std::ranges::lower_bound(robots, robot) - robots.begin());
+  };
+  DisjointSets sets(robots.size());
+  for (const LoopClosure* loop : loops) sets.join(position(loop->from.robot), position(loop->to.robot));
+  std::vector<std::vector<RobotId>> groups(robots.size());  // the group of a set is where its first robot is
+  std::map<std::size_t, std::size_t> group_of_set;
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    groups[group_of_set.try_emplace(sets.find(i), i).first->second].push_back(robots[i]);
+  std::erase_if(groups, [](const std::vector<RobotId>& group) { return group.empty(); });
+  return groups;
 }
 
 Frames common_frames(const FleetGraph& fleet, const std::vector<const LoopClosure*>& loops) {

@@ -14,6 +14,11 @@ namespace adit {
 /// chordal mean of the rotations, mean of the positions that they give to b's keyframes.
 [[nodiscard]] Pose mean_frame(const FleetGraph& fleet, const std::vector<const LoopClosure*>& loops);
 
+/// Robots that loops link, each group in ascending order, groups by their smallest id. A robot without loops
+/// is a group by itself.
+[[nodiscard]] std::vector<std::vector<RobotId>> linked_robots(const FleetGraph& fleet,
+                                                              const std::vector<const LoopClosure*>& loops);
+
 /// T_anchor_odom of each robot.
 using Frames = std::map<RobotId, Pose>;
 
