@@ -23,7 +23,7 @@ endif()
 
 # Eight files of a room at a time: what they instantiate alike is compiled once (decision 0023). Files that a developer
 # works on compile faster on their own.
-option(ADIT_UNITY_BUILD "Compile the files of a library eight at a time" OFF)
+option(ADIT_UNITY_BUILD "Compile the files of a library or a test program eight at a time" OFF)
 
 option(ADIT_WARNINGS_AS_ERRORS "Refuse code that the compiler warns of" ON)
 # Flags of adit's own targets; nothing here reaches programs that link to adit.
@@ -71,6 +71,7 @@ function(adit_test_program NAME)
   add_executable(${NAME} ${ARG_SOURCES})
   target_link_libraries(${NAME} PRIVATE adit_test_flags adit_test_support ${ARG_LIBRARIES} GTest::gtest_main)
   target_precompile_headers(${NAME} REUSE_FROM adit_precompiled_test)
+  set_target_properties(${NAME} PROPERTIES UNITY_BUILD ${ADIT_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 8)
   set(properties)
   if(ARG_TIMEOUT)
     set(properties PROPERTIES TIMEOUT ${ARG_TIMEOUT})

@@ -23,7 +23,7 @@ void put_list(const test::TemporaryFolder& folder) {
            "[[world]]\nname = 'absent'\nroutes_file = 'nowhere.yaml'\n");
 }
 
-std::string study(const test::TemporaryFolder& folder, const std::string& options) {
+std::string study_of(const test::TemporaryFolder& folder, const std::string& options) {
   return "merge-study --worlds " + (folder / "list.toml").string() + " --out " + (folder / "out").string() +
          " " + options;
 }
@@ -37,14 +37,14 @@ TEST(MergeStudy, KeepsTheMapsAndTheResultsOfEarlierRuns) {
   const test::TemporaryFolder folder;
   put_list(folder);
   put_file(folder / "page.md", "# Page\n<!-- merging begin -->\n<!-- merging end -->\nThe end.\n");
-  expect_done(study(folder, "--keyframes all"));
+  expect_done(study_of(folder, "--keyframes all"));
   const std::string results = get_file(folder / "out/results.json");
   EXPECT_NE(results.find("\"world\": \"short\""), std::string::npos);
   EXPECT_NE(results.find("\"group\": \"check\""), std::string::npos);
   const auto recorded = std::filesystem::last_write_time(only_map_folder(folder) / "0.map");
 
-  expect_done(
-      study(folder, "--keyframes tunnel_filter_keep --only short --page " + (folder / "page.md").string()));
+  expect_done(study_of(
+      folder, "--keyframes tunnel_filter_keep --only short --page " + (folder / "page.md").string()));
   EXPECT_EQ(std::filesystem::last_write_time(only_map_folder(folder) / "0.map"), recorded);
   const std::string csv = get_file(folder / "out/results.csv");
   EXPECT_EQ(std::ranges::count(csv, '\n'), 3) << csv;  // The header, and one pair per policy.
@@ -56,7 +56,7 @@ TEST(MergeStudy, KeepsTheMapsAndTheResultsOfEarlierRuns) {
   EXPECT_NE(page.find("| short | all | 1 |"), std::string::npos) << page;
 
   // Another configuration of the robots is another drive, and has a place of its own where it is named.
-  expect_done(study(folder, "--keyframes all --variant coarse --set robot.keyframes.distance_m=1"));
+  expect_done(study_of(folder, "--keyframes all --variant coarse --set robot.keyframes.distance_m=1"));
   EXPECT_EQ(test::num_entries(folder / "out/maps"), 2U);
   EXPECT_NE(get_file(folder / "out/results.csv").find("short,check,all coarse,"), std::string::npos);
 }
@@ -68,25 +68,25 @@ TEST(MergeStudy, TheLastRunsResultsAreTheSameFromTheCache) {
     const std::string csv = get_file(folder / "out/results.csv");
     return csv.substr(csv.find('\n'));
   };
-  expect_done(study(folder, "--keyframes all"));
+  expect_done(study_of(folder, "--keyframes all"));
   const std::string first = pair_line();
-  expect_done(study(folder, "--keyframes all --threads 1"));
+  expect_done(study_of(folder, "--keyframes all --threads 1"));
   EXPECT_EQ(pair_line(), first);
 }
 
 TEST(MergeStudy, WrongUsageAndDamageAreRefused) {
   const test::TemporaryFolder folder;
   put_file(folder / "list.toml", "[[world]]\nname = 'a'\n[[world]]\nname = 'a'\n");
-  expect_refused(study(folder, ""), 1, "two worlds are called 'a'");
+  expect_refused(study_of(folder, ""), 1, "two worlds are called 'a'");
   put_file(folder / "list.toml", "[[world]]\ngroup = 'tuning'\n");
-  expect_refused(study(folder, ""), 1, "no name");
+  expect_refused(study_of(folder, ""), 1, "no name");
   put_file(folder / "list.toml", "[[world]]\nname = 'a'\n");
-  expect_refused(study(folder, "--only b"), 1, "no world 'b'");
-  expect_refused(study(folder, "--keyframes best"), 2, "unknown keyframe policy");
-  expect_refused(study(folder, "--groups most"), 2, "most");
+  expect_refused(study_of(folder, "--only b"), 1, "no world 'b'");
+  expect_refused(study_of(folder, "--keyframes best"), 2, "unknown keyframe policy");
+  expect_refused(study_of(folder, "--groups most"), 2, "most");
   std::filesystem::create_directories(folder / "out");
   put_file(folder / "out/results.json", "{}");
-  expect_refused(study(folder, "--only a"), 1, "results.json");
+  expect_refused(study_of(folder, "--only a"), 1, "results.json");
 }
 
 }  // namespace

@@ -10,10 +10,14 @@
 
 #include "adit/core/angles.hpp"
 #include "adit/simulation/scenario.hpp"
+#include "support/findings.hpp"
 #include "support/meshes.hpp"
 
 namespace adit {
 namespace {
+
+using test::expect_finding;
+using test::only_finding;
 
 /// A drive of a minute and a half around a hall, with curves to both sides. Without scans, as this is about
 /// wheels and IMU alone.
@@ -39,24 +43,6 @@ Recording drive_with_faults(const std::string& faults) {
   ScenarioConfig config;
   config.wheels.faults = faults;
   return drive_with(config);
-}
-
-/// Checks a recording that one thing is wrong with, which must be the only finding.
-SensorFinding only_finding(Recording& recording) {
-  const std::vector<SensorFinding> findings = use_sound_sensors(recording);
-  EXPECT_EQ(findings.size(), 1U) << (findings.size() > 1 ? findings[0].sentence + " | " + findings[1].sentence
-                                                         : "");
-  return findings.empty() ? SensorFinding{Finding::imu_gaps, Consequence::noted, "no finding"}
-                          : findings.front();
-}
-
-void expect_finding(Recording recording, Finding finding, Consequence consequence, const std::string& words) {
-  const SensorFinding found = only_finding(recording);
-  EXPECT_EQ(found.finding, finding) << found.sentence;
-  EXPECT_EQ(found.consequence, consequence) << found.sentence;
-  EXPECT_NE(found.sentence.find(words), std::string::npos) << found.sentence;
-  if (consequence != Consequence::left_out) return;
-  EXPECT_TRUE(found.sentence.starts_with("imu") ? recording.imu.empty() : recording.wheel.empty());
 }
 
 template <class Change>

@@ -16,7 +16,6 @@ namespace adit {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 using test::expect_done;
 using test::expect_refused;
 using test::get_file;
@@ -86,23 +85,23 @@ TEST(Session, IsEvaluatedByNameInAnyOrder) {
   const std::string behind = recordings + "/behind_truth.tum";
   const test::ProgramRun run = run_adit("evaluate " + session + " --json --truth " + behind + " " + ahead);
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const Json result = Json::parse(run.out);
+  const nlohmann::json result = nlohmann::json::parse(run.out);
   ASSERT_EQ(result["robots"].size(), 2U);
   EXPECT_EQ(result["robots"][0]["name"], "ahead");
-  for (const Json& robot : result["robots"]) {
+  for (const nlohmann::json& robot : result["robots"]) {
     EXPECT_LT(robot["ate_max_m"].get<double>(), 0.5) << robot;
     EXPECT_GT(robot["ate_rmse_m"].get<double>(), 0.0) << robot;
     EXPECT_LT(robot["rpe_translation_median_m"].get<double>(), 0.1) << robot;
     EXPECT_EQ(robot["rpe_segment_m"].get<double>(), 10.0);
   }
   EXPECT_EQ(result["components"].size(), 1U) << "both share a map";
-  const Json& in_use = result["loops"]["in_use"];
+  const nlohmann::json& in_use = result["loops"]["in_use"];
   EXPECT_GE(in_use["total"].get<int>(), 5);
   EXPECT_EQ(in_use["wrong_place"], 0);
   EXPECT_EQ(in_use["correct"], in_use["total"]);
 
   // The session says so from now on.
-  EXPECT_EQ(Json::parse(get_file(folder / "session/metrics.json"))["evaluation"], result);
+  EXPECT_EQ(nlohmann::json::parse(get_file(folder / "session/metrics.json"))["evaluation"], result);
   const std::string csv = get_file(folder / "session/loops.csv");
   std::size_t correct = 0;
   for (std::size_t at = csv.find(",correct,"); at != std::string::npos; at = csv.find(",correct,", at + 1))
@@ -147,11 +146,11 @@ TEST(Study, RunsThePapersExperimentAndSaysWhatRan) {
                               (folder / "routes.yaml").string() + " --lidar os2-32 --keyframes all,adaptive";
   const test::ProgramRun run = run_adit(command + " --json --out " + (folder / "out").string());
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const Json metrics = Json::parse(run.out);
-  EXPECT_EQ(metrics, Json::parse(get_file(folder / "out/metrics.json")));
+  const nlohmann::json metrics = nlohmann::json::parse(run.out);
+  EXPECT_EQ(metrics, nlohmann::json::parse(get_file(folder / "out/metrics.json")));
   EXPECT_EQ(metrics["lidar"], "os2-32");
   ASSERT_EQ(metrics["robots"].size(), 2U);
-  for (const Json& robot : metrics["robots"]) {
+  for (const nlohmann::json& robot : metrics["robots"]) {
     EXPECT_NEAR(robot["path_length_m"].get<double>(), 49.0, 3.0);
     EXPECT_GT(robot["scans"].get<int>(), 200);
     EXPECT_LT(robot["odometry"]["plane_icp"]["ate_max_m"].get<double>(), 0.5);
@@ -159,7 +158,7 @@ TEST(Study, RunsThePapersExperimentAndSaysWhatRan) {
     EXPECT_TRUE(robot["odometry"].contains("kiss_icp"));
   }
   ASSERT_EQ(metrics["pairs"].size(), 4U);  // two policies, without and with PCM
-  const Json& adaptive = metrics["pairs"][3];
+  const nlohmann::json& adaptive = metrics["pairs"][3];
   EXPECT_EQ(adaptive["keyframes"], "adaptive");
   EXPECT_EQ(adaptive["pcm"], true);
   EXPECT_EQ(adaptive["merged"], true) << adaptive["refused_reason"];

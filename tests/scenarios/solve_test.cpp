@@ -90,13 +90,13 @@ TEST(SolveSharedGraphs, CubicleIsRefusedAndRepairedOnRequest) {
   EXPECT_EQ(r["certificate"]["status"], "cannot tell") << r["certificate"];
 }
 
-struct FleetGraph {
+struct GraphOfAFleet {
   const char* folder;
   int num_robots;
   double cost;  // chi2, unhalved, at the optimum; no peer was measured on these
 };
 // The robots' files make one graph, and the given poses and chordal relaxation lead to the same optimum.
-void expect_fleet_solved(const FleetGraph& fleet) {
+void expect_fleet_solved(const GraphOfAFleet& fleet) {
   std::vector<G2oFile> files;
   for (int robot = 0; robot < fleet.num_robots; ++robot) {
     Result<G2oFile> file =

@@ -12,13 +12,17 @@
 #include "adit/robot/sensor_checks.hpp"
 #include "adit/simulation/scenario.hpp"
 #include "adit/slam/mapping.hpp"
+#include "support/findings.hpp"
 #include "support/meshes.hpp"
 
 namespace adit {
 namespace {
 
+using test::expect_finding;
+using test::only_finding;
+
 /// Twice a figure of eight in a hall, whose walls are all in sight.
-Recording drive_with(const WheelConfig& wheels, const std::string& lidar = "os2-32", std::uint64_t seed = 1) {
+Recording hall_drive(const WheelConfig& wheels, const std::string& lidar = "os2-32", std::uint64_t seed = 1) {
   World world;
   world.name = "hall";
   world.mesh = test::room({-15, -10, 0}, {17, 11, 6});
@@ -34,32 +38,16 @@ Recording drive_with(const WheelConfig& wheels, const std::string& lidar = "os2-
   return simulate(world, config).value().front();
 }
 
-Recording drive_with(const Recording& drive, const WheelCovariance& covariance) {
+Recording hall_drive(const Recording& drive, const WheelCovariance& covariance) {
   Recording recording = drive;
   recording.wheel_covariance = covariance;
   return recording;
 }
 
-SensorFinding only_finding(Recording& recording) {
-  const std::vector<SensorFinding> findings = use_sound_sensors(recording);
-  EXPECT_EQ(findings.size(), 1U);
-  for (const SensorFinding& finding : findings) SCOPED_TRACE(finding.sentence);
-  return findings.empty() ? SensorFinding{Finding::imu_gaps, Consequence::noted, "no finding"}
-                          : findings.front();
-}
-
-void expect_finding(Recording recording, Finding finding, Consequence consequence, const std::string& words) {
-  const SensorFinding found = only_finding(recording);
-  EXPECT_EQ(found.finding, finding) << found.sentence;
-  EXPECT_EQ(found.consequence, consequence) << found.sentence;
-  EXPECT_NE(found.sentence.find(words), std::string::npos) << found.sentence;
-  EXPECT_EQ(recording.wheel.empty(), consequence == Consequence::left_out);
-}
-
 TEST(WheelsAndScans, SoundWheelsOfSeveralSensorsGiveNoFinding) {
   std::uint64_t seed = 0;
   for (const std::string lidar : {"os2-32", "vlp-16", "livox-mid-360"}) {
-    Recording recording = drive_with({}, lidar, ++seed);
+    Recording recording = hall_drive({}, lidar, ++seed);
     const std::size_t num_poses = recording.wheel.size();
     const std::vector<SensorFinding> findings = use_sound_sensors(recording);
     EXPECT_TRUE(findings.empty()) << lidar << ": " << findings.front().sentence;
@@ -70,19 +58,19 @@ TEST(WheelsAndScans, SoundWheelsOfSeveralSensorsGiveNoFinding) {
 TEST(WheelsAndScans, WheelsOfTheWrongSignAreLeftOut) {
   WheelConfig wheels;
   wheels.sign = WheelSign::swapped;
-  expect_finding(drive_with(wheels), Finding::wheels_reversed, Consequence::left_out,
+  expect_finding(hall_drive(wheels), Finding::wheels_reversed, Consequence::left_out,
                  "as they turn against the scans; check the wiring");
   wheels.sign = WheelSign::reversed;
-  expect_finding(drive_with(wheels), Finding::wheels_reversed, Consequence::left_out,
+  expect_finding(hall_drive(wheels), Finding::wheels_reversed, Consequence::left_out,
                  "count backward as forward and turn against the scans");
 }
 
 TEST(WheelsAndScans, AWrongScaleIsNoted) {
   WheelConfig wheels;
   wheels.scale = 1.1;
-  expect_finding(drive_with(wheels), Finding::wheels_wrong_scale, Consequence::noted, "and they drive 1");
+  expect_finding(hall_drive(wheels), Finding::wheels_wrong_scale, Consequence::noted, "and they drive 1");
   wheels.scale = 0.9;
-  expect_finding(drive_with(wheels), Finding::wheels_wrong_scale, Consequence::noted,
+  expect_finding(hall_drive(wheels), Finding::wheels_wrong_scale, Consequence::noted,
                  "% too little by the scans");
 }
 
@@ -90,7 +78,7 @@ TEST(WheelsAndScans, LateWheelsAreMovedByWhatTheyAreLate) {
   for (const auto& [lidar, late] : {std::pair("os2-32", 0.1), std::pair("vlp-16", -0.1)}) {
     WheelConfig wheels;
     wheels.time_offset = late;
-    Recording recording = drive_with(wheels, lidar);
+    Recording recording = hall_drive(wheels, lidar);
     const Stamp first = recording.wheel.front().stamp;
     const SensorFinding found = only_finding(recording);
     EXPECT_EQ(found.finding, Finding::wheels_late) << found.sentence;
@@ -105,27 +93,27 @@ double map_error(const Recording& recording) {
 }
 
 TEST(WheelsAndScans, NoFaultSpoilsTheMap) {
-  const double sound = map_error(drive_with({}));
-  Recording none = drive_with({});
+  const double sound = map_error(hall_drive({}));
+  Recording none = hall_drive({});
   none.wheel.clear();
   const double without = map_error(none);
   EXPECT_LT(sound, 0.2);
   EXPECT_LT(without, 0.5);
   WheelConfig wheels;
   wheels.sign = WheelSign::reversed;
-  EXPECT_EQ(map_error(drive_with(wheels)), without);
+  EXPECT_EQ(map_error(hall_drive(wheels)), without);
   wheels = {};
   wheels.scale = 1.1;
-  EXPECT_LT(map_error(drive_with(wheels)), sound + 0.1);
+  EXPECT_LT(map_error(hall_drive(wheels)), sound + 0.1);
   wheels = {};
   wheels.time_offset = 0.1;
-  EXPECT_LT(map_error(drive_with(wheels)), sound + 0.1);
+  EXPECT_LT(map_error(hall_drive(wheels)), sound + 0.1);
 }
 
 TEST(WheelsAndScans, TheAnswerDoesNotDependOnTheNumberOfThreads) {
   WheelConfig wheels;
   wheels.time_offset = 0.1;
-  const Recording drive = drive_with(wheels);
+  const Recording drive = hall_drive(wheels);
   const int before = num_threads();
   std::vector<Trajectory> moved;
   for (const int threads : {1, 3}) {
@@ -157,7 +145,7 @@ TEST(WheelsAndScans, WhereScansAreOpenNothingIsSaid) {
   // Without times of its points a sweep may lie before or behind its stamp.
   WheelConfig late;
   late.time_offset = 0.05;
-  Recording timeless = drive_with(late);
+  Recording timeless = hall_drive(late);
   timeless.read_scan = [read = timeless.read_scan](std::size_t i) {
     return read(i).map([](Scan scan) {
       scan.cloud.time_offsets_ns.clear();
@@ -168,28 +156,28 @@ TEST(WheelsAndScans, WhereScansAreOpenNothingIsSaid) {
   // Scans that cannot be read.
   WheelConfig swapped;
   swapped.sign = WheelSign::swapped;
-  Recording unreadable = drive_with(swapped);
+  Recording unreadable = hall_drive(swapped);
   unreadable.read_scan = [](std::size_t) { return Result<Scan>(fail("damaged")); };
   EXPECT_TRUE(use_sound_sensors(unreadable).empty());
   EXPECT_FALSE(unreadable.wheel.empty());
 }
 
 TEST(WheelsAndScans, CovariancesThatCannotBeAreNamedAndNotUsed) {
-  Recording drive = drive_with({});
+  Recording drive = hall_drive({});
   drive.read_scan = [](std::size_t) { return Result<Scan>(fail("no scan is needed")); };
   WheelCovariance covariance;
   covariance.pose = covariance.twist = Matrix6::Identity() * 0.01;
-  Recording sound = drive_with(drive, covariance);
+  Recording sound = hall_drive(drive, covariance);
   EXPECT_TRUE(use_sound_sensors(sound).empty());
   covariance.pose(5, 5) = std::numeric_limits<double>::quiet_NaN();
-  expect_finding(drive_with(drive, covariance), Finding::wheels_bad_covariance, Consequence::noted,
+  expect_finding(hall_drive(drive, covariance), Finding::wheels_bad_covariance, Consequence::noted,
                  "covariance of their pose is not finite; adit does not use it");
   covariance.pose.setZero();
   covariance.twist(0, 0) = 1e9;
-  expect_finding(drive_with(drive, covariance), Finding::wheels_bad_covariance, Consequence::noted,
+  expect_finding(hall_drive(drive, covariance), Finding::wheels_bad_covariance, Consequence::noted,
                  "covariance of their twist is huge (standard deviation 3.16e+04 m/s)");
   covariance.pose(0, 0) = -1.0;
-  expect_finding(drive_with(drive, covariance), Finding::wheels_bad_covariance, Consequence::noted,
+  expect_finding(hall_drive(drive, covariance), Finding::wheels_bad_covariance, Consequence::noted,
                  "pose is not positive definite, and the covariance of their twist is huge");
 }
 

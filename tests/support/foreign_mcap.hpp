@@ -38,6 +38,15 @@ inline std::string plain_file(const std::vector<std::string>& records) {
   return bytes + std::string(mcap::kMagic);
 }
 
+/// The frames of an Ouster on a robot: where its sensor frame lies on the base, and its LiDAR frame on that.
+inline const Pose T_base_ouster = Pose::planar(0.2, 0.1, 0.7, 0.8);
+inline const Pose T_ouster_lidar = Pose::planar(0, 0, 3.0, 0.036);
+
+inline ros::TransformMessage link(const std::string& frame, const std::string& child,
+                                  const Pose& T_frame_child) {
+  return {frame, child, {{5}, T_frame_child}};
+}
+
 /// Files of other programs, message by message.
 class ForeignFile {
  public:

@@ -35,6 +35,9 @@ typename P::Jacobian random_information(Rng& rng, double size) {
   return size * (A * A.transpose() + 0.5 * P::Jacobian::Identity());
 }
 
+/// Noise of measurements, in metres and radians on every axis.
+inline constexpr double kSigma = 0.02;
+
 /// A chain of true poses with `num_loops` chords, measurements off by noise of `sigma`, guess by dead
 /// reckoning.
 template <class P>

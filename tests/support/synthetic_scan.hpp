@@ -14,6 +14,9 @@
 
 namespace adit::test {
 
+/// Where the LiDAR sits on the base: turned and shifted along every axis.
+inline const Pose kMount(so3::exp({0.02, -0.03, 0.1}), Vector3(0.3, 0.1, 0.5));
+
 struct Box {
   Vector3 low;
   Vector3 high;

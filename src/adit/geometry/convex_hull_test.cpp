@@ -52,7 +52,7 @@ Cloud lattice(int n, float step) {
   return cloud;
 }
 
-Pose random_pose(Rng& rng) {
+Pose any_rotation(Rng& rng) {
   Vector6 xi;
   for (double& x : xi) x = rng.uniform(-2.0, 2.0);
   return Pose::exp(xi);
@@ -117,7 +117,7 @@ TEST(ConvexHull, EqualsBruteForceOnSmallClouds) {
   Rng rng(1);
   for (const std::size_t n : {4U, 5U, 8U, 12U, 20U, 30U}) {
     for (int round = 0; round < 10; ++round) {
-      const Cloud cloud = moved(random_pose(rng), random_cloud(n, rng, {3.0, 2.0, 1.0}));
+      const Cloud cloud = moved(any_rotation(rng), random_cloud(n, rng, {3.0, 2.0, 1.0}));
       EXPECT_EQ(vertices_of_solid(cloud), vertices_by_brute_force(cloud));
     }
   }
@@ -155,8 +155,8 @@ TEST(ConvexHull, DuplicatesAddNoVertex) {
 TEST(ConvexHull, ThinClouds) {
   Rng rng(5);
   for (const double thickness : {1e-2, 1e-4})
-    vertices_of_solid(moved(random_pose(rng), random_cloud(3000, rng, {10.0, 5.0, thickness})));
-  const Cloud wall = moved(random_pose(rng), random_cloud(3000, rng, {10.0, 5.0, 1e-8}));
+    vertices_of_solid(moved(any_rotation(rng), random_cloud(3000, rng, {10.0, 5.0, thickness})));
+  const Cloud wall = moved(any_rotation(rng), random_cloud(3000, rng, {10.0, 5.0, 1e-8}));
   EXPECT_EQ(convex_hull(wall)->shape, HullShape::planar);
 }
 
@@ -186,7 +186,7 @@ TEST(ConvexHull, ShapesOfLowerDimension) {
   ASSERT_EQ(level.vertices.size(), 4U);
   for (const std::uint32_t v : level.vertices)
     EXPECT_TRUE((plane[v].head<2>().array() == 0.0F || plane[v].head<2>().array() == 4.0F).all());
-  EXPECT_EQ(hull_of(moved(random_pose(rng), plane)).shape, HullShape::planar);
+  EXPECT_EQ(hull_of(moved(any_rotation(rng), plane)).shape, HullShape::planar);
 }
 
 TEST(ConvexHull, NotFinitePointsAreLeftOut) {
@@ -206,7 +206,7 @@ TEST(OrientedBox, FindsRotatedBoxesOfKnownExtents) {
   Rng rng(7);
   for (int round = 0; round < 20; ++round) {
     const Vector3 extents(rng.uniform(20.0, 40.0), rng.uniform(8.0, 12.0), rng.uniform(3.0, 6.0));
-    const Pose T_world_box = random_pose(rng);
+    const Pose T_world_box = any_rotation(rng);
     Cloud cloud;
     for (int corner = 0; corner < 8; ++corner) {
       const Eigen::Array3d sign((corner & 1) != 0 ? 1 : -1, (corner & 2) != 0 ? 1 : -1,
@@ -231,7 +231,7 @@ TEST(OrientedBox, FindsRotatedBoxesOfKnownExtents) {
 TEST(OrientedBox, HoldsEveryPointAndSortsItsExtents) {
   Rng rng(8);
   for (int round = 0; round < 10; ++round) {
-    const Cloud cloud = moved(random_pose(rng), random_cloud(400, rng, {1.0, rng.uniform(0.5, 5.0), 2.0}));
+    const Cloud cloud = moved(any_rotation(rng), random_cloud(400, rng, {1.0, rng.uniform(0.5, 5.0), 2.0}));
     const OrientedBox box = oriented_box(cloud).value();
     EXPECT_GE(box.extents.x(), box.extents.y());
     EXPECT_GE(box.extents.y(), box.extents.z());

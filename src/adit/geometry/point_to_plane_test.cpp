@@ -9,9 +9,7 @@
 namespace adit {
 namespace {
 
-Vector3 random_vector(Rng& rng, double size) {
-  return size * Vector3(rng.normal(), rng.normal(), rng.normal());
-}
+Vector3 in_cube(Rng& rng, double size) { return size * Vector3(rng.normal(), rng.normal(), rng.normal()); }
 
 PlaneResidual residual_at(const Pose& T_a_b, const Plane& plane_a, const Vector3& p_b) {
   return plane_residual(T_a_b.rotation_matrix(), T_a_b.translation(), plane_a, p_b);
@@ -20,9 +18,9 @@ PlaneResidual residual_at(const Pose& T_a_b, const Plane& plane_a, const Vector3
 TEST(PlaneResidual, JacobianAgreesWithFiniteDifferencesAtLargeResiduals) {
   Rng rng(1);
   for (int k = 0; k < 50; ++k) {
-    const Pose T(so3::exp(random_vector(rng, 1.5)), random_vector(rng, 10.0));
-    const Plane plane{random_vector(rng, 10.0), random_vector(rng, 1.0).normalized()};
-    const Vector3 p_b = random_vector(rng, 10.0);
+    const Pose T(so3::exp(in_cube(rng, 1.5)), in_cube(rng, 10.0));
+    const Plane plane{in_cube(rng, 10.0), in_cube(rng, 1.0).normalized()};
+    const Vector3 p_b = in_cube(rng, 10.0);
     const PlaneResidual r = residual_at(T, plane, p_b);
     EXPECT_NEAR(r.value, plane.normal.dot(T * p_b - plane.point), 1e-12 * (1.0 + std::abs(r.value)) * 10.0);
     for (int d = 0; d < 6; ++d) {

@@ -13,15 +13,15 @@
 namespace adit {
 namespace {
 
-Vector3 random_vector(Rng& rng, double size) {
+Vector3 up_to(Rng& rng, double size) {
   return {rng.uniform(-size, size), rng.uniform(-size, size), rng.uniform(-size, size)};
 }
 
-Pose random_pose(Rng& rng) { return {so3::exp(random_vector(rng, 1.8)), random_vector(rng, 500.0)}; }
+Pose random_pose(Rng& rng) { return {so3::exp(up_to(rng, 1.8)), up_to(rng, 500.0)}; }
 
 std::vector<Vector3> random_points(Rng& rng, std::size_t n) {
   std::vector<Vector3> points(n);
-  for (Vector3& p : points) p = random_vector(rng, 30.0);
+  for (Vector3& p : points) p = up_to(rng, 30.0);
   return points;
 }
 
@@ -54,12 +54,12 @@ TEST(Umeyama, NoSmallMotionOfTheAnswerIsBetterOnNoisyPoints) {
   for (int trial = 0; trial < 10; ++trial) {
     const std::vector<Vector3> source = random_points(rng, 25);
     std::vector<Vector3> target = moved(random_pose(rng), source);
-    for (Vector3& p : target) p += random_vector(rng, 8.0);
+    for (Vector3& p : target) p += up_to(rng, 8.0);
     const Pose best = align_rigid(source, target).value();
     const double least = cost(best, source, target);
     for (int i = 0; i < 200; ++i) {
       Vector6 xi;
-      xi << random_vector(rng, 1.0), random_vector(rng, 0.05);
+      xi << up_to(rng, 1.0), up_to(rng, 0.05);
       xi *= rng.uniform(1e-4, 1.0);
       EXPECT_GT(cost(best * Pose::exp(xi), source, target), least);
     }
@@ -81,7 +81,7 @@ TEST(Umeyama, MirroredPointsGetTheBestRotationNotTheReflection) {
     target_mean += target[i] / 30.0;
   }
   for (int i = 0; i < 20000; ++i) {  // brute force over rotations
-    const Eigen::Quaterniond q = so3::exp(random_vector(rng, 3.2));
+    const Eigen::Quaterniond q = so3::exp(up_to(rng, 3.2));
     least = std::min(least, cost(Pose(q, target_mean - q * source_mean), source, target));
   }
   EXPECT_LE(cost(best, source, target), least);

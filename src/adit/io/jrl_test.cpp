@@ -53,7 +53,7 @@ Json id(std::uint64_t entry_index, std::uint64_t measurement) {
   return Json::array({entry_index, measurement});
 }
 /// Robots a and b, of which b starts elsewhere; each has a step, and a loop joins them.
-Json two_robots() {
+Json log_of_two() {
   Json file{{"name", "two"}};
   file["robots"] = Json::array({97, 98});
   file["measurements"]["a"] = Json::array({entry(0, Json::array({prior3(key('a', 0), 5)})),
@@ -75,7 +75,7 @@ void expect_error(const Json& file, const std::string& text) {
 }
 
 TEST(Jrl, KnowsRobotsKindsAndPriors) {
-  const auto file = parse_jrl(two_robots().dump(), "test.jrl");
+  const auto file = parse_jrl(log_of_two().dump(), "test.jrl");
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_EQ(file->name, "two");
   EXPECT_EQ(file->robots, (std::vector<std::string>{"a", "b"}));
@@ -95,7 +95,7 @@ TEST(Jrl, KnowsRobotsKindsAndPriors) {
 }
 
 TEST(Jrl, ReadsTheSameFromCbor) {
-  const std::vector<std::uint8_t> cbor = Json::to_cbor(two_robots());
+  const std::vector<std::uint8_t> cbor = Json::to_cbor(log_of_two());
   const auto file = parse_jrl(std::string(cbor.begin(), cbor.end()), "test.jrl.cbor");
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_EQ(std::get<JrlGraph<Pose>>(file->content).graph.edges.size(), 3U);
@@ -105,7 +105,7 @@ TEST(Jrl, ReadsTheSameFromCbor) {
 }
 
 TEST(Jrl, RotationComesFirstInCovariancesOfSpace) {
-  Json file = two_robots();
+  Json file = log_of_two();
   Json& covariance = file["measurements"]["a"][1]["measurements"][0]["covariance"];
   covariance = diagonal({1, 2, 4, 8, 16, 32});
   covariance[5] = covariance[30] = 1.0;  // rotation about x with translation along z
@@ -137,7 +137,7 @@ TEST(Jrl, PlaneHasTranslationFirstAndAnglesInRadians) {
 }
 
 TEST(Jrl, LabelsAndTruthAreKeptForJudging) {
-  Json file = two_robots();
+  Json file = log_of_two();
   file["outlier_factors"]["a"] = Json::array();
   file["outlier_factors"]["b"] = Json::array({id(1, 0)});
   Json a0 = pose3(-1);
@@ -159,7 +159,7 @@ TEST(Jrl, LabelsAndTruthAreKeptForJudging) {
 }
 
 TEST(Jrl, OtherFactorsAreLeftOutAndUnknownOnesRefused) {
-  Json file = two_robots();
+  Json file = log_of_two();
   file["measurements"]["a"][1]["measurements"].push_back({{"type", "RangeFactor3D"}});
   const auto read = parse_jrl(file.dump(), "test.jrl");
   ASSERT_TRUE(read) << read.error().message;
@@ -169,7 +169,7 @@ TEST(Jrl, OtherFactorsAreLeftOutAndUnknownOnesRefused) {
 }
 
 TEST(Jrl, WithoutAListOfPotentialOutliersKeysDecide) {
-  Json file = two_robots();
+  Json file = log_of_two();
   file.erase("potential_outlier_factors");
   const auto read = parse_jrl(file.dump(), "test.jrl");
   ASSERT_TRUE(read);
@@ -180,7 +180,7 @@ TEST(Jrl, WithoutAListOfPotentialOutliersKeysDecide) {
 }
 
 TEST(Jrl, AMeasurementThatBothRobotsLogCountsOnce) {
-  Json file = two_robots();
+  Json file = log_of_two();
   const Json loop = between3(key('a', 1), key('b', 1), 2);
   file["measurements"]["a"][1]["measurements"].push_back(loop);
   const auto once = parse_jrl(file.dump(), "test.jrl");
@@ -196,7 +196,7 @@ TEST(Jrl, AMeasurementThatBothRobotsLogCountsOnce) {
 
 TEST(Jrl, WrongCovariancesAreNamed) {
   const auto with = [](const Json& covariance) {
-    Json file = two_robots();
+    Json file = log_of_two();
     file["measurements"]["b"][1]["measurements"][0]["covariance"] = covariance;
     return file;
   };
@@ -216,25 +216,25 @@ TEST(Jrl, OtherMistakesAreNamed) {
             std::string::npos);
   expect_error(Json::array(), "not a JSON object");
   expect_error({{"solutions", Json::object()}}, "these are results (JRR)");
-  Json file = two_robots();
+  Json file = log_of_two();
   file["robots"] = Json::array({97});
   expect_error(file, "measurements.b: 'b' is not in the list 'robots'");
-  file = two_robots();
+  file = log_of_two();
   file["outlier_factors"]["a"] = Json::array({id(7, 0)});
   expect_error(file, "outlier_factors.a: there is no measurement [7, 0]");
-  file = two_robots();
+  file = log_of_two();
   file["measurements"]["a"][1]["measurements"][0]["key2"] = 1.5;
   expect_error(file, "measurements.a[1].measurements[0]: 'key2' is not a key");
-  file = two_robots();
+  file = log_of_two();
   file["measurements"]["a"][1]["measurements"][0]["key2"] = key('a', 0);
   expect_error(file, "to itself");
-  file = two_robots();
+  file = log_of_two();
   file["measurements"]["a"][1]["measurements"][0]["measurement"]["rotation"] = {2, 0, 0, 0};
   expect_error(file, "'measurement': the quaternion 'rotation' has norm 2, not 1");
-  file = two_robots();
+  file = log_of_two();
   file["measurements"]["a"][1]["measurements"].push_back(between2(key('a', 0), key('a', 1), 1));
   expect_error(file, "measurements.a[1].measurements[1]: both Pose2 and Pose3");
-  file = two_robots();
+  file = log_of_two();
   file["measurements"] = Json::object();
   file["measurements"]["a"] = Json::array({entry(0, Json::array({prior3(key('a', 0), 5)}))});
   file.erase("potential_outlier_factors");
@@ -255,7 +255,7 @@ void expect_near(const std::vector<double>& x, const std::vector<double>& expect
 }
 
 TEST(Jrl, OnePriorIsGaugeAndSeveralAreMeasurements) {
-  Json file = two_robots();
+  Json file = log_of_two();
   const auto one = parse_jrl(file.dump(), "test.jrl");
   const auto& alone = std::get<JrlGraph<Pose>>(one->content);
   EXPECT_EQ(with_priors_as_edges(alone).nodes.size(), 4U);

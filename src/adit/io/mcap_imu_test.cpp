@@ -15,13 +15,6 @@ namespace {
 using test::ForeignFile;
 using test::make_scan;
 
-ros::TransformMessage link(const std::string& frame, const std::string& child, const Pose& T_frame_child) {
-  return {frame, child, {{5}, T_frame_child}};
-}
-
-const Pose kSensor = Pose::planar(0.2, 0.1, 0.7, 0.8);
-const Pose kLidar = Pose::planar(0, 0, 3.0, 0.036);
-
 /// Three samples at the stamps of scans.
 std::vector<ros::ImuMessage> imu_messages(const std::string& frame = "os_imu") {
   std::vector<ros::ImuMessage> messages(3);
@@ -34,24 +27,24 @@ std::vector<ros::ImuMessage> imu_messages(const std::string& frame = "os_imu") {
 
 TEST(McapImu, TheMountOfTheImuFollowsStaticTransforms) {
   const Pose os_imu = Pose::translation_of(0.006, -0.012, 0.008);
-  const ForeignFile file =
-      ForeignFile()
-          .clouds("/os/points")
-          .odometry("/odom", "base_link")
-          .imu("/os/imu", imu_messages("/os_imu"))
-          .links({link("base_link", "os_sensor", kSensor), link("os_sensor", "os_lidar", kLidar),
-                  link("os_sensor", "os_imu", os_imu)});
+  const ForeignFile file = ForeignFile()
+                               .clouds("/os/points")
+                               .odometry("/odom", "base_link")
+                               .imu("/os/imu", imu_messages("/os_imu"))
+                               .links({test::link("base_link", "os_sensor", test::T_base_ouster),
+                                       test::link("os_sensor", "os_lidar", test::T_ouster_lidar),
+                                       test::link("os_sensor", "os_imu", os_imu)});
   const Result<Recording> recording = file.read();
   ASSERT_TRUE(recording) << recording.error().message;
   ASSERT_EQ(recording->imu.size(), 3U);
   EXPECT_EQ(recording->imu[2].specific_force, Vector3(2, 0, 9.81));
-  EXPECT_LT((recording->T_base_imu.inverse() * kSensor * os_imu).log().norm(), 1e-12);
+  EXPECT_LT((recording->T_base_imu.inverse() * test::T_base_ouster * os_imu).log().norm(), 1e-12);
   EXPECT_EQ(recording->imu_mount_source, "/tf_static: base_link -> os_sensor -> os_imu");
   EXPECT_TRUE(recording->assumptions.empty());
   // A mount of the LiDAR given by the user moves the IMU with it.
   const Result<Recording> moved = file.read({.mount = "1 2 3"});
   ASSERT_TRUE(moved) << moved.error().message;
-  const Pose T_lidar_imu = kLidar.inverse() * os_imu;
+  const Pose T_lidar_imu = test::T_ouster_lidar.inverse() * os_imu;
   EXPECT_LT((moved->T_base_imu.inverse() * Pose::translation_of(1, 2, 3) * T_lidar_imu).log().norm(), 1e-12);
   EXPECT_EQ(file.read({.imu_mount = "4 5 6"})->T_base_imu.translation(), Vector3(4, 5, 6));
   EXPECT_ERROR(file.read({.imu_mount = "4 5"}), "2 numbers");
@@ -61,10 +54,10 @@ TEST(McapImu, AnUnknownMountOfTheImuIsAnAssumptionWithARemedy) {
   const ForeignFile file = ForeignFile()
                                .clouds("/os/points")
                                .imu("/os/imu", imu_messages())
-                               .links({link("base_link", "os_lidar", kSensor)});
+                               .links({test::link("base_link", "os_lidar", test::T_base_ouster)});
   const Result<Recording> recording = file.read();
   ASSERT_TRUE(recording) << recording.error().message;
-  EXPECT_LT((recording->T_base_imu.inverse() * kSensor).log().norm(), 1e-12);
+  EXPECT_LT((recording->T_base_imu.inverse() * test::T_base_ouster).log().norm(), 1e-12);
   ASSERT_EQ(recording->assumptions.size(), 1U);
   EXPECT_TRUE(recording->assumptions.front().starts_with(
       "mount of the IMU: the LiDAR's, as no /tf_static links 'base_link' and 'os_imu'; if"))
@@ -88,7 +81,7 @@ TEST(McapImu, OneOfSeveralImusCanBeChosenOrNone) {
                                .clouds("/os/points")
                                .imu("/os/imu", imu_messages())
                                .imu("/camera/imu", second)
-                               .links({link("base", "os_lidar", kSensor)});
+                               .links({test::link("base", "os_lidar", test::T_base_ouster)});
   EXPECT_ERROR(file.read(), "several topics of Imu: /os/imu, /camera/imu; choose one with --imu TOPIC");
   EXPECT_ERROR(file.read({.imu = "/left"}), "no Imu topic '/left'; there are: /os/imu, /camera/imu");
   EXPECT_EQ(file.read({.imu = "/os/imu"})->imu.size(), 3U);

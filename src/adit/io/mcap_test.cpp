@@ -215,16 +215,11 @@ TEST(Mcap, ADamagedScanIsFoundByItsChecksum) {
   EXPECT_TRUE(damaged.error().message.starts_with("scan 2: chunk at byte ")) << damaged.error().message;
 }
 
-ros::TransformMessage link(const std::string& frame, const std::string& child, const Pose& T_frame_child) {
-  return {frame, child, {{5}, T_frame_child}};
-}
-
-const Pose kSensor = Pose::planar(0.2, 0.1, 0.7, 0.8);
-const Pose kLidar = Pose::planar(0, 0, 3.0, 0.036);
-
 TEST(Mcap, ForeignFilesWithoutChunksOrIndex) {
-  const Result<Recording> recording =
-      ForeignFile().clouds("/ouster/points").links({link("base_link", "os_lidar", kSensor)}).read();
+  const Result<Recording> recording = ForeignFile()
+                                          .clouds("/ouster/points")
+                                          .links({test::link("base_link", "os_lidar", test::T_base_ouster)})
+                                          .read();
   ASSERT_TRUE(recording) << recording.error().message;
   EXPECT_EQ(recording->name, "ouster");
   EXPECT_EQ(recording->num_scans(), 3U);
@@ -238,24 +233,26 @@ TEST(Mcap, TheMountFollowsTheWholeTreeOfStaticTransforms) {
       ForeignFile()
           .clouds("/os/points", "/os_lidar")
           .odometry("/wheels/odom", "base_link")
-          .links({link("os_sensor", "os_lidar", kLidar)})
-          .links({link("/base_footprint", "/base_link", Pose::planar(0, 0, 0, 0.3)),
-                  link("/base_link", "/os_sensor", kSensor)})
+          .links({test::link("os_sensor", "os_lidar", test::T_ouster_lidar)})
+          .links({test::link("/base_footprint", "/base_link", Pose::planar(0, 0, 0, 0.3)),
+                  test::link("/base_link", "/os_sensor", test::T_base_ouster)})
           .read();
   ASSERT_TRUE(recording) << recording.error().message;
-  EXPECT_LT((recording->T_base_lidar.inverse() * kSensor * kLidar).log().norm(), 1e-12);
+  EXPECT_LT((recording->T_base_lidar.inverse() * test::T_base_ouster * test::T_ouster_lidar).log().norm(),
+            1e-12);
   EXPECT_EQ(recording->mount_source, "/tf_static: base_link -> os_sensor -> os_lidar");
   EXPECT_TRUE(recording->assumptions.empty());
 }
 
 TEST(Mcap, LinksAreFollowedAgainstTheirDirectionToo) {
-  const Result<Recording> recording = ForeignFile()
-                                          .clouds("/os/points")
-                                          .odometry("/odom", "base_link")
-                                          .links({link("os_lidar", "base_link", kSensor.inverse())})
-                                          .read();
+  const Result<Recording> recording =
+      ForeignFile()
+          .clouds("/os/points")
+          .odometry("/odom", "base_link")
+          .links({test::link("os_lidar", "base_link", test::T_base_ouster.inverse())})
+          .read();
   ASSERT_TRUE(recording) << recording.error().message;
-  EXPECT_LT((recording->T_base_lidar.inverse() * kSensor).log().norm(), 1e-12);
+  EXPECT_LT((recording->T_base_lidar.inverse() * test::T_base_ouster).log().norm(), 1e-12);
 }
 
 TEST(Mcap, AnUnknownMountIsAnErrorWithARemedy) {
@@ -268,7 +265,7 @@ TEST(Mcap, AnUnknownMountIsAnErrorWithARemedy) {
   EXPECT_ERROR(ForeignFile()
                    .clouds("/os/points")
                    .odometry("/odom", "base_link")
-                   .links({link("base", "camera", Pose())})
+                   .links({test::link("base", "camera", Pose())})
                    .read(),
                "no links connect 'base_link' and 'os_lidar'; give --mount");
   EXPECT_ERROR(bare.read({.mount = "1 2"}), "2 numbers");
@@ -296,8 +293,8 @@ TEST(Mcap, GroundTruthIsNamedByAWholeWord) {
 }
 
 TEST(Mcap, OneOfSeveralTopicsOfCloudsCanBeChosen) {
-  const ForeignFile file =
-      ForeignFile().clouds("/front").clouds("/rear").links({link("base", "os_lidar", kSensor)});
+  const ForeignFile file = ForeignFile().clouds("/front").clouds("/rear").links(
+      {test::link("base", "os_lidar", test::T_base_ouster)});
   EXPECT_ERROR(file.read(), "several topics of PointCloud2: /front, /rear; choose one with --points TOPIC");
   EXPECT_ERROR(file.read({.points = "/left"}), "no PointCloud2 topic '/left'; there are: /front, /rear");
   const Result<Recording> rear = file.read({.points = "/rear"});

@@ -14,10 +14,8 @@ namespace {
 
 using test::ForeignFile;
 
-const Pose kLidar = Pose::planar(0.2, 0.1, 0.7, 0.8);
-
 ForeignFile file_with_links() {
-  return ForeignFile().clouds("/points").links({{"base_link", "os_lidar", {{5}, kLidar}}});
+  return ForeignFile().clouds("/points").links({{"base_link", "os_lidar", {{5}, test::T_base_ouster}}});
 }
 
 TEST(McapWheel, OneOfSeveralTopicsCanBeChosenOrNone) {
@@ -39,7 +37,7 @@ TEST(McapWheel, WheelsThatAreNotUsedStillNameTheRobotsFrame) {
   file.clouds("/points")
       .odometry("/odom", "base_link")
       .links({{"base_footprint", "base_link", {{5}, Pose::translation_of(0, 0, 9)}},
-              {"base_link", "os_lidar", {{5}, kLidar}}});
+              {"base_link", "os_lidar", {{5}, test::T_base_ouster}}});
   const Result<Recording> with = file.read();
   const Result<Recording> without = file.read({.wheel = "none"});
   ASSERT_TRUE(with && without);

@@ -14,15 +14,11 @@ namespace {
 using test::put_file;
 using test::TemporaryFolder;
 
-PointCloud one_point(float x) {
-  PointCloud cloud;
-  cloud.points = {{x, 2, 3}};
-  return cloud;
-}
-
 TEST(OpenRecording, SelectsPartsOfAFolder) {
   const TemporaryFolder folder;
-  for (int i = 0; i < 6; ++i) ASSERT_TRUE(write_cloud(folder / (std::to_string(i) + ".bin"), one_point(1)));
+  PointCloud cloud;
+  cloud.points = {{1, 2, 3}};
+  for (int i = 0; i < 6; ++i) ASSERT_TRUE(write_cloud(folder / (std::to_string(i) + ".bin"), cloud));
   const std::string path = folder.path().string();
   EXPECT_EQ(open_recording(path)->num_scans(), 6U);
   EXPECT_EQ(open_recording(path + "@even")->scan_stamps[1].ns, 2'000'000'000);

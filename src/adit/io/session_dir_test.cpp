@@ -42,7 +42,7 @@ void add_loop(FleetGraph& fleet, std::uint32_t a, std::uint32_t b, double along_
 }
 
 /// Three loops that a test accepted, two that it refuted, one that could not be registered.
-Session two_robots() {
+Session session_of_two() {
   Session session;
   session.maps = {straight_map({0}, "ada"), straight_map({1}, "bo")};
   for (const auto& map : session.maps) {
@@ -77,7 +77,7 @@ std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
 
 TEST(SessionDir, EveryCandidateSaysWhyItIsInTheSolutionOrNot) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(write_session(folder.path(), two_robots(), MapFiles::leave_out));
+  ASSERT_TRUE(write_session(folder.path(), session_of_two(), MapFiles::leave_out));
   const auto rows = cells_of(get_file(folder / "loops.csv"));
   ASSERT_EQ(rows.size(), 7U);
   const auto column = [&](const std::string& name) {
@@ -103,7 +103,7 @@ TEST(SessionDir, EveryCandidateSaysWhyItIsInTheSolutionOrNot) {
 
 TEST(SessionDir, TheProvenanceListsTheHypotheses) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(write_session(folder.path(), two_robots(), MapFiles::leave_out));
+  ASSERT_TRUE(write_session(folder.path(), session_of_two(), MapFiles::leave_out));
   const std::string toml = get_file(folder / "session.toml");
   for (const char* part : {"'10 of 10 places agree'", "outcome = 'accepted'", "outcome = 'refuted'",
                            "places_compared = 8", "places_differing = 5", "from_best_m = 5.0", "[ 3, 8 ]"})
@@ -112,7 +112,7 @@ TEST(SessionDir, TheProvenanceListsTheHypotheses) {
 
 TEST(SessionDir, LoopsOfEarlierVersionsAreReadToo) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(write_session(folder.path(), two_robots(), MapFiles::leave_out));
+  ASSERT_TRUE(write_session(folder.path(), session_of_two(), MapFiles::leave_out));
   const Result<SavedSession> now = read_session(folder.path());
   ASSERT_TRUE(now.has_value()) << now.error().message;
   ASSERT_EQ(now->loops.size(), 6U);

@@ -10,7 +10,7 @@
 namespace adit {
 namespace {
 
-constexpr Duration kPeriod = std::chrono::milliseconds(100);
+constexpr Duration kScanPeriod = std::chrono::milliseconds(100);
 
 Vector6 normal(Rng& rng, const Matrix6& covariance) {
   Vector6 out;
@@ -20,7 +20,7 @@ Vector6 normal(Rng& rng, const Matrix6& covariance) {
 
 WheelDelta wheels(const Pose& T_base0_base1) {
   WheelDelta wheel;
-  wheel.duration = kPeriod;
+  wheel.duration = kScanPeriod;
   wheel.T_base0_base1 = T_base0_base1;
   return wheel;
 }
@@ -68,7 +68,7 @@ class Walk {
   /// The next interval, in small steps.
   Pose moved() {
     constexpr int kSteps = 50;
-    const double dt = to_seconds(kPeriod) / kSteps;
+    const double dt = to_seconds(kScanPeriod) / kSteps;
     Pose T;
     for (int i = 0; i < kSteps; ++i) {
       T = T * Pose::exp(dt * twist_);
@@ -110,7 +110,7 @@ double mean_nees(bool with_wheels, double missing) {
     for (int i = 0; i < 60; ++i) {
       const Pose T_moved = walk.moved();
       T_ref_now = T_ref_now * T_moved;
-      filter.predict(kPeriod,
+      filter.predict(kScanPeriod,
                      with_wheels && !walk.chance(0.1) ? sensed(walk.wheels_of(T_moved)) : SensedMotion());
       const MotionPrior prior = filter.prior();
       if (i > 2) {
@@ -147,10 +147,10 @@ TEST(MotionFilter, KeepsTheVelocityWithoutWheels) {
   const Pose T_step = Pose::exp((Vector6() << 0.15, 0.0, 0.01, 0.0, 0.01, 0.03).finished());
   Filter filter;
   for (int i = 0; i < 20; ++i) {
-    filter.predict(kPeriod);
+    filter.predict(kScanPeriod);
     filter.registered(T_step, Matrix6::Identity() * 1e-6);
   }
-  filter.predict(3 * kPeriod);  // two scans are missing
+  filter.predict(3 * kScanPeriod);  // two scans are missing
   EXPECT_LT((filter.T_last_now().inverse() * T_step * T_step * T_step).log().norm(), 0.005);
   EXPECT_LT((filter.prior().T_ref_now.inverse() * T_step * T_step * T_step).log().norm(), 0.005);
 }
@@ -159,7 +159,7 @@ TEST(MotionFilter, FindsTheScaleOfTheWheels) {
   Filter filter({}, {.scale = 0.1});
   const double before = filter.wheel_scale_sigma();
   for (int i = 0; i < 200; ++i) {
-    filter.predict(kPeriod, sensed(wheels(Pose::translation_of(0.15, 0, 0))));
+    filter.predict(kScanPeriod, sensed(wheels(Pose::translation_of(0.15, 0, 0))));
     filter.registered(Pose::translation_of(0.15 * 1.05, 0, 0), Matrix6::Identity() * 1e-5);
   }
   EXPECT_NEAR(filter.wheel_scale(), 0.05, 0.005);
@@ -170,7 +170,7 @@ TEST(MotionFilter, FindsTheScaleOfTheWheels) {
 TEST(MotionFilter, WhatNoScanMeasuresStaysUnknown) {
   Filter filter;
   for (int i = 0; i < 200; ++i) {
-    filter.predict(kPeriod, sensed(wheels(Pose::translation_of(0.15, 0, 0))));
+    filter.predict(kScanPeriod, sensed(wheels(Pose::translation_of(0.15, 0, 0))));
     const MotionPrior prior = filter.prior();
     filter.registered(prior.T_ref_now, prior.covariance);
   }
@@ -185,7 +185,7 @@ double open_variance(const WheelNoise& noise, int num_scans) {
   onto_fixed(0, 0) = 0.0;
   double variance = 0.0;
   for (int i = 0; i < num_scans; ++i) {
-    filter.predict(kPeriod, sensed(wheels(Pose::translation_of(0.15, 0, 0))));
+    filter.predict(kScanPeriod, sensed(wheels(Pose::translation_of(0.15, 0, 0))));
     const MotionPrior prior = filter.prior();
     Matrix6 posterior = Matrix6::Identity() * 1e-8;
     posterior(0, 0) = prior.covariance(0, 0);
@@ -210,7 +210,7 @@ TEST(MotionFilter, ErrorsThatLastAddUpAlongOpenDirections) {
 TEST(MotionFilter, UncertaintyGrowsOverScansThatWereMissed) {
   Filter filter;
   for (int i = 0; i < 20; ++i) {
-    filter.predict(kPeriod, sensed(wheels(Pose::translation_of(0.15, 0, 0))));
+    filter.predict(kScanPeriod, sensed(wheels(Pose::translation_of(0.15, 0, 0))));
     if (i < 10) filter.registered(Pose::translation_of(0.15, 0, 0), Matrix6::Identity() * 1e-5);
     if (i >= 10 && i < 19) filter.missed();
   }
@@ -224,14 +224,14 @@ TEST(MotionFilter, UncertaintyGrowsOverScansThatWereMissed) {
 TEST(MotionFilter, ARobotThatStandsIsKnownToStand) {
   Filter filter;
   for (int i = 0; i < 10; ++i) {
-    filter.predict(kPeriod);
+    filter.predict(kScanPeriod);
     filter.registered(Pose::translation_of(0.15, 0, 0), Matrix6::Identity() * 1e-5);
   }
   for (int i = 0; i < 5000; ++i) {
-    filter.predict(kPeriod, sensed(wheels(Pose())));
+    filter.predict(kScanPeriod, sensed(wheels(Pose())));
     filter.stopped(Pose());
   }
-  filter.predict(kPeriod);
+  filter.predict(kScanPeriod);
   const MotionPrior prior = filter.prior();
   EXPECT_LT(prior.T_ref_now.log().norm(), 0.005);
   EXPECT_LT(prior.covariance.diagonal().maxCoeff(), 2e-3);  // of a start within a tenth of a second

@@ -15,7 +15,7 @@ namespace {
 using test::Drive;
 using test::Lidar;
 
-const Pose kMount(so3::exp({0.02, -0.03, 0.1}), Vector3(0.3, 0.1, 0.5));
+using test::kMount;
 
 Vector6 twist(double forward, double turn) { return (Vector6() << forward, 0, 0, 0, 0, turn).finished(); }
 

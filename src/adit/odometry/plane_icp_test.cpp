@@ -9,7 +9,7 @@
 namespace adit {
 namespace {
 
-const Pose kMount(so3::exp({0.02, -0.03, 0.1}), Vector3(0.3, 0.1, 0.5));
+using test::kMount;
 
 Scan still_scan(int index) { return test::still_scan(kMount, index); }
 

@@ -8,11 +8,12 @@
 
 #include "adit/core/parallel.hpp"
 #include "adit/core/rng.hpp"
+#include "support/synthetic_scan.hpp"
 
 namespace adit {
 namespace {
 
-const Pose kMount(so3::exp({0.02, -0.03, 0.1}), Vector3(0.3, 0.1, 0.5));
+using test::kMount;
 const ConstantVelocity kMotion{Pose(so3::exp({0.0, 0.01, 0.2}), Vector3(0.4, 0.0, 0.1)),
                                std::chrono::milliseconds(100)};
 

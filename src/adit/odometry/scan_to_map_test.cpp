@@ -42,7 +42,7 @@ Vector6 unit(int axis, double size) { return size * Vector6::Unit(axis); }
 TEST(LinearizeRigid, GradientAndHessianAgainstFiniteDifferences) {
   const Pairs pairs;
   constexpr double kScale = 0.7;
-  constexpr double kStep = 1e-6;
+  constexpr double kDifference = 1e-6;
   Correspondences within_reach = pairs.within(0.9);
   const auto eq = linearize_rigid(within_reach, pairs.T_map_base, kScale);
   ASSERT_EQ(eq.num_correspondences, 200);
@@ -56,9 +56,9 @@ TEST(LinearizeRigid, GradientAndHessianAgainstFiniteDifferences) {
     for (int k = 0; k < 6; ++k) {
       const Vector3 p = pairs.source[i].cast<double>();
       J.col(k) = Rt *
-                 (pairs.T_map_base * Pose::exp(unit(k, kStep)) * p -
-                  pairs.T_map_base * Pose::exp(unit(k, -kStep)) * p) /
-                 (2.0 * kStep);
+                 (pairs.T_map_base * Pose::exp(unit(k, kDifference)) * p -
+                  pairs.T_map_base * Pose::exp(unit(k, -kDifference)) * p) /
+                 (2.0 * kDifference);
     }
     const Vector3 r = pairs.residual(i, pairs.T_map_base);
     const double w = std::pow(kScale / (kScale + r.squaredNorm()), 2);

@@ -7,7 +7,7 @@
 namespace adit {
 namespace {
 
-constexpr double kStep = 0.15;  // metres from scan to scan
+constexpr double kScanStep = 0.15;  // metres from scan to scan
 
 // Scans until the judgement is `slipping`, at most 50.
 int scans_until(WheelTrust& trust, bool slipping, double counted_m, double driven_m) {
@@ -20,16 +20,16 @@ int scans_until(WheelTrust& trust, bool slipping, double counted_m, double drive
 
 TEST(WheelTrust, WheelsThatSlipAFewPerCentAreBelieved) {
   WheelTrust trust;
-  EXPECT_EQ(scans_until(trust, true, 1.04 * kStep, kStep), 51);
+  EXPECT_EQ(scans_until(trust, true, 1.04 * kScanStep, kScanStep), 51);
   EXPECT_EQ(scans_until(trust, true, 0.0, 0.0), 51);
 }
 
 TEST(WheelTrust, ABurstIsFoundWithinHalfASecondAndItsEndToo) {
   for (const double slip : {0.35, 0.6, 1.0}) {
     WheelTrust trust;
-    EXPECT_EQ(scans_until(trust, true, kStep, kStep), 51);
-    EXPECT_LE(scans_until(trust, true, kStep, (1.0 - slip) * kStep), 5) << slip;
-    EXPECT_LE(scans_until(trust, false, kStep, kStep), 20) << slip;
+    EXPECT_EQ(scans_until(trust, true, kScanStep, kScanStep), 51);
+    EXPECT_LE(scans_until(trust, true, kScanStep, (1.0 - slip) * kScanStep), 5) << slip;
+    EXPECT_LE(scans_until(trust, false, kScanStep, kScanStep), 20) << slip;
   }
 }
 

@@ -13,11 +13,11 @@
 namespace adit {
 namespace {
 
-constexpr double kSigma = 0.01;
+constexpr double kCentimetre = 0.01;
 
 PoseGraph made_graph(std::uint64_t seed) {
   Rng rng(seed);
-  return test::make_graph<Pose>(rng, 200, 120, kSigma).graph;
+  return test::make_graph<Pose>(rng, 200, 120, kCentimetre).graph;
 }
 std::size_t num_loops(const PoseGraph& graph) {
   return static_cast<std::size_t>(std::ranges::count(graph.edges, EdgeKind::loop, &PoseGraph::Edge::kind));

@@ -17,7 +17,7 @@
 namespace adit {
 namespace {
 
-constexpr double kSigma = 0.02;
+using test::kSigma;
 
 // A graph whose first `num_true` edges are honest; the rest are false loops.
 template <class P>

@@ -10,7 +10,7 @@
 namespace adit {
 namespace {
 
-constexpr double kSigma = 0.02;
+using test::kSigma;
 constexpr std::size_t kLength = 40;
 
 // Noise of the first kind in metres, of the second in radians: an information that a wrong frame would show.

@@ -15,7 +15,7 @@
 namespace adit {
 namespace {
 
-constexpr double kSigma = 0.02;
+using test::kSigma;
 
 // A robot that drives the same circle twice, each lap `kLap` keyframes, with a loop from each keyframe of the
 // second lap to the same place of the first.

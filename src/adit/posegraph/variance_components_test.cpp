@@ -41,22 +41,21 @@ P on_circle(double angle) {
 /// by the root of the variance of their source times that.
 template <class P>
 Drive<P> laps(std::size_t num_nodes, std::size_t stride, double odometry, double loops, std::uint64_t seed) {
-  constexpr std::size_t kLap = 40;
-  constexpr double kSigma = 0.02;
+  constexpr std::size_t kNodesOfLap = 40;
   Rng rng(seed);
   Drive<P> out;
   std::vector<P> truth;
   const auto link = [&](std::size_t from, std::size_t to, EdgeKind kind, double variance) {
-    const P error = P::exp(noise<P>(rng, kSigma * std::sqrt(variance)));
+    const P error = P::exp(noise<P>(rng, test::kSigma * std::sqrt(variance)));
     out.graph.edges.push_back({from, to, truth[from].inverse() * truth[to] * error,
-                               P::Jacobian::Identity() / (kSigma * kSigma), kind});
+                               P::Jacobian::Identity() / (test::kSigma * test::kSigma), kind});
     out.source_of_edge.push_back(kind == EdgeKind::loop ? kLoops : kOdometry);
   };
   for (std::size_t i = 0; i < num_nodes; ++i) {
-    truth.push_back(on_circle<P>(2.0 * std::numbers::pi * static_cast<double>(i) / kLap));
+    truth.push_back(on_circle<P>(2.0 * std::numbers::pi * static_cast<double>(i) / kNodesOfLap));
     out.graph.nodes.push_back({i, truth.back()});
     if (i > 0) link(i - 1, i, EdgeKind::odometry, odometry);
-    if (i >= kLap && i % stride == 0) link(i - kLap, i, EdgeKind::loop, loops);
+    if (i >= kNodesOfLap && i % stride == 0) link(i - kNodesOfLap, i, EdgeKind::loop, loops);
   }
   return out;
 }

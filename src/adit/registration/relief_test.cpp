@@ -13,9 +13,9 @@
 namespace adit {
 namespace {
 
-constexpr double kRadius = 4.0;    // metres, of a tube along x
-constexpr double kNoise = 0.03;    // metres, of one point
-constexpr double kRelief = 0.012;  // metres, of the rock
+constexpr double kRadius = 4.0;       // metres, of a tube along x
+constexpr double kPointNoise = 0.03;  // metres, of one point
+constexpr double kRelief = 0.012;     // metres, of the rock
 
 // The relief of the rock in the tunnel of that seed: waves of a few metres.
 double rock(std::uint64_t tunnel, double x, double angle) {
@@ -35,7 +35,7 @@ SeenSurface seen(std::uint64_t tunnel, double x, std::uint64_t noise) {
   for (int i = 0; i < 6000; ++i) {
     const double along = rng.uniform(-12.0, 12.0);
     const double angle = rng.uniform(-std::numbers::pi, std::numbers::pi);
-    const double r = kRadius + rock(tunnel, x + along, angle) + kNoise * rng.normal();
+    const double r = kRadius + rock(tunnel, x + along, angle) + kPointNoise * rng.normal();
     cloud.points.emplace_back(static_cast<float>(along), static_cast<float>(r * std::cos(angle)),
                               static_cast<float>(r * std::sin(angle)));
   }
@@ -83,7 +83,7 @@ TEST(Relief, OffsetsOfTheSameWallsHaveRandomSigns) {
 }
 
 TEST(Relief, OffsetsOfOtherWallsHaveEqualSignsInAllScansThoughNoiseIsLarger) {
-  static_assert(kRelief < 0.5 * kNoise);
+  static_assert(kRelief < 0.5 * kPointNoise);
   for (const std::uint64_t tunnel : {1U, 2U, 3U}) {
     const WallOffsets offsets = driven(tunnel, tunnel + 10);
     EXPECT_GT(offsets.counted().share, 0.6);

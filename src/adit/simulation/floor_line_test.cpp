@@ -19,7 +19,9 @@ const Eigen::AlignedBox2d kArea(Eigen::Vector2d(-2, -2), Eigen::Vector2d(2, 2));
 double flat(double, double) { return 0.0; }
 double ramp(double x, double y) { return 0.2 * x - 0.07 * y; }
 
-Raycaster caster(const TriangleMesh& mesh) { return Raycaster::build(mesh, EdgeRule::watertight).value(); }
+Raycaster watertight(const TriangleMesh& mesh) {
+  return Raycaster::build(mesh, EdgeRule::watertight).value();
+}
 
 TriangleMesh grid(const Height& height) { return test::floor_of(kArea, kCell, height); }
 
@@ -41,7 +43,7 @@ std::vector<Eigen::Vector2d> points_between_triangles() {
 
 TEST(FloorHeight, HasNoGapsBetweenTriangles) {
   for (const Height& height : {Height(flat), Height(ramp)}) {
-    const Raycaster raycaster = caster(grid(height));
+    const Raycaster raycaster = watertight(grid(height));
     for (const Eigen::Vector2d& p : points_between_triangles()) {
       const double floor = height(p.x(), p.y());
       for (const double above : {0.0, 0.05, -0.001, -0.05, 1.0}) {
@@ -58,7 +60,7 @@ TEST(FloorHeight, ClosesCracksAsWideAsRoundingLeavesThem) {
   TriangleMesh mesh;
   test::add_quad(mesh, {-2, -2, 0}, {-0.00025, -2, 0}, {-0.00025, 2, 0}, {-2, 2, 0});
   test::add_quad(mesh, {0.00025, -2, 0}, {2, -2, 0}, {2, 2, 0}, {0.00025, 2, 0});
-  const Raycaster raycaster = caster(mesh);
+  const Raycaster raycaster = watertight(mesh);
   EXPECT_NEAR(floor_height(raycaster, {0, 0.3, 0}).value(), 0.0, 1e-6);
   EXPECT_NEAR(floor_height(raycaster, {0, 0.3, -0.001}).value(), 0.0, 1e-6);
   EXPECT_FALSE(floor_height(raycaster, {2.01, 0.3, 0}));  // the rim is not a crack
@@ -68,7 +70,7 @@ TEST(FloorHeight, KeepsToTheLevelOfTheWaypoint) {
   // Two galleries of 2 m with a metre of rock between them: floors at 0 and 3 m, ceilings at 2 and 5 m.
   TriangleMesh mesh;
   for (const double z : {0.0, 2.0, 3.0, 5.0}) append(mesh, grid([&](double, double) { return z; }));
-  const Raycaster raycaster = caster(mesh);
+  const Raycaster raycaster = watertight(mesh);
   for (const Eigen::Vector2d& p : points_between_triangles()) {
     for (const double above : {0.0, 0.05, -0.001, 0.9}) {
       EXPECT_NEAR(floor_height(raycaster, {p.x(), p.y(), 0.0 + above}).value(), 0.0, 1e-6);
@@ -78,7 +80,7 @@ TEST(FloorHeight, KeepsToTheLevelOfTheWaypoint) {
 }
 
 TEST(FloorLine, RunsOverTheVerticesOfAGrid) {
-  const Raycaster raycaster = caster(grid(ramp));
+  const Raycaster raycaster = watertight(grid(ramp));
   for (const double above : {0.0, -0.001, 0.05}) {
     Route route{"robot_0", 1.0, {}};
     for (double x = -1.5; x <= 1.5; x += 0.5) route.waypoints.emplace_back(x, 0.0, ramp(x, 0.0) + above);
@@ -90,7 +92,7 @@ TEST(FloorLine, RunsOverTheVerticesOfAGrid) {
 }
 
 TEST(FloorLine, AWaypointInTheVoidHasNoFloor) {
-  const Raycaster raycaster = caster(grid(flat));
+  const Raycaster raycaster = watertight(grid(flat));
   for (const Vector3& p : {Vector3(5, 0, 0), Vector3(0, 0, 3.2), Vector3(0, 0, -1.6)}) {
     const Result<std::vector<Vector3>> line = floor_line(raycaster, {"robot_0", 1.0, {{0, 1, 0}, p}});
     ASSERT_FALSE(line) << p.transpose();

@@ -15,12 +15,12 @@
 namespace adit {
 namespace {
 
-ImuConfig perfect() { return imu_preset("perfect").value(); }
+ImuConfig perfect_imu() { return imu_preset("perfect").value(); }
 
 const Pose kMount(Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Vector3(1, -2, 3).normalized())),
                   Vector3(0.3, -0.2, 0.9));
 
-Trajectory standing(const Pose& T_world_base, double seconds) {
+Trajectory standing_for(const Pose& T_world_base, double seconds) {
   Trajectory truth;
   for (int i = 0; i <= std::lround(100.0 * seconds); ++i)
     truth.push_back({Stamp{5} + from_seconds(0.01 * i), T_world_base});
@@ -62,7 +62,7 @@ Reckoned integrate(const std::vector<ImuSample>& imu, std::size_t first, std::si
 
 TEST(ImuModel, IntegratingPerfectSamplesGivesTheTrueTrajectory) {
   const Trajectory& truth = wavy_drive();
-  const std::vector<ImuSample> imu = imu_samples(truth, kMount, perfect(), 1);
+  const std::vector<ImuSample> imu = imu_samples(truth, kMount, perfect_imu(), 1);
   const Pose start = truth.front().T_world_body * kMount;
   ASSERT_GT(truth.back().stamp.seconds(), 20.0);
   double largest = 0.0;
@@ -79,7 +79,7 @@ TEST(ImuModel, IntegratingPerfectSamplesGivesTheTrueTrajectory) {
 
 TEST(ImuModel, PerfectSamplesOverASecondAreTrueWithinTenthsOfAMillimetre) {
   const Trajectory& truth = wavy_drive();
-  const std::vector<ImuSample> imu = imu_samples(truth, kMount, perfect(), 1);
+  const std::vector<ImuSample> imu = imu_samples(truth, kMount, perfect_imu(), 1);
   const SmoothMotion motion(truth, kMount);
   for (std::size_t i = 0; i + 201 < imu.size(); i += 200) {
     const Kinematics now = motion.at(imu[i].stamp);
@@ -117,14 +117,14 @@ TEST(SmoothMotion, PassesThroughTheTrajectoryAndItsDerivativesAreThoseOfThePoses
 TEST(ImuModel, AtRestItFeelsGravityInItsOwnFrame) {
   const Pose T_world_base(Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Vector3(2, 1, 0.5).normalized())),
                           Vector3(3, 4, 5));
-  const std::vector<ImuSample> imu = imu_samples(standing(T_world_base, 2.0), kMount, perfect(), 1);
+  const std::vector<ImuSample> imu = imu_samples(standing_for(T_world_base, 2.0), kMount, perfect_imu(), 1);
   const Vector3 up = (T_world_base * kMount).rotation().conjugate() * Vector3(0, 0, kStandardGravity);
   EXPECT_EQ(imu.size(), 401U);
   for (const ImuSample& sample : imu) {
     EXPECT_LT((sample.specific_force - up).norm(), 1e-9);
     EXPECT_LT(sample.angular_velocity.norm(), 1e-9);
   }
-  const ImuSample level = imu_samples(standing(Pose(), 1.0), Pose(), perfect(), 1).front();
+  const ImuSample level = imu_samples(standing_for(Pose(), 1.0), Pose(), perfect_imu(), 1).front();
   EXPECT_LT((level.specific_force - Vector3(0, 0, 9.80665)).norm(), 1e-9);
 }
 
@@ -134,7 +134,7 @@ TEST(ImuModel, OnACircleItFeelsTheLeverArm) {
   for (int i = 0; i <= 1000; ++i)
     truth.push_back({Stamp{} + from_seconds(0.01 * i), Pose::planar(0, 0, rate * 0.01 * i)});
   const Pose arm = Pose::translation_of(2.0, 0, 0);
-  const ImuSample sample = imu_samples(truth, arm, perfect(), 1)[1000];
+  const ImuSample sample = imu_samples(truth, arm, perfect_imu(), 1)[1000];
   EXPECT_NEAR(sample.specific_force.x(), -rate * rate * 2.0, 1e-4);  // towards the centre
   EXPECT_NEAR(sample.specific_force.y(), 0.0, 1e-4);
   EXPECT_NEAR(sample.angular_velocity.z(), rate, 1e-5);
@@ -156,10 +156,10 @@ Vector3 rate_of(const ImuSample& sample) { return sample.angular_velocity; }
 Vector3 force_of(const ImuSample& sample) { return sample.specific_force; }
 
 TEST(ImuModel, WhiteNoiseHasTheDensityOfItsField) {
-  ImuConfig c = perfect();
+  ImuConfig c = perfect_imu();
   c.gyro_noise_deg = 0.015;
   c.accel_noise = 2.3e-3;
-  const std::vector<ImuSample> imu = imu_samples(standing(Pose(), 100.0), Pose(), c, 3);
+  const std::vector<ImuSample> imu = imu_samples(standing_for(Pose(), 100.0), Pose(), c, 3);
   const Statistics rate = statistics_of(imu, rate_of);
   const Statistics force = statistics_of(imu, force_of);
   const ImuCovariance stated = covariance_of(c);
@@ -173,14 +173,14 @@ TEST(ImuModel, WhiteNoiseHasTheDensityOfItsField) {
 }
 
 TEST(ImuModel, BiasesDifferFromSensorToSensorAndWalk) {
-  ImuConfig c = perfect();
+  ImuConfig c = perfect_imu();
   c.gyro_bias_deg = 1.0;
   c.gyro_walk_deg = 0.1;
   double start = 0.0;
   double walk = 0.0;
   constexpr int kSensors = 100;
   for (std::uint64_t seed = 0; seed < kSensors; ++seed) {
-    const std::vector<ImuSample> imu = imu_samples(standing(Pose(), 4.0), Pose(), c, seed);
+    const std::vector<ImuSample> imu = imu_samples(standing_for(Pose(), 4.0), Pose(), c, seed);
     start += imu.front().angular_velocity.squaredNorm() / (3.0 * kSensors);
     walk += (imu.back().angular_velocity - imu.front().angular_velocity).squaredNorm() / (3.0 * kSensors);
   }
@@ -189,22 +189,22 @@ TEST(ImuModel, BiasesDifferFromSensorToSensorAndWalk) {
 }
 
 TEST(ImuModel, RangesCutOff) {
-  ImuConfig c = perfect();
+  ImuConfig c = perfect_imu();
   c.accel_max = 10.0;
   c.accel_bias = 5.0;
   c.gyro_max_deg = 10.0;
   c.gyro_bias_deg = 50.0;
-  for (const ImuSample& sample : imu_samples(standing(Pose(), 1.0), Pose(), c, 2)) {
+  for (const ImuSample& sample : imu_samples(standing_for(Pose(), 1.0), Pose(), c, 2)) {
     EXPECT_LE(sample.specific_force.cwiseAbs().maxCoeff(), 10.0);
     EXPECT_EQ(sample.angular_velocity.cwiseAbs().maxCoeff(), 10.0 * kDegree);
   }
 }
 
 TEST(ImuModel, VibrationGrowsWithSpeed) {
-  ImuConfig c = perfect();
+  ImuConfig c = perfect_imu();
   c.vibration = 1.0;
   const Trajectory& truth = wavy_drive();
-  const std::vector<ImuSample> calm = imu_samples(truth, kMount, perfect(), 1);
+  const std::vector<ImuSample> calm = imu_samples(truth, kMount, perfect_imu(), 1);
   const std::vector<ImuSample> shaken = imu_samples(truth, kMount, c, 1);
   EXPECT_LT((shaken[100].specific_force - calm[100].specific_force).norm(), 1e-6);  // it stands
   double sum = 0.0;

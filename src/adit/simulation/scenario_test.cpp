@@ -14,13 +14,13 @@
 namespace adit {
 namespace {
 
-const Vector3 kLow(-2.0, -5.0, 0.0);
-const Vector3 kHigh(30.0, 5.0, 4.0);
+const Vector3 kHallLow(-2.0, -5.0, 0.0);
+const Vector3 kHallHigh(30.0, 5.0, 4.0);
 
 World hall() {
   World world;
   world.name = "hall";
-  world.mesh = test::room(kLow, kHigh);
+  world.mesh = test::room(kHallLow, kHallHigh);
   world.routes = {{"robot_0", 1.8, {{0, -2, 0}, {20, -2, 0}}},
                   {"robot_1", 1.9, {{25, 2, 0}, {10, 3, 0}, {2, 2, 0}}}};
   return world;
@@ -80,7 +80,8 @@ TEST(Scenario, a_scan_deskewed_with_the_truth_lies_on_the_walls) {
       const Stamp stamp = scan.stamp + Duration(scan.cloud.time_offsets_ns[k]);
       const Vector3 p =
           pose_at(r.truth, stamp).value() * (r.T_base_lidar * scan.cloud.points[k].cast<double>());
-      const double off = std::min((p - kLow).cwiseAbs().minCoeff(), (p - kHigh).cwiseAbs().minCoeff());
+      const double off =
+          std::min((p - kHallLow).cwiseAbs().minCoeff(), (p - kHallHigh).cwiseAbs().minCoeff());
       ASSERT_LT(off, 2e-3);  // the sweep moves on one geodesic, the truth on ten
     }
   }
@@ -111,7 +112,7 @@ TEST(Scenario, a_walking_robot_sways_and_so_do_its_scans_and_its_imu) {
     const Stamp stamp = scan.stamp + Duration(scan.cloud.time_offsets_ns[k]);
     const Vector3 p =
         pose_at(r.truth, stamp).value() * (r.T_base_lidar * scan.cloud.points[k].cast<double>());
-    const double off = std::min((p - kLow).cwiseAbs().minCoeff(), (p - kHigh).cwiseAbs().minCoeff());
+    const double off = std::min((p - kHallLow).cwiseAbs().minCoeff(), (p - kHallHigh).cwiseAbs().minCoeff());
     ASSERT_LT(off, 5e-3);
   }
 }

@@ -14,17 +14,17 @@
 namespace adit {
 namespace {
 
-const Eigen::AlignedBox2d kArea(Eigen::Vector2d(-10, -10), Eigen::Vector2d(60, 60));
+const Eigen::AlignedBox2d kField(Eigen::Vector2d(-10, -10), Eigen::Vector2d(60, 60));
 
-Raycaster caster(const TriangleMesh& mesh) { return Raycaster::build(mesh, EdgeRule::watertight).value(); }
+Raycaster caster_of(const TriangleMesh& mesh) { return Raycaster::build(mesh, EdgeRule::watertight).value(); }
 TriangleMesh flat() {
-  return test::floor_of(kArea, 5.0, [](double, double) { return 0.0; });
+  return test::floor_of(kField, 5.0, [](double, double) { return 0.0; });
 }
 Route route_of(std::vector<Vector3> waypoints, double speed = 1.87) {
   return {"robot_0", speed, std::move(waypoints)};
 }
 Trajectory driven(const TriangleMesh& mesh, const Route& route, const DriveConfig& config = {}) {
-  return drive(caster(mesh), route, config, Stamp{}).value();
+  return drive(caster_of(mesh), route, config, Stamp{}).value();
 }
 double mean_speed(const Trajectory& t, const DriveConfig& config = {}) {
   return path_length(t) / (to_seconds(t.back().stamp - t.front().stamp) - config.stand_time);
@@ -86,7 +86,7 @@ TEST(Drive, mean_speed_holds_on_short_fast_and_winding_routes) {
 TEST(Drive, the_body_lies_on_a_ramp) {
   const double slope = std::tan(0.3);
   const auto ramp = [&](double x, double) { return slope * std::clamp(x - 10.0, 0.0, 20.0); };
-  const TriangleMesh mesh = test::floor_of(kArea, 5.0, ramp);
+  const TriangleMesh mesh = test::floor_of(kField, 5.0, ramp);
   const Trajectory t =
       driven(mesh, route_of({{0, 0, 0}, {10, 0, 0}, {30, 0, slope * 20.0}, {50, 0, slope * 20.0}}));
   EXPECT_NEAR(path_length(t), 30.0 + 20.0 / std::cos(0.3), 0.05);
@@ -100,7 +100,7 @@ TEST(Drive, the_body_lies_on_a_ramp) {
 }
 
 TEST(Drive, the_body_rolls_with_a_floor_that_falls_to_the_side) {
-  const TriangleMesh mesh = test::floor_of(kArea, 5.0, [](double, double y) { return 0.1 * y; });
+  const TriangleMesh mesh = test::floor_of(kField, 5.0, [](double, double y) { return 0.1 * y; });
   const Trajectory t = driven(mesh, route_of({{0, 0, 0}, {30, 0, 0}}));
   const Vector3 left = t[t.size() / 2].T_world_body.rotation() * Vector3::UnitY();
   EXPECT_NEAR(left.z() / left.y(), 0.1, 1e-4);
@@ -108,7 +108,7 @@ TEST(Drive, the_body_rolls_with_a_floor_that_falls_to_the_side) {
 
 TEST(Drive, a_step_under_one_wheel_is_softened) {
   const TriangleMesh mesh =
-      test::floor_of(kArea, 0.25, [](double x, double y) { return x > 15.1 && y > 0.1 ? 0.1 : 0.0; });
+      test::floor_of(kField, 0.25, [](double x, double y) { return x > 15.1 && y > 0.1 ? 0.1 : 0.0; });
   const Trajectory t = driven(mesh, route_of({{0, 0, 0}, {30, 0, 0}}));
   for (std::size_t i = 2; i < t.size(); ++i)
     EXPECT_LT((twist(t, i) - twist(t, i - 1)).tail<3>().norm() * 100.0, 10.0);
@@ -118,8 +118,8 @@ TEST(Drive, a_step_under_one_wheel_is_softened) {
 
 TEST(Drive, keeps_to_its_own_level_and_to_the_floor_under_waypoints_that_float) {
   TriangleMesh mesh = flat();
-  append(mesh, test::floor_of(kArea, 5.0, [](double, double) { return 2.5; }));
-  append(mesh, test::floor_of(kArea, 5.0, [](double, double) { return 5.0; }));
+  append(mesh, test::floor_of(kField, 5.0, [](double, double) { return 2.5; }));
+  append(mesh, test::floor_of(kField, 5.0, [](double, double) { return 5.0; }));
   const Trajectory upper = driven(mesh, route_of({{0, 0, 3.1}, {10, 0, 2.9}, {20, 0, 2.3}, {30, 0, 2.5}}));
   for (const StampedPose& p : upper) EXPECT_NEAR(p.T_world_body.translation().z(), 2.5, 1e-5);
   const Trajectory lower = driven(mesh, route_of({{0, 0, 0.6}, {10, 0, -0.4}, {30, 0, 0.9}}));
@@ -147,7 +147,7 @@ TEST(Drive, waypoints_that_repeat_change_nothing) {
 }
 
 std::string error_of(const TriangleMesh& mesh, const Route& route) {
-  const Result<Trajectory> t = drive(caster(mesh), route, DriveConfig(), Stamp{});
+  const Result<Trajectory> t = drive(caster_of(mesh), route, DriveConfig(), Stamp{});
   return t ? "" : t.error().message;
 }
 void expect_words(const std::string& text, const std::vector<std::string>& words) {
@@ -193,8 +193,8 @@ TEST(Drive, refuses_to_reverse) {
 
 TEST(FloorHeight, finds_the_nearest_surface_within_reach) {
   TriangleMesh mesh = flat();
-  append(mesh, test::floor_of(kArea, 5.0, [](double, double) { return 1.2; }));
-  const Raycaster raycaster = caster(mesh);
+  append(mesh, test::floor_of(kField, 5.0, [](double, double) { return 1.2; }));
+  const Raycaster raycaster = caster_of(mesh);
   EXPECT_NEAR(floor_height(raycaster, {1, 1, 0.5}).value(), 0.0, 1e-6);
   EXPECT_NEAR(floor_height(raycaster, {1, 1, 0.7}).value(), 1.2, 1e-6);
   EXPECT_NEAR(floor_height(raycaster, {1, 1, 4.1}).value(), 1.2, 1e-6);

@@ -11,7 +11,7 @@
 namespace adit {
 namespace {
 
-WheelConfig perfect() {
+WheelConfig perfect_wheels() {
   WheelConfig c;
   c.tick = c.scale_sigma = c.yaw_drift_deg = c.yaw_walk_deg = c.turn_scale_sigma = c.slip_sigma = 0.0;
   return c;
@@ -39,7 +39,7 @@ TEST(WheelModel, without_errors_it_is_the_true_motion_in_the_plane) {
   for (const double turn_rate : {0.0, 0.1, -1.5}) {
     for (const double speed : {0.0, 1.87, -0.5}) {
       const Trajectory truth = steady(speed, turn_rate, 12.34);
-      const Trajectory wheel = wheel_odometry(truth, perfect(), 1);
+      const Trajectory wheel = wheel_odometry(truth, perfect_wheels(), 1);
       EXPECT_LT(difference(wheel.front().T_world_body, Pose()), 1e-12);
       EXPECT_LT(difference(motion(wheel), motion(truth)), 1e-9) << speed << " " << turn_rate;
     }
@@ -70,7 +70,7 @@ TEST(WheelModel, one_pose_of_truth_gives_one_pose) {
 }
 
 TEST(WheelModel, ticks_cost_less_than_a_tick_however_far_it_drives) {
-  WheelConfig c = perfect();
+  WheelConfig c = perfect_wheels();
   c.tick = 0.01;
   const Trajectory truth = steady(1.87, 0.0, 60.0);
   const Pose error = motion(wheel_odometry(truth, c, 1)).inverse() * motion(truth);
@@ -84,7 +84,7 @@ TEST(WheelModel, climbing_counts_the_path_along_the_slope_and_stays_in_the_plane
   for (int i = 0; i <= 1000; ++i) {
     truth.push_back({Stamp{10'000'000LL * i}, climbing * Pose::translation_of(0.01 * i, 0, 0)});
   }
-  const Pose driven = motion(wheel_odometry(truth, perfect(), 1));
+  const Pose driven = motion(wheel_odometry(truth, perfect_wheels(), 1));
   EXPECT_LT((driven.translation() - Vector3(10.0, 0.0, 0.0)).norm(), 1e-9);
 }
 
@@ -129,23 +129,23 @@ TEST(WheelModel, drifts_by_one_or_two_percent_and_a_few_degrees) {
 }
 
 TEST(WheelModel, each_error_has_the_size_that_its_field_says) {
-  WheelConfig scale = perfect();
+  WheelConfig scale = perfect_wheels();
   scale.scale_sigma = 0.01;
   EXPECT_NEAR(spread_of(scale).sigma_length, 0.01, 0.003);
   EXPECT_LT(spread_of(scale).sigma_yaw_deg, 1e-6);
-  WheelConfig drift = perfect();
+  WheelConfig drift = perfect_wheels();
   drift.yaw_drift_deg = 1.0;
   EXPECT_NEAR(spread_of(drift).sigma_yaw_deg, 4.0, 1.2);
-  WheelConfig walk = perfect();
+  WheelConfig walk = perfect_wheels();
   walk.yaw_walk_deg = 1.0;
   EXPECT_NEAR(spread_of(walk).sigma_yaw_deg, 2.0, 0.6);  // grows with the root of the distance
-  WheelConfig slip = perfect();
+  WheelConfig slip = perfect_wheels();
   slip.slip_sigma = 0.05;
   EXPECT_NEAR(spread_of(slip).sigma_length, 0.05 * std::sqrt(2.0 * slip.slip_time / 200.0), 0.0015);
 }
 
 TEST(WheelModel, turns_are_wrong_by_a_constant_share) {
-  WheelConfig c = perfect();
+  WheelConfig c = perfect_wheels();
   c.turn_scale_sigma = 0.02;
   for (std::uint64_t seed = 1; seed < 4; ++seed) {
     const double left = motion(wheel_odometry(steady(0.0, 0.5, 2.0), c, seed)).yaw();
@@ -157,7 +157,7 @@ TEST(WheelModel, turns_are_wrong_by_a_constant_share) {
 }
 
 WheelConfig with_faults(const std::string& faults) {
-  WheelConfig c = perfect();
+  WheelConfig c = perfect_wheels();
   c.faults = faults;
   return c;
 }
@@ -208,18 +208,18 @@ TEST(WheelModel, silence_leaves_a_gap_and_nothing_else) {
 
 TEST(WheelModel, sign_scale_and_time_offset) {
   const Trajectory truth = steady(1.0, 0.2, 10.0);
-  const Pose right = motion(wheel_odometry(truth, perfect(), 1));
-  WheelConfig c = perfect();
+  const Pose right = motion(wheel_odometry(truth, perfect_wheels(), 1));
+  WheelConfig c = perfect_wheels();
   c.sign = WheelSign::reversed;
   EXPECT_LT(difference(motion(wheel_odometry(truth, c, 1)).inverse(), Pose::exp(right.log())), 1e-9);
   c.sign = WheelSign::swapped;
   const Pose swapped = motion(wheel_odometry(truth, c, 1));
   EXPECT_NEAR(swapped.yaw(), -right.yaw(), 1e-9);
   EXPECT_NEAR(swapped.translation().x(), right.translation().x(), 1e-9);
-  c = perfect();
+  c = perfect_wheels();
   c.scale = 1.1;
   EXPECT_LT((motion(wheel_odometry(truth, c, 1)).log() - 1.1 * right.log()).norm(), 1e-9);
-  c = perfect();
+  c = perfect_wheels();
   c.time_offset = 0.1;
   const Trajectory late = wheel_odometry(truth, c, 1);
   EXPECT_EQ(late.front().stamp, truth.front().stamp + from_seconds(0.1));
@@ -228,7 +228,7 @@ TEST(WheelModel, sign_scale_and_time_offset) {
 
 TEST(WheelModel, bursts_come_as_often_as_asked_and_their_truth_is_kept) {
   const Trajectory truth = steady(1.0, 0.0, 1200.0);
-  WheelConfig c = perfect();
+  WheelConfig c = perfect_wheels();
   c.burst_rate = 3.0;
   const std::vector<SensorFault> bursts = wheel_faults(truth, c, 1);
   EXPECT_NEAR(static_cast<double>(bursts.size()), 55.0, 20.0);  // 20 minutes, less the bursts themselves

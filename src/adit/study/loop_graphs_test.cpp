@@ -19,20 +19,20 @@ std::string triangle(double loop_information = 4.0) {
 
 const std::string kMinimal = "[[graph]]\nname = 'a'\npath = 'a.g2o'\n";
 
-Result<std::vector<ListedGraph>> list_of(const test::TemporaryFolder& folder, const std::string& toml,
-                                         const std::filesystem::path& data = {}) {
+Result<std::vector<ListedGraph>> graphs_of(const test::TemporaryFolder& folder, const std::string& toml,
+                                           const std::filesystem::path& data = {}) {
   put_file(folder / "list.toml", toml);
   return read_graph_list(folder / "list.toml", data);
 }
 
 TEST(GraphList, KeepsTheOrderOfTheFileAndFillsInDefaults) {
   const test::TemporaryFolder folder;
-  const auto graphs = list_of(folder,
-                              "[[graph]]\nname = 'z'\npath = 'z.g2o'\ninjection = 'clustered'\nseed = 7\n"
-                              "keep_every = 10\ninformation_scale = 0.5\nlarge = true\n" +
-                                  kMinimal +
-                                  "[[graph]]\nname = 'm'\npath = 'm'\ninjection = 'as found'\n"
-                                  "max_tilt_deg = 12.5\n");
+  const auto graphs = graphs_of(folder,
+                                "[[graph]]\nname = 'z'\npath = 'z.g2o'\ninjection = 'clustered'\nseed = 7\n"
+                                "keep_every = 10\ninformation_scale = 0.5\nlarge = true\n" +
+                                    kMinimal +
+                                    "[[graph]]\nname = 'm'\npath = 'm'\ninjection = 'as found'\n"
+                                    "max_tilt_deg = 12.5\n");
   ASSERT_TRUE(graphs) << graphs.error().message;
   ASSERT_EQ(graphs->size(), 3U);
   const ListedGraph& z = graphs->at(0);
@@ -55,30 +55,30 @@ TEST(GraphList, KeepsTheOrderOfTheFileAndFillsInDefaults) {
 TEST(GraphList, PathsStandBehindTheDataFolderOrTheListsOwn) {
   const test::TemporaryFolder folder;
   const std::string toml = "[[graph]]\nname = 'a'\npath = '../x/./a.g2o'\n";
-  EXPECT_EQ(list_of(folder, toml, "/data/g2o")->at(0).path, "/data/x/a.g2o");
-  EXPECT_EQ(list_of(folder, toml)->at(0).path, (folder.path().parent_path() / "x/a.g2o").string());
-  EXPECT_EQ(list_of(folder, "[[graph]]\nname = 'a'\npath = '/else/a.g2o'\n", "/data")->at(0).path,
+  EXPECT_EQ(graphs_of(folder, toml, "/data/g2o")->at(0).path, "/data/x/a.g2o");
+  EXPECT_EQ(graphs_of(folder, toml)->at(0).path, (folder.path().parent_path() / "x/a.g2o").string());
+  EXPECT_EQ(graphs_of(folder, "[[graph]]\nname = 'a'\npath = '/else/a.g2o'\n", "/data")->at(0).path,
             "/else/a.g2o");
 }
 
 TEST(GraphList, OneNameMayStandForSeveralInjectionsButNotTwiceForOne) {
   const test::TemporaryFolder folder;
-  const auto both = list_of(folder, kMinimal + kMinimal + "injection = 'clustered'\n");
+  const auto both = graphs_of(folder, kMinimal + kMinimal + "injection = 'clustered'\n");
   ASSERT_TRUE(both) << both.error().message;
   EXPECT_EQ(both->size(), 2U);
-  EXPECT_ERROR(list_of(folder, kMinimal + kMinimal),
+  EXPECT_ERROR(graphs_of(folder, kMinimal + kMinimal),
                "list.toml: two entries are called 'a' with injection 'random'; rename one");
 }
 
 TEST(GraphList, ErrorsNameTheFileAndTheRemedy) {
   const test::TemporaryFolder folder;
-  EXPECT_ERROR(list_of(folder, "[[graph]]\npath = 'a.g2o'\n"), "list.toml: an entry has no name; add name");
-  EXPECT_ERROR(list_of(folder, "[[graph]]\nname = 'a'\n"), "list.toml: a has no path; add path");
-  EXPECT_ERROR(list_of(folder, kMinimal + "injection = 'as found'\n"), "list.toml: a: max_tilt_deg");
-  EXPECT_ERROR(list_of(folder, kMinimal + "max_tilt_deg = 5.0\n"), "list.toml: a: max_tilt_deg");
-  EXPECT_ERROR(list_of(folder, kMinimal + "keep_every = 0\n"), "list.toml: line 4");
-  EXPECT_ERROR(list_of(folder, kMinimal + "injection = 'many'\n"), "random, clustered, as found");
-  EXPECT_ERROR(list_of(folder, "[graph]\nname = 'a'\n"), "list of [[graph]]");
+  EXPECT_ERROR(graphs_of(folder, "[[graph]]\npath = 'a.g2o'\n"), "list.toml: an entry has no name; add name");
+  EXPECT_ERROR(graphs_of(folder, "[[graph]]\nname = 'a'\n"), "list.toml: a has no path; add path");
+  EXPECT_ERROR(graphs_of(folder, kMinimal + "injection = 'as found'\n"), "list.toml: a: max_tilt_deg");
+  EXPECT_ERROR(graphs_of(folder, kMinimal + "max_tilt_deg = 5.0\n"), "list.toml: a: max_tilt_deg");
+  EXPECT_ERROR(graphs_of(folder, kMinimal + "keep_every = 0\n"), "list.toml: line 4");
+  EXPECT_ERROR(graphs_of(folder, kMinimal + "injection = 'many'\n"), "random, clustered, as found");
+  EXPECT_ERROR(graphs_of(folder, "[graph]\nname = 'a'\n"), "list of [[graph]]");
   EXPECT_ERROR(read_graph_list(folder / "away.toml", {}), "away.toml");
 }
 

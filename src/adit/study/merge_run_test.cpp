@@ -15,7 +15,7 @@ namespace {
 using test::get_file;
 using test::put_file;
 
-MergeRun run_of(const std::string& world, const std::string& keyframes, int registrations = 0) {
+MergeRun empty_run(const std::string& world, const std::string& keyframes, int registrations = 0) {
   MergeRun run;
   run.world = world;
   run.keyframes = keyframes;
@@ -25,7 +25,7 @@ MergeRun run_of(const std::string& world, const std::string& keyframes, int regi
 
 /// A run with every field filled.
 MergeRun made_up_run(const std::string& world, const std::string& keyframes) {
-  MergeRun run = run_of(world, keyframes, 99);
+  MergeRun run = empty_run(world, keyframes, 99);
   run.group = "check";
   for (const MergeOutcome outcome :
        {MergeOutcome::success, MergeOutcome::bent, MergeOutcome::refused, MergeOutcome::wrong})
@@ -136,10 +136,10 @@ TEST(PutRun, TakesThePlaceOfTheSameWorldAndPolicy) {
   std::vector<MergeRun> runs;
   for (const auto& [world, keyframes] :
        {std::pair("a", "all"), std::pair("a", "adaptive"), std::pair("b", "all")})
-    put_run(runs, run_of(world, keyframes));
+    put_run(runs, empty_run(world, keyframes));
   ASSERT_EQ(runs.size(), 3U);
-  put_run(runs, run_of("a", "adaptive", 5));
-  put_run(runs, run_of("a", "adaptive small", 6));
+  put_run(runs, empty_run("a", "adaptive", 5));
+  put_run(runs, empty_run("a", "adaptive small", 6));
   ASSERT_EQ(runs.size(), 4U);
   EXPECT_EQ(runs[0].registrations, 0);
   EXPECT_EQ(runs[1].registrations, 5);

@@ -17,17 +17,17 @@ using test::get_file;
 using test::put_file;
 using test::quick_config;
 
-Result<std::vector<ListedWorld>> list_of(const test::TemporaryFolder& folder, const std::string& toml) {
+Result<std::vector<ListedWorld>> worlds_of(const test::TemporaryFolder& folder, const std::string& toml) {
   put_file(folder / "list.toml", toml);
   return read_world_list(folder / "list.toml");
 }
 
 TEST(WorldList, KeepsTheOrderOfTheFileAndFillsInDefaults) {
   const test::TemporaryFolder folder;
-  const auto worlds = list_of(folder,
-                              "[[world]]\nname = 'z'\ngroup = 'limit'\nnoise_seed = 5\n"
-                              "world = {preset = 'mine', seed = 3, arrangement = 'twins'}\n"
-                              "[[world]]\nname = 'a'\n");
+  const auto worlds = worlds_of(folder,
+                                "[[world]]\nname = 'z'\ngroup = 'limit'\nnoise_seed = 5\n"
+                                "world = {preset = 'mine', seed = 3, arrangement = 'twins'}\n"
+                                "[[world]]\nname = 'a'\n");
   ASSERT_TRUE(worlds) << worlds.error().message;
   ASSERT_EQ(worlds->size(), 2U);
   const ListedWorld& z = worlds->at(0);
@@ -47,9 +47,9 @@ TEST(WorldList, KeepsTheOrderOfTheFileAndFillsInDefaults) {
 
 TEST(WorldList, RoutesLieBesideTheList) {
   const test::TemporaryFolder folder;
-  const auto worlds = list_of(folder,
-                              "[[world]]\nname = 'a'\nroutes_file = 'sub/../routes.yaml'\n"
-                              "[[world]]\nname = 'b'\nroutes_file = '/else/routes.yaml'\n");
+  const auto worlds = worlds_of(folder,
+                                "[[world]]\nname = 'a'\nroutes_file = 'sub/../routes.yaml'\n"
+                                "[[world]]\nname = 'b'\nroutes_file = '/else/routes.yaml'\n");
   ASSERT_TRUE(worlds) << worlds.error().message;
   EXPECT_EQ(worlds->at(0).routes_file, (folder / "routes.yaml").string());
   EXPECT_EQ(worlds->at(1).routes_file, "/else/routes.yaml");
@@ -57,12 +57,13 @@ TEST(WorldList, RoutesLieBesideTheList) {
 
 TEST(WorldList, ErrorsNameTheFileAndTheRemedy) {
   const test::TemporaryFolder folder;
-  EXPECT_ERROR(list_of(folder, "[[world]]\ngroup = 'check'\n"), "list.toml: an entry has no name; add name");
-  EXPECT_ERROR(list_of(folder, "[[world]]\nname = 'a'\n[[world]]\nname = 'a'\n"),
+  EXPECT_ERROR(worlds_of(folder, "[[world]]\ngroup = 'check'\n"),
+               "list.toml: an entry has no name; add name");
+  EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\n[[world]]\nname = 'a'\n"),
                "list.toml: two worlds are called 'a'; rename one");
-  EXPECT_ERROR(list_of(folder, "[[world]]\nname = 'a'\ngroup = 'most'\n"), "tuning, check, limit");
-  EXPECT_ERROR(list_of(folder, "[[world]]\nname = 'a'\nnoise_sed = 1\n"), "noise_seed");
-  EXPECT_ERROR(list_of(folder, "[[graph]]\nname = 'a'\n"), "list.toml: line 1");
+  EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\ngroup = 'most'\n"), "tuning, check, limit");
+  EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\nnoise_sed = 1\n"), "noise_seed");
+  EXPECT_ERROR(worlds_of(folder, "[[graph]]\nname = 'a'\n"), "list.toml: line 1");
   EXPECT_ERROR(read_world_list(folder / "away.toml"), "away.toml");
 }
 

@@ -17,7 +17,7 @@
 namespace adit {
 namespace {
 
-constexpr std::size_t kNodes = 200;
+constexpr std::size_t kNodesOfChain = 200;
 using Pair = std::pair<std::uint8_t, std::uint8_t>;
 
 /// Robots that wind through a plane, with odometry that drifts as its covariances say, or `drift` times that.
@@ -34,7 +34,7 @@ struct RandomFleet {
       std::vector<Pose> poses{
           Pose::planar(rng.uniform(-50.0, 50.0), rng.uniform(-50.0, 50.0), rng.uniform(-3.0, 3.0))};
       std::vector<Pose> odometry{Pose()};
-      for (std::size_t k = 1; k < kNodes; ++k) {
+      for (std::size_t k = 1; k < kNodesOfChain; ++k) {
         const Pose step = Pose::planar(1.0, 0.0, 0.05 * rng.normal());
         poses.push_back(poses.back() * step);
         Vector6 noise;
@@ -42,15 +42,16 @@ struct RandomFleet {
         odometry.push_back(odometry.back() * step * Pose::exp(noise));
       }
       truth.push_back(std::move(poses));
-      chains.emplace(RobotId{r}, OdometryChain(odometry, std::vector<Matrix6>(kNodes - 1, covariance)));
+      chains.emplace(RobotId{r},
+                     OdometryChain(odometry, std::vector<Matrix6>(kNodesOfChain - 1, covariance)));
     }
   }
 
   /// Loops along one stretch of 20 m; with `displaced` robot b is put elsewhere.
   void merge(Pair robots, double evidence, const Pose& displaced = {}) {
     Merge merge{{robots.first}, {robots.second}, evidence, {}};
-    const std::size_t from_a = rng.below(kNodes - 20);
-    const std::size_t from_b = rng.below(kNodes - 20);
+    const std::size_t from_a = rng.below(kNodesOfChain - 20);
+    const std::size_t from_b = rng.below(kNodesOfChain - 20);
     for (std::size_t k = 0; k < 20; k += 4) {
       const Pose T_a_b =
           truth[robots.first][from_a + k].inverse() * displaced * truth[robots.second][from_b + k];
@@ -214,13 +215,14 @@ TEST(MergeCycles, ASlipOfTenSigmasIsDrift) {
     RandomFleet fleet(seed, 3);
     const OdometryChain& chain = fleet.chains.at({1});
     std::vector<Pose> slipped;
-    for (std::size_t k = 0; k < kNodes; ++k)
-      slipped.push_back(k < kNodes / 2 ? chain.pose(k)
-                                       : chain.pose(kNodes / 2) * Pose::translation_of(1.5, 0.0, 0.0) *
-                                             chain.between(kNodes / 2, k));
+    for (std::size_t k = 0; k < kNodesOfChain; ++k)
+      slipped.push_back(k < kNodesOfChain / 2
+                            ? chain.pose(k)
+                            : chain.pose(kNodesOfChain / 2) * Pose::translation_of(1.5, 0.0, 0.0) *
+                                  chain.between(kNodesOfChain / 2, k));
     fleet.chains.erase({1});
-    fleet.chains.emplace(RobotId{1},
-                         OdometryChain(slipped, std::vector<Matrix6>(kNodes - 1, random_walk({}, 1.0))));
+    fleet.chains.emplace(
+        RobotId{1}, OdometryChain(slipped, std::vector<Matrix6>(kNodesOfChain - 1, random_walk({}, 1.0))));
     fleet.merge({0, 1}, 10.0);
     fleet.merge({1, 2}, 10.0);
     fleet.merge({0, 2}, 10.0);

@@ -13,7 +13,7 @@
 namespace adit {
 namespace {
 
-constexpr std::uint32_t kNum = 400;  // keyframes, half a metre apart
+constexpr std::uint32_t kKeyframes = 400;  // keyframes, half a metre apart
 
 OdometryChain chain_of(const std::vector<Pose>& poses) {
   return {poses, std::vector<Matrix6>(poses.size() - 1, Matrix6::Identity() * 1e-4)};
@@ -21,7 +21,7 @@ OdometryChain chain_of(const std::vector<Pose>& poses) {
 
 OdometryChain along_x() {
   std::vector<Pose> poses;
-  for (std::uint32_t k = 0; k < kNum; ++k) poses.push_back(Pose::translation_of(0.5 * k, 0, 0));
+  for (std::uint32_t k = 0; k < kKeyframes; ++k) poses.push_back(Pose::translation_of(0.5 * k, 0, 0));
   return chain_of(poses);
 }
 
@@ -33,8 +33,8 @@ LoopCandidate candidate(std::uint32_t query, std::uint32_t match, double yaw = 0
 std::vector<LoopCandidate> anywhere(std::uint64_t seed) {
   Rng rng(seed);
   std::vector<LoopCandidate> found;
-  for (std::uint32_t k = 0; k < kNum; ++k)
-    found.push_back(candidate(k, static_cast<std::uint32_t>(rng.uniform(0.0, kNum - 1.0)),
+  for (std::uint32_t k = 0; k < kKeyframes; ++k)
+    found.push_back(candidate(k, static_cast<std::uint32_t>(rng.uniform(0.0, kKeyframes - 1.0)),
                               rng.uniform() < 0.5 ? 0.0 : std::numbers::pi, 0.1));
   return found;
 }
@@ -89,7 +89,7 @@ TEST(AgreeingSegments, AShortStretchThatStandsOutGoesBeforeALongOneThatDoesNot) 
   for (std::uint32_t k = 240; k < 300; ++k) found.push_back(candidate(k, k - 200, 0.0, 0.2));
   EXPECT_LT(agreeing_segments(along_x(), along_x(), found, {1})[0].candidates[0].query.index, 200U);
   // The own map has places as similar beside the long one, and none beside the short one.
-  std::vector<double> self_distances(kNum, 0.2);
+  std::vector<double> self_distances(kKeyframes, 0.2);
   for (std::size_t k = 240; k < 300; ++k) self_distances[k] = 1.0;
   const std::vector<Segment> segments = agreeing_segments(along_x(), along_x(), found, {2, self_distances});
   ASSERT_EQ(segments.size(), 2U);
@@ -99,7 +99,8 @@ TEST(AgreeingSegments, AShortStretchThatStandsOutGoesBeforeALongOneThatDoesNot) 
 
 TEST(AgreeingSegments, EachCandidateBelongsToOneAndThreadsDoNotMatter) {
   std::vector<LoopCandidate> found = anywhere(2);
-  for (std::uint32_t k = 0; k < kNum; ++k) found.push_back(candidate(k, (k + 99) % kNum, 0.0, 0.2));
+  for (std::uint32_t k = 0; k < kKeyframes; ++k)
+    found.push_back(candidate(k, (k + 99) % kKeyframes, 0.0, 0.2));
   std::vector<std::vector<Segment>> answers;
   for (const int threads : {1, 3}) {
     set_num_threads(threads);

@@ -23,7 +23,7 @@ Clouds clouds_of(const std::vector<std::uint32_t>& keyframes) {
   return clouds;
 }
 
-LoopCandidate candidate(std::uint32_t own, std::uint32_t theirs) {
+LoopCandidate candidate_of_peer(std::uint32_t own, std::uint32_t theirs) {
   return {{{0}, own}, {kPeer, theirs}, 0.0, 0.1};
 }
 
@@ -44,7 +44,7 @@ TEST(PeerSession, GoesFromGreetingToDecided) {
   EXPECT_TRUE(session.lie_within(6));
   EXPECT_EQ(session.take_places().size(), 3U);
   EXPECT_EQ(session.state(), PeerState::decided) << "searched, and nothing was found";
-  session.await_clouds_of({candidate(7, 4), candidate(8, 4), candidate(9, 5)});
+  session.await_clouds_of({candidate_of_peer(7, 4), candidate_of_peer(8, 4), candidate_of_peer(9, 5)});
   EXPECT_EQ(session.state(), PeerState::awaiting_clouds);
   EXPECT_EQ(session.num_waiting(), 3U);
   EXPECT_EQ(session.request()->indices, (std::vector<std::uint32_t>{4, 5}));
@@ -86,7 +86,7 @@ TEST(PeerSession, WhatThePeerDoesNotHaveBlocksNothing) {
   EXPECT_TRUE(session.lie_within(10)) << "no graph will ever have the second one";
   EXPECT_EQ(session.take_places().size(), 1U);
 
-  session.await_clouds_of({candidate(1, 3), candidate(2, 11)});
+  session.await_clouds_of({candidate_of_peer(1, 3), candidate_of_peer(2, 11)});
   session.hear(hello_with(10), kPeer);
   EXPECT_EQ(session.request()->indices, std::vector<std::uint32_t>{3});
 }
@@ -94,7 +94,7 @@ TEST(PeerSession, WhatThePeerDoesNotHaveBlocksNothing) {
 TEST(PeerSession, AsksForABoundedNumberOfCloudsAtATime) {
   PeerSession session;
   std::vector<LoopCandidate> candidates;
-  for (std::uint32_t k = 0; k < 40; ++k) candidates.push_back(candidate(k, k));
+  for (std::uint32_t k = 0; k < 40; ++k) candidates.push_back(candidate_of_peer(k, k));
   session.await_clouds_of(candidates);
   EXPECT_EQ(session.request()->indices.size(), kCloudsPerMessage);
 }
