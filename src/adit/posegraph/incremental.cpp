@@ -34,7 +34,8 @@ struct IncrementalOptimizer<P>::Impl {
   std::vector<std::pair<std::size_t, P>> before;  // poses at the start of this update, of nodes moved
   std::vector<std::size_t> moved_in;              // update that moved each node last
   std::size_t num_updates = 0;
-  bool is_settled = false;  // the last update converged
+  bool is_settled = false;     // the last update converged
+  bool all_are_fresh = false;  // the last step climbed, so that all was linearized at the present poses
 
   // Whether the factor is as it should be, given the node that is free to move.
   [[nodiscard]] bool is_renewed(Update& u, std::optional<std::size_t> free) const {
@@ -65,17 +66,16 @@ struct IncrementalOptimizer<P>::Impl {
                     kGainNoise * static_cast<double>(model.graph().edges.size()));
   }
 
-  void minimize(Update& u) {
+  void minimize(Update& u, int max_iterations) {
     double last_gain = std::numeric_limits<double>::infinity();
-    bool all_are_fresh = false;
     u.status = SolveStatus::max_iterations;
-    u.reason = format("stopped after {} iterations", config.max_iterations);
-    while (u.iterations < config.max_iterations) {
-      const auto step = model.step();
-      if (!step.variables.empty()) ++u.iterations;
-      const double gain = model.gain(step);
-      if (gain <= negligible(u)) return converge(u, "the cost no longer falls");
-      if (const auto stale = model.stale_for(step, gain); !stale.empty()) {
+    u.reason = format("stopped after {} iterations", max_iterations);
+    while (u.iterations < max_iterations) {
+      const double least_gain = negligible(u);
+      const auto step = model.step(least_gain);
+      if (step.gain > 0.0) ++u.iterations;
+      if (step.gain <= least_gain) return converge(u, "the cost no longer falls");
+      if (const auto stale = model.stale_for(step); !stale.empty()) {
         if (!linearize_changed(u, stale, 0.0)) return;
         continue;
       }
@@ -91,11 +91,11 @@ struct IncrementalOptimizer<P>::Impl {
         model.put_back(replaced.poses);
         if (all_are_fresh) return solve_as_a_whole(u);
       }
-      if (!falls || gain > kSlowGain * last_gain) {
+      if (!falls || step.gain > kSlowGain * last_gain) {
         all_are_fresh = !falls;
         if (!linearize_changed(u, falls ? replaced.terms : model.all_terms(), kFreshChange)) return;
       }
-      last_gain = gain;
+      last_gain = step.gain;
     }
   }
 
@@ -192,6 +192,11 @@ double IncrementalOptimizer<P>::chi2(std::size_t edge) const {
 
 template <class P>
 typename IncrementalOptimizer<P>::Update IncrementalOptimizer<P>::update() {
+  return update(impl_->config.max_iterations);
+}
+
+template <class P>
+typename IncrementalOptimizer<P>::Update IncrementalOptimizer<P>::update(int max_iterations) {
   Update u;
   Impl& impl = *impl_;
   if (impl.model.poses().size() < 2) return u;
@@ -209,12 +214,12 @@ typename IncrementalOptimizer<P>::Update IncrementalOptimizer<P>::update() {
   if (was_settled && !impl.model.has_new_gradient())
     Impl::converge(u, "nothing pulls at the poses");
   else
-    impl.minimize(u);
+    impl.minimize(u, max_iterations);
   impl.is_settled = u.status == SolveStatus::converged;
   if (u.status != SolveStatus::converged && u.status != SolveStatus::max_iterations)
     impl.model.put_back(impl.before);
-  for (const auto& [node, pose] : impl.before) u.moved.push_back(node);
-  std::ranges::sort(u.moved);
+  for (std::size_t node = 0; node < impl.moved_in.size(); ++node)
+    if (impl.moved_in[node] == impl.num_updates) u.moved.push_back(node);
   return u;
 }
 

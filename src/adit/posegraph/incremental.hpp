@@ -69,6 +69,8 @@ class IncrementalOptimizer {
   /// Reports a node free to move or a cost that is not finite in `status`; the poses then stay as they were.
   /// An edge with indefinite information is reported likewise, and is out of use afterwards.
   Update update();
+  /// The same with at most so many linear systems. With none, the factor is renewed and the poses stay.
+  Update update(int max_iterations);
 
   /// What the edges in use predict of the residuals of other edges, to first order at the poses.
   struct Prediction {

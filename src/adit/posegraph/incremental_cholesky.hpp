@@ -54,10 +54,15 @@ class IncrementalCholesky {
     std::vector<std::size_t> variables;
     std::vector<double> rows;
   };
+  struct PartialSolution {
+    Sparse x;
+    double gain = 0.0;  ///< b^T x of the whole solution.
+  };
   /// Solution of A x = b as far as it matters, after `refresh`: the forward pass visits the paths from the
   /// variables of b to the root, the backward pass goes down from there as long as an element above exceeds
-  /// `threshold`. Source: iSAM2, algorithm 4 ("partial state update").
-  [[nodiscard]] Sparse solve(const Sparse& right_side, double threshold);
+  /// `threshold`. The gain is known after the forward pass: where it is at most `least_gain`, x is left
+  /// empty. Source: iSAM2, algorithm 4 ("partial state update").
+  [[nodiscard]] PartialSolution solve(const Sparse& right_side, double threshold, double least_gain = 0.0);
 
   /// R^T A^-1 R, after `refresh`, where column k of `columns` has the rows of R at `variables`. Only the
   /// paths from these variables to the root are visited.
@@ -101,6 +106,7 @@ class IncrementalCholesky {
   [[nodiscard]] std::vector<std::size_t> paths_to_root(const std::vector<std::size_t>& variables);
   void forward(const Clique& clique, double* work);
   void backward(const Clique& clique, double* work);
+  void backward_from(std::vector<std::size_t>& order, double threshold);
   [[nodiscard]] std::size_t new_block();
   [[nodiscard]] double* block(std::size_t i) { return blocks_.data() + i * d_ * d_; }
   [[nodiscard]] const double* block(std::size_t i) const { return blocks_.data() + i * d_ * d_; }

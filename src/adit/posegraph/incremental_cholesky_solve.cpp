@@ -75,13 +75,9 @@ void IncrementalCholesky::backward(const Clique& clique, double* work) {
   }
 }
 
-IncrementalCholesky::Sparse IncrementalCholesky::solve(const Sparse& right_side, double threshold) {
-  for (Index k = 0; k < right_side.variables.size(); ++k)
-    std::copy_n(right_side.rows.data() + k * d_, d_, work_.data() + right_side.variables[k] * d_);
-  std::vector<Index> order = paths_to_root(right_side.variables);
-  for (Index k = order.size(); k-- > 0;) forward(cliques_[order[k]], work_.data());
-
-  // All of the paths, since their right sides are not zero, and what hangs from them as far as it moves.
+// All cliques of the paths, since their right sides are not zero, and what hangs from them as far as it
+// moves, which is added to `order`.
+void IncrementalCholesky::backward_from(std::vector<Index>& order, double threshold) {
   for (const Index c : order) cliques_[c].is_marked = true;
   const auto moves = [&](const Clique& clique) {
     return std::ranges::any_of(clique.below, [&](Index v) {
@@ -97,25 +93,41 @@ IncrementalCholesky::Sparse IncrementalCholesky::solve(const Sparse& right_side,
     for (const Index child : cliques_[c].children)
       if (!cliques_[child].is_marked && moves(cliques_[child])) order.push_back(child);
   }
+  for (const Index c : order) cliques_[c].is_marked = false;
+}
 
-  Sparse x;
+IncrementalCholesky::PartialSolution IncrementalCholesky::solve(const Sparse& right_side, double threshold,
+                                                                double least_gain) {
+  for (Index k = 0; k < right_side.variables.size(); ++k)
+    std::copy_n(right_side.rows.data() + k * d_, d_, work_.data() + right_side.variables[k] * d_);
+  std::vector<Index> order = paths_to_root(right_side.variables);
+  PartialSolution out;
+  for (Index k = order.size(); k-- > 0;) {
+    forward(cliques_[order[k]], work_.data());
+    const Index columns = cliques_[order[k]].own.size() * d_;
+    out.gain += std::inner_product(front_.data(), front_.data() + columns, front_.data(), 0.0);
+  }
+  const bool is_worth_it = out.gain > least_gain;
+  if (is_worth_it) backward_from(order, threshold);
   for (const Index c : order) {
-    cliques_[c].is_marked = false;
     for (const Index v : cliques_[c].own) {
-      x.variables.push_back(v);
-      x.rows.insert(x.rows.end(), work_.data() + v * d_, work_.data() + (v + 1) * d_);
-      std::fill_n(work_.data() + v * d_, d_, 0.0);
+      double* const rows = work_.data() + v * d_;
+      if (is_worth_it) {
+        out.x.variables.push_back(v);
+        out.x.rows.insert(out.x.rows.end(), rows, rows + d_);
+      }
+      std::fill_n(rows, d_, 0.0);
     }
   }
-  return x;
+  return out;
 }
 
 Eigen::VectorXd IncrementalCholesky::solve(const Eigen::VectorXd& right_side) {
   ADIT_CHECK(right_side.size() == static_cast<Eigen::Index>(size() * d_), "one row for each scalar variable");
   Sparse all{std::vector<Index>(size()), {right_side.data(), right_side.data() + right_side.size()}};
   std::iota(all.variables.begin(), all.variables.end(), Index{0});
-  const Sparse solution = solve(all, 0.0);
-  Eigen::VectorXd x(right_side.size());
+  const Sparse solution = solve(all, 0.0).x;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(right_side.size());
   for (Index k = 0; k < solution.variables.size(); ++k)
     std::copy_n(solution.rows.data() + k * d_, d_, x.data() + solution.variables[k] * d_);
   return x;

@@ -225,8 +225,8 @@ std::vector<std::size_t> IncrementalModel<P>::all_terms() const {
 
 // Minus the gradient of the nodes where it matters; the others are active no longer.
 template <class P>
-typename IncrementalModel<P>::Step IncrementalModel<P>::right_side() {
-  Step b;
+IncrementalCholesky::Sparse IncrementalModel<P>::right_side() {
+  IncrementalCholesky::Sparse b;
   std::size_t num_active = 0;
   for (const std::size_t node : active_) {
     const Tangent& g = nodes_[node].gradient;
@@ -243,47 +243,62 @@ typename IncrementalModel<P>::Step IncrementalModel<P>::right_side() {
 }
 
 template <class P>
-typename IncrementalModel<P>::Step IncrementalModel<P>::step() {
-  const Step b = right_side();
-  return b.variables.empty() ? Step{} : cholesky_.solve(b, kSmallestStep);
+typename IncrementalModel<P>::Step IncrementalModel<P>::step(double least_gain) {
+  const IncrementalCholesky::Sparse b = right_side();
+  return b.variables.empty() ? Step{} : cholesky_.solve(b, kSmallestStep, least_gain);
 }
 
-// Minus gradient times step.
+// Terms in use of these nodes. Where most nodes are meant, in the order in which they lie in memory.
 template <class P>
-double IncrementalModel<P>::gain(const Step& step) const {
-  double gain = 0.0;
-  for (std::size_t k = 0; k < step.variables.size(); ++k)
-    gain -= nodes_[step.variables[k] + 1].gradient.dot(Eigen::Map<const Tangent>(step.rows.data() + k * D));
-  return gain;
+std::vector<std::size_t> IncrementalModel<P>::terms_around(const std::vector<std::size_t>& nodes) {
+  std::vector<std::size_t> terms;
+  if (2 * nodes.size() > nodes_.size()) {
+    for (std::size_t t = 0; t < terms_.size(); ++t)
+      if (terms_[t].is_used) terms.push_back(t);
+    return terms;
+  }
+  ++pass_;
+  for (const std::size_t node : nodes) {
+    for (const std::size_t t : nodes_[node].terms)
+      if (visit(terms_[t].visited_in)) terms.push_back(t);
+  }
+  return terms;
 }
 
 // Where both nodes of an edge move as one, its residual stays, but that of its linear model does not: it errs
 // by the edge's turn times the displacement, and by its shift times the nodes' turn. What of the step is a
 // common motion is not asked, so that this is a bound. Errors matter together, by their chi2.
 template <class P>
-std::vector<std::size_t> IncrementalModel<P>::stale_for(const Step& step, double gain) {
+std::vector<std::size_t> IncrementalModel<P>::stale_for(const Step& step) {
   constexpr int kTranslation = D == 6 ? 3 : 2;
-  ++pass_;
+  squares_.resize(nodes_.size(), {});
+  std::vector<std::size_t> moved;
+  for (std::size_t k = 0; k < step.x.variables.size(); ++k) {
+    const Eigen::Map<const Tangent> d(step.x.rows.data() + k * D);
+    const Squares squares{d.template head<kTranslation>().squaredNorm(),
+                          d.template tail<D - kTranslation>().squaredNorm()};
+    if (squares.moved + squares.turned < kSmallestStep * kSmallestStep) continue;
+    moved.push_back(step.x.variables[k] + 1);
+    squares_[moved.back()] = squares;
+  }
   std::vector<std::pair<std::size_t, double>> errors;
   double sum = 0.0;
-  for (std::size_t k = 0; k < step.variables.size(); ++k) {
-    const Eigen::Map<const Tangent> d(step.rows.data() + k * D);
-    const double moved2 = d.template head<kTranslation>().squaredNorm();
-    const double turned2 = d.template tail<D - kTranslation>().squaredNorm();
-    if (moved2 + turned2 < kSmallestStep * kSmallestStep) continue;
-    for (const std::size_t t : nodes_[step.variables[k] + 1].terms) {
-      Term& term = terms_[t];
-      if (!visit(term.visited_in)) continue;
-      const double turn2 = term.turned * term.turned;
-      const double error = term.weight_of_translation * (turn2 * moved2 + term.moved * term.moved * turned2) +
-                           term.weight_of_rotation * turn2 * turned2;
-      errors.emplace_back(t, error);
-      sum += error;
-    }
+  for (const std::size_t t : terms_around(moved)) {
+    const Term& term = terms_[t];
+    const Squares& a = squares_[term.edge.from];
+    const Squares& b = squares_[term.edge.to];
+    const double turn2 = term.turned * term.turned;
+    const double turned2 = std::max(a.turned, b.turned);
+    const double error = term.weight_of_translation *
+                             (turn2 * std::max(a.moved, b.moved) + term.moved * term.moved * turned2) +
+                         term.weight_of_rotation * turn2 * turned2;
+    errors.emplace_back(t, error);
+    sum += error;
   }
+  for (const std::size_t node : moved) squares_[node] = {};
   std::vector<std::size_t> stale;
-  if (sum <= kStaleShare * gain) return stale;
-  const double smallest = 0.1 * kStaleShare * gain / static_cast<double>(errors.size());
+  if (sum <= kStaleShare * step.gain) return stale;
+  const double smallest = 0.1 * kStaleShare * step.gain / static_cast<double>(errors.size());
   for (const auto& [t, error] : errors)
     if (error > smallest) stale.push_back(t);
   return stale;
@@ -292,10 +307,10 @@ std::vector<std::size_t> IncrementalModel<P>::stale_for(const Step& step, double
 template <class P>
 typename IncrementalModel<P>::Replaced IncrementalModel<P>::take(const Step& step) {
   Replaced out;
-  for (std::size_t k = 0; k < step.variables.size(); ++k) {
-    const Eigen::Map<const Tangent> d(step.rows.data() + k * D);
+  for (std::size_t k = 0; k < step.x.variables.size(); ++k) {
+    const Eigen::Map<const Tangent> d(step.x.rows.data() + k * D);
     if (!(d.cwiseAbs().maxCoeff() > kSmallestStep)) continue;
-    const std::size_t node = step.variables[k] + 1;
+    const std::size_t node = step.x.variables[k] + 1;
     out.poses.emplace_back(node, poses_[node]);
     poses_[node] = retract(poses_[node], d);
   }
@@ -306,20 +321,19 @@ typename IncrementalModel<P>::Replaced IncrementalModel<P>::take(const Step& ste
 // Edges of the nodes that have moved, and the gradients of these nodes and their neighbours.
 template <class P>
 void IncrementalModel<P>::evaluate_around(Replaced& replaced) {
+  std::vector<std::size_t> nodes;
+  for (const auto& [node, pose] : replaced.poses) nodes.push_back(node);
+  replaced.terms = terms_around(nodes);
   ++pass_;
-  std::vector<std::size_t> around;
-  for (const auto& [node, pose] : replaced.poses) {
-    for (const std::size_t t : nodes_[node].terms) {
-      if (!visit(terms_[t].visited_in)) continue;
-      replaced.terms.push_back(t);
-      replaced.cost -= costs_[t];
-      evaluate(t);
-      replaced.cost += costs_[t];
-      for (const std::size_t end : {terms_[t].edge.from, terms_[t].edge.to})
-        if (visit(nodes_[end].visited_in)) around.push_back(end);
-    }
+  nodes.clear();
+  for (const std::size_t t : replaced.terms) {
+    replaced.cost -= costs_[t];
+    evaluate(t);
+    replaced.cost += costs_[t];
+    for (const std::size_t end : {terms_[t].edge.from, terms_[t].edge.to})
+      if (visit(nodes_[end].visited_in)) nodes.push_back(end);
   }
-  for (const std::size_t node : around) sum_gradient(node);
+  for (const std::size_t node : nodes) sum_gradient(node);
 }
 
 template <class P>

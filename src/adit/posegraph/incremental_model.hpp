@@ -22,7 +22,7 @@ class IncrementalModel {
   static constexpr int D = P::kDof;
   using Edge = typename BasicPoseGraph<P>::Edge;
   using Tangent = typename P::Tangent;
-  using Step = IncrementalCholesky::Sparse;
+  using Step = IncrementalCholesky::PartialSolution;
   /// Of a node in the factor; the first has none.
   static std::size_t variable(std::size_t node) { return node - 1; }
 
@@ -61,13 +61,12 @@ class IncrementalModel {
                                                              double change, std::size_t& num_linearized);
   [[nodiscard]] std::vector<std::size_t> all_terms() const;
 
-  /// The step to the minimum of the model, as far as it matters; empty where no gradient matters.
-  [[nodiscard]] Step step();
-  /// By how much the model falls with it.
-  [[nodiscard]] double gain(const Step& step) const;
+  /// The step to the minimum of the model, as far as it matters, and by how much chi2 falls with it; empty
+  /// where that is at most `least_gain`.
+  [[nodiscard]] Step step(double least_gain);
   /// Terms that were linearized where this step makes the model err, if they err by more than a share of the
   /// gain.
-  [[nodiscard]] std::vector<std::size_t> stale_for(const Step& step, double gain);
+  [[nodiscard]] std::vector<std::size_t> stale_for(const Step& step);
 
   struct Replaced {
     std::vector<std::pair<std::size_t, P>> poses;  ///< As they were.
@@ -102,17 +101,22 @@ class IncrementalModel {
     bool is_active = false;
     std::size_t visited_in = 0;
   };
+  struct Squares {
+    double moved = 0.0;   // metres^2
+    double turned = 0.0;  // radians^2
+  };
   enum class Change { added, removed };
 
   void change_factor(Term& term, Change change);
   void linearize_anew(Term& term);
   void evaluate(std::size_t t);
+  [[nodiscard]] std::vector<std::size_t> terms_around(const std::vector<std::size_t>& nodes);
   void evaluate_around(Replaced& replaced);
   void sum_gradient(std::size_t node);
   void apply_changes();
   [[nodiscard]] static double change(const Term& term);
   [[nodiscard]] std::optional<std::size_t> refresh();
-  [[nodiscard]] Step right_side();
+  [[nodiscard]] IncrementalCholesky::Sparse right_side();
   // Whether this is the first time in the present pass.
   [[nodiscard]] bool visit(std::size_t& visited_in) const {
     return std::exchange(visited_in, pass_) != pass_;
@@ -126,6 +130,7 @@ class IncrementalModel {
   std::vector<double> costs_;         // of the terms in use; 0 of others
   std::vector<std::size_t> changed_;  // edges whose use changed
   std::vector<std::size_t> active_;   // nodes whose gradient may matter
+  std::vector<Squares> squares_;      // scratch, by node: of a step; zero between
   std::size_t pass_ = 0;              // over edges or nodes
   IncrementalCholesky cholesky_{D};
   bool has_new_gradient_ = false;

@@ -246,8 +246,13 @@ TEST(IncrementalCholesky, QuadraticFormsAndSparseSolutionsAreThoseOfTheDenseInve
   Eigen::VectorXd dense_b = Eigen::VectorXd::Zero(g.dense.rows());
   dense_b.segment(21, 3) << 1.0, -2.0, 0.5;
   const Eigen::VectorXd x = g.dense.llt().solve(dense_b);
+  const double gain = dense_b.dot(x);
+  const auto not_worth_it = g.cholesky.solve(b, 0.0, 1.01 * gain);
+  EXPECT_TRUE(not_worth_it.x.variables.empty());
+  EXPECT_NEAR(not_worth_it.gain, gain, 1e-9 * gain);
   for (const double threshold : {0.0, 1e-3}) {
-    const IncrementalCholesky::Sparse sparse = g.cholesky.solve(b, threshold);
+    const auto [sparse, found_gain] = g.cholesky.solve(b, threshold, 0.99 * gain);
+    EXPECT_NEAR(found_gain, gain, 1e-9 * gain);
     Eigen::VectorXd found = Eigen::VectorXd::Zero(x.size());
     for (std::size_t k = 0; k < sparse.variables.size(); ++k)
       for (std::size_t i = 0; i < 3; ++i)
@@ -272,6 +277,30 @@ TYPED_TEST(Incremental, EdgesTakenOutOfUseCountNoMore) {
   optimizer.set_use(e, EdgeUse::out_of_use);
   EXPECT_NEAR(optimizer.update().cost, cost, 1e-4 * cost);
   EXPECT_FALSE(optimizer.is_used(e));
+}
+
+TYPED_TEST(Incremental, AnUpdateThatMayNotSolveIsFinishedByLaterOnes) {
+  using P = TypeParam;
+  Rng rng(15);
+  const auto made = test::make_graph<P>(rng, 80, 12, 0.02);
+  IncrementalOptimizer<P> at_once;
+  IncrementalOptimizer<P> in_parts;
+  feed(made.graph, at_once, [](const auto&) {});
+  feed(made.graph, in_parts, [](const auto&) {});
+  auto pulls = made.graph.edges.front();
+  pulls.from = 5;
+  pulls.to = 60;
+  at_once.add_edge(pulls);
+  in_parts.add_edge(pulls);
+  const auto waits = in_parts.update(0);
+  EXPECT_EQ(waits.status, SolveStatus::max_iterations);
+  EXPECT_TRUE(waits.moved.empty());
+  const double cost = at_once.update().cost;
+  EXPECT_GT(waits.cost, 1.1 * cost);
+  auto part = in_parts.update(1);
+  for (int k = 0; k < 50 && part.status == SolveStatus::max_iterations; ++k) part = in_parts.update(1);
+  EXPECT_EQ(part.status, SolveStatus::converged);
+  EXPECT_NEAR(part.cost, cost, 1e-3 * cost);
 }
 
 TYPED_TEST(Incremental, SolvesNothingWhereNothingHasChanged) {

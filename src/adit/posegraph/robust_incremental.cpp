@@ -58,8 +58,9 @@ struct RobustIncremental<P>::Impl {
   [[nodiscard]] const Edge& edge(std::size_t e) const { return optimizer.graph().edges[e]; }
 
   bool solve(Step& step) {
-    const auto u = optimizer.update();
+    const auto u = optimizer.update(std::max(0, config.max_iterations - step.iterations));
     step.iterations += u.iterations;
+    is_solved = u.status == SolveStatus::converged;
     step.status = u.status;
     step.reason = u.reason;
     if (u.status != SolveStatus::converged && u.status != SolveStatus::max_iterations) return false;
@@ -72,7 +73,8 @@ struct RobustIncremental<P>::Impl {
     variance_limit = std::min(1.0, kVarianceHeadroom * variance);
     return true;
   }
-  std::vector<std::size_t> moved;  // nodes, in this step
+  std::vector<std::size_t> moved;  // nodes whose loops in use are to be looked at again
+  bool is_solved = true;           // the last solution converged
 
   // Variance of the map's positions, by the axis in which it is largest.
   [[nodiscard]] double spread() const {
@@ -245,12 +247,13 @@ struct RobustIncremental<P>::Impl {
     return true;
   }
 
-  // Loops in use that what came since contradicts.
+  // Loops in use that what came since contradicts. Where the poses are still on their way, that can wait.
   bool drop_contradicted(Step& step) {
+    if (!is_solved) return true;
     for (std::size_t round = 0; round < kDroppedPerStep; ++round) {
       std::size_t worst = 0;
       double largest = bounds[1] * variance_limit;
-      std::ranges::sort(moved);
+      if (!std::ranges::is_sorted(moved)) std::ranges::sort(moved);
       moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
       for (const std::size_t node : moved) {
         for (const std::size_t e : kept_at[node]) {
@@ -260,7 +263,10 @@ struct RobustIncremental<P>::Impl {
           worst = e;
         }
       }
-      if (worst == 0) return true;
+      if (worst == 0) {
+        moved.clear();
+        return true;
+      }
       drop(worst, step);
       if (!solve(step)) return false;
     }
@@ -286,7 +292,6 @@ struct RobustIncremental<P>::Impl {
   }
 
   bool run(Step& step) {
-    moved.clear();
     if (!solve(step)) return false;
     map_spread = std::max(spread(), kSmallestVariance);
     const std::vector<std::size_t> loops = std::exchange(new_loops, {});

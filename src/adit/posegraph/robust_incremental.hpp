@@ -14,7 +14,7 @@ namespace adit {
 struct RobustIncrementalConfig {
   double inlier_probability = 0.999;  ///< Share of true loops whose chi2 is within the bound.
   double true_share = 0.9995;         ///< Of loops with just enough evidence, so many are true.
-  int max_iterations = 3;             ///< Linear systems per solution; what remains is done in the next step.
+  int max_iterations = 2;             ///< Linear systems per step; what remains is done in the next one.
   double relative_tolerance = 1e-4;   ///< Of the cost: a solution that would fall by less is one.
 };
 inline Fields fields_of(RobustIncrementalConfig& c) {
@@ -22,7 +22,7 @@ inline Fields fields_of(RobustIncrementalConfig& c) {
            "share of true loops that the bound keeps"},
           {"true_share", &c.true_share, "", 0.5, 0.999999999,
            "share of true loops among those with just enough evidence"},
-          {"max_iterations", &c.max_iterations, "", 1, 1000, "linear systems per solution, at most"},
+          {"max_iterations", &c.max_iterations, "", 1, 1000, "linear systems per step, at most"},
           {"relative_tolerance", &c.relative_tolerance, "", 0.0, 1.0,
            "stop at this relative decrease of the cost"}};
 }

@@ -15,8 +15,8 @@
 namespace adit {
 namespace {
 
-/// Rounds in which a map that is begun anew judges its loops and settles.
-constexpr int kRoundsAtBegin = 20;
+/// Rounds in which loops that came at once are judged and the map settles.
+constexpr int kRounds = 20;
 /// All information is divided by this, which moves no pose: merges are decided, so that a loop is left out
 /// only where it errs by more than twice what is stated. Stated variances are right within a factor of two or
 /// so (decisions 0033 and 0034); the solver finds out where they are better.
@@ -135,7 +135,7 @@ FleetEstimate::Step FleetEstimate::update(const FleetGraph& known, const BackEnd
     }
     for (const LoopClosure* loop : loops)
       if (!map.loops.contains(ends_of(*loop))) add_loop(map, *loop, EdgeKind::loop);
-    for (int round = 0; round < (is_new ? kRoundsAtBegin : 1); ++round) {
+    for (int round = 0; round < kRounds; ++round) {
       const int before_round = step.iterations;
       solve(map, step);
       if (step.iterations == before_round) break;
