@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "adit/core/rng.hpp"
+#include "adit/odometry/path_uncertainty.hpp"
 #include "adit/transport/loopback_bus.hpp"
 #include "harness/bench_case.hpp"
 
@@ -148,8 +149,7 @@ RobotMap drive(const Mine& mine, RobotId id) {
     Matrix6 covariance = Matrix6::Zero();
     if (k > 0) {
       const Pose step = truth[k - 1].inverse() * truth[k];
-      const double metres = step.translation().norm();
-      covariance = odometry_covariance(OdometryNoise{}, metres);
+      covariance = random_walk(PathNoise{}, step.translation().norm());
       const Vector6 noise =
           covariance.diagonal().cwiseSqrt().cwiseProduct(Vector6::NullaryExpr([&] { return rng.normal(); }));
       T_odom_base = T_odom_base * step * Pose::exp(noise);
