@@ -98,22 +98,6 @@ Trajectory with_poses_at(const Trajectory& truth, const std::vector<Stamp>& stam
   return out;
 }
 
-// Robots have them in turn.
-Result<std::vector<LidarConfig>> lidars_of(const ScenarioConfig& config) {
-  std::vector<LidarConfig> lidars;
-  std::istringstream names(config.lidars);
-  for (std::string name; std::getline(names, name, ',');) {
-    std::erase(name, ' ');
-    Result<LidarConfig> lidar = lidar_preset(name);
-    if (!lidar) return lidar.map([](LidarConfig) { return std::vector<LidarConfig>(); });
-    lidar->mount_forward = config.lidar.mount_forward;
-    lidar->mount_height = config.lidar.mount_height;
-    lidars.push_back(*std::move(lidar));
-  }
-  if (lidars.empty()) lidars.push_back(config.lidar);
-  return lidars;
-}
-
 Result<> check(const World& world, ScenarioConfig config) {
   if (Result<> fields = check_fields(fields_of(config)); !fields) return fields;
   if (Result<> lidar = check_lidar(config.lidar); !lidar) return lidar;
@@ -224,6 +208,21 @@ Result<std::vector<Raycaster>> raycasters_of(const World& world, const Drives& d
 
 std::string_view to_string(Conditions conditions) {
   return conditions == Conditions::field ? "field" : "ideal";
+}
+
+Result<std::vector<LidarConfig>> lidars_of(const ScenarioConfig& config) {
+  std::vector<LidarConfig> lidars;
+  std::istringstream names(config.lidars);
+  for (std::string name; std::getline(names, name, ',');) {
+    std::erase(name, ' ');
+    Result<LidarConfig> lidar = lidar_preset(name);
+    if (!lidar) return lidar.map([](LidarConfig) { return std::vector<LidarConfig>(); });
+    lidar->mount_forward = config.lidar.mount_forward;
+    lidar->mount_height = config.lidar.mount_height;
+    lidars.push_back(*std::move(lidar));
+  }
+  if (lidars.empty()) lidars.push_back(config.lidar);
+  return lidars;
 }
 
 void set_conditions(Conditions conditions, ScenarioConfig& config) {

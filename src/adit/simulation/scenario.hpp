@@ -56,6 +56,9 @@ inline constexpr std::array kConditions{Conditions::ideal, Conditions::field};
 /// Puts the conditions into a configuration; sensors and seeds stay as they are.
 void set_conditions(Conditions conditions, ScenarioConfig& config);
 
+/// The LiDARs that robots have in turn: those that `lidars` names, or `lidar`. Fails on an unknown name.
+[[nodiscard]] Result<std::vector<LidarConfig>> lidars_of(const ScenarioConfig& config);
+
 /// Drives every route of the world at the same time, each robot on a clock that starts at 0. One recording
 /// per route, in their order. No scan is cast or stored now: `read_scan(i)` casts scan i on demand, always
 /// the same one, on any thread. Wheels and IMU cover every sweep from its start, their faults and errors of
