@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "adit/simulation/lidar_unit.hpp"
 
+#include <bit>
 #include <cmath>
 
 #include "adit/core/angles.hpp"
@@ -51,7 +52,7 @@ Fields fields_of(LidarErrorConfig& c) {
       {"false_returns", &c.false_returns, "", 0, 0.5,
        "share of rays that report a range between sensor and surface"},
       {"opposed", &c.opposed, "", 0, 0,
-       "bias, walk and drift are one sigma, up on one robot and down on the next, instead of drawn"}};
+       "bias, walk and drift are one sigma instead of drawn, up on robots 0, 3, ..., down on 1, 2, ..."}};
 }
 
 LidarErrorConfig field_lidar_errors() {
@@ -77,7 +78,8 @@ double LidarUnit::bias_at(Duration since_start) const {
 LidarUnit draw_lidar_unit(const LidarErrorConfig& c, std::size_t rings, std::size_t robot,
                           std::uint64_t seed) {
   Rng rng(seed);
-  const double side = robot % 2 == 0 ? 1.0 : -1.0;
+  // Up, down, down, up, ... (Thue and Morse): robots of equal parity differ too.
+  const double side = std::popcount(robot) % 2 == 0 ? 1.0 : -1.0;
   const auto one = [&](double sigma) {
     const double draw = within_limits(rng);
     return sigma * (c.opposed ? side : draw);

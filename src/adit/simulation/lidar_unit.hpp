@@ -35,8 +35,8 @@ struct LidarErrorConfig {
   double clock_s = 0.0;        ///< By which wheels and IMU are stamped late, each by its own.
   double jitter_s = 0.0;       ///< Of each scan's stamp.
   double false_returns = 0.0;  ///< Share of rays that report a range between the sensor and the surface.
-  /// Range bias, walk and drift are one standard deviation, up on one robot and down on the next, instead of
-  /// drawn: the worst pair of a fleet, for curves of the outcome over an amplitude.
+  /// Range bias, walk and drift are one standard deviation instead of drawn, up on robots 0 and 3, down on 1
+  /// and 2, and so on: the worst pairs of a fleet, for curves of the outcome over an amplitude.
   bool opposed = false;
 };
 [[nodiscard]] Fields fields_of(LidarErrorConfig& config);
