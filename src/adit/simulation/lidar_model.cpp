@@ -13,6 +13,7 @@
 #include "adit/core/parallel.hpp"
 #include "adit/core/rng.hpp"
 #include "adit/core/simd.hpp"
+#include "adit/simulation/beam.hpp"
 #include "adit/simulation/scan_pattern.hpp"
 
 namespace adit {
@@ -21,92 +22,6 @@ namespace {
 constexpr std::size_t kColumnsPerPart = 64;       ///< Of a parallel loop.
 constexpr float kDustReach = 5.0F;                ///< Metres: beyond, dust returns too little.
 constexpr double kWalkStatedAt = 80.0 * kDegree;  ///< Incidence, of LidarErrorConfig::incidence_walk.
-
-LidarConfig ouster(const std::string& name, int beams, double half_field_deg) {
-  LidarConfig c;
-  c.name = name;
-  c.beams = beams;
-  c.elevation_min_deg = -half_field_deg;
-  c.elevation_max_deg = half_field_deg;
-  return c;
-}
-
-LidarConfig with_columns(LidarConfig c, int columns) {
-  c.columns = columns;
-  return c;
-}
-
-LidarConfig with_range(LidarConfig c, double min, double max) {
-  c.range_min = min;
-  c.range_max = max;
-  return c;
-}
-
-LidarConfig with_noise(LidarConfig c, double near, double far) {
-  c.noise_near = near;
-  c.noise_far = far;
-  return c;
-}
-
-LidarConfig vlp16() {
-  LidarConfig c = ouster("vlp-16", 16, 15.0);
-  return with_noise(with_range(with_columns(c, 1800), 0.5, 100.0), 0.03, 0.03);
-}
-
-LidarConfig os1_64_front() {
-  LidarConfig c = with_noise(with_range(ouster("os1-64-front", 64, 22.5), 0.5, 120.0), 0.007, 0.05);
-  c.azimuth_min_deg = -45.0;
-  c.azimuth_max_deg = 45.0;
-  return c;
-}
-
-LidarConfig livox(const std::string& name, LidarPattern pattern, int shots_per_column) {
-  LidarConfig c;
-  c.name = name;
-  c.pattern = pattern;
-  c.columns = 400;  // 0.25 ms each
-  c.beams = shots_per_column;
-  return with_noise(c, 0.02, 0.02);
-}
-
-LidarConfig mid40() {
-  LidarConfig c = livox("livox-mid-40", LidarPattern::rosette, 25);
-  c.elevation_min_deg = -19.2;
-  c.elevation_max_deg = 19.2;
-  return with_range(c, 1.0, 260.0);
-}
-
-LidarConfig avia() {
-  LidarConfig c = livox("livox-avia", LidarPattern::rosette, 60);
-  c.elevation_min_deg = -36.0;
-  c.elevation_max_deg = 36.0;
-  return with_range(c, 1.0, 320.0);
-}
-
-LidarConfig mid360() {
-  LidarConfig c = livox("livox-mid-360", LidarPattern::wave, 50);
-  c.elevation_min_deg = -7.0;
-  c.elevation_max_deg = 52.0;
-  c.first_rpm = 1813.0;
-  c.second_rpm = 11057.0;
-  return with_range(c, 0.1, 70.0);
-}
-
-// Fields of view, ranges and range noise after the makers' data sheets.
-std::vector<LidarConfig> presets() {
-  return {ouster("os2-128", 128, 11.25),
-          with_columns(ouster("os2-128-512", 128, 11.25), 512),
-          with_columns(ouster("os2-128-2048", 128, 11.25), 2048),
-          with_columns(ouster("os2-32", 32, 11.25), 512),
-          with_noise(with_range(ouster("os1-64", 64, 22.5), 0.5, 120.0), 0.007, 0.05),
-          with_noise(with_range(ouster("os1-128", 128, 22.5), 0.5, 120.0), 0.007, 0.05),
-          with_noise(with_range(ouster("os0-128", 128, 45.0), 0.3, 50.0), 0.008, 0.04),
-          vlp16(),
-          os1_64_front(),
-          mid40(),
-          avia(),
-          mid360()};
-}
 
 // For 0 <= x <= 1, to 1e-6 (Abramowitz and Stegun, 4.4.46). The C library's is not vectorized.
 float arc_cosine(float x) {
@@ -228,6 +143,7 @@ class Sensor {
       : config_(c),
         looks_elsewhere_(!unit.ring_azimuth.empty() || !unit.ring_elevation.empty()),
         returns_(c, unit, sweep.dust) {
+    beam_.divergence = unit.divergence_factor * c.divergence_deg * kDegree;
     const auto of_ring = [](const std::vector<double>& errors, std::size_t ring) {
       return errors.empty() ? 0.0 : errors[ring];
     };
@@ -243,6 +159,7 @@ class Sensor {
 
   [[nodiscard]] std::size_t num_beams() const { return biases_.size(); }
   [[nodiscard]] const Returns& returns() const { return returns_; }
+  [[nodiscard]] const Beam& beam() const { return beam_; }
   /// Of ranges, in the order of the beams.
   void biases(std::size_t first_beam, std::size_t num, RayBlock::Numbers& out) const {
     std::copy_n(biases_.begin() + static_cast<std::ptrdiff_t>(first_beam), num, out.begin());
@@ -276,6 +193,7 @@ class Sensor {
   bool looks_elsewhere_;
   std::vector<float> biases_;
   Returns returns_;
+  Beam beam_;
 };
 
 // One turn: where the sensor is and looks at each column.
@@ -344,17 +262,6 @@ void append_returns(const RayBlock::Numbers& ranges, const RayBlock::Vectors& di
   cloud.time_offsets_ns.resize(size, offset_ns);
 }
 
-// What is nearer than the world so far.
-void cast_at_movers(const Raycaster& movers, float range_max, RayBlock& rays) {
-  RayBlock nearer = rays;
-  movers.cast(nearer, range_max);
-  for (std::size_t i = 0; i < rays.size; ++i) {
-    const bool hits = nearer.distances[i] < rays.distances[i];
-    rays.distances[i] = hits ? nearer.distances[i] : rays.distances[i];
-    rays.cosines[i] = hits ? nearer.cosines[i] : rays.cosines[i];
-  }
-}
-
 void cast_column(const Raycaster& raycaster, const Sensor& sensor, const Turn& turn, int column,
                  PointCloud& cloud) {
   if (turn.is_dark(column)) return;
@@ -375,8 +282,8 @@ void cast_column(const Raycaster& raycaster, const Sensor& sensor, const Turn& t
       reported = directions;
     }
     aim(T_world_lidar, directions, rays);
-    raycaster.cast(rays, sensor.returns().range_max);
-    if (turn.sweep.movers) cast_at_movers(*turn.sweep.movers, sensor.returns().range_max, rays);
+    cast_beams(raycaster, turn.sweep.movers, sensor.beam(), sensor.returns().range_max,
+               mix64(~column_seed, beam), rays);
     const Chance chance(column_seed, beam, rays.size);
     sensor.biases(beam, rays.size, biases);
     measure(sensor.returns(), chance, rays.distances, rays.cosines, biases, rays.size, ranges);
@@ -427,21 +334,6 @@ Result<> check_lidar(LidarConfig config) {
   if (!azimuth) return azimuth;
   if (Result<> range = check_ascending("range", config.range_min, config.range_max); !range) return range;
   return check_ascending("drop-out", config.dropout_start_deg, config.dropout_end_deg);
-}
-
-std::vector<std::string> lidar_presets() {
-  std::vector<std::string> names;
-  for (const LidarConfig& preset : presets()) names.push_back(preset.name);
-  return names;
-}
-
-Result<LidarConfig> lidar_preset(const std::string& name) {
-  for (LidarConfig& preset : presets()) {
-    if (preset.name == name) return preset;
-  }
-  std::string known;
-  for (const std::string& preset : lidar_presets()) known += (known.empty() ? "" : ", ") + preset;
-  return fail("unknown LiDAR '" + name + "'; known are " + known);
 }
 
 std::size_t num_rings(const LidarConfig& config) {

@@ -42,8 +42,10 @@ struct LidarConfig {
   double rate_hz = 10.0;
   double range_min = 0.5;
   double range_max = 200.0;
-  double noise_near = 0.025;        ///< Standard deviation of a range at range_min; linear in between.
-  double noise_far = 0.08;          ///< The same at range_max.
+  double noise_near = 0.025;  ///< Standard deviation of a range at range_min; linear in between.
+  double noise_far = 0.08;    ///< The same at range_max.
+  double divergence_deg =
+      0.09;  ///< Of the beam, full angle; felt as LidarErrorConfig::divergence_factor says.
   double dropout_start_deg = 75.0;  ///< Incidence angle (0: head-on) from which returns start to get lost ...
   double dropout_end_deg = 88.0;    ///< ... and from which none is left; linear in between.
   double mount_forward = 0.0;       ///< Position on the robot, in the base frame.
@@ -72,6 +74,8 @@ inline Fields fields_of(LidarConfig& c) {
       {"range_max", &c.range_max, "m", 0.1, 1000, "farther returns are dropped"},
       {"noise_near", &c.noise_near, "m", 0, 1, "standard deviation of a range at range_min"},
       {"noise_far", &c.noise_far, "m", 0, 1, "standard deviation of a range at range_max"},
+      {"divergence_deg", &c.divergence_deg, "deg", 0, 5,
+       "width of a beam, full angle; times lidar_errors.divergence_factor"},
       {"dropout_start_deg", &c.dropout_start_deg, "deg", 0, 90,
        "incidence angle where returns start to get lost"},
       {"dropout_end_deg", &c.dropout_end_deg, "deg", 0, 90, "incidence angle beyond which no return is left"},
