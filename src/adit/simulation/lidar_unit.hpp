@@ -23,12 +23,13 @@ namespace adit {
 /// calibration and analysis of the Velodyne HDL-64E S2", 2010). Mounts and clocks: what a careful workshop
 /// reaches without calibration.
 struct LidarErrorConfig {
-  double range_bias = 0.0;        ///< Added to every range.
-  double ring_bias = 0.0;         ///< Added to every range of one ring.
-  double incidence_walk = 0.0;    ///< Added where a surface is met at 80 degrees; less where more head-on.
-  double warm_up_drift = 0.0;     ///< Added once the sensor is warm.
-  double warm_up_s = 600.0;       ///< Time in which the drift has come to 63 %.
-  double ring_azimuth_deg = 0.0;  ///< A ring looks elsewhere than it reports.
+  double divergence_factor = 0.0;  ///< Width of the beams, of the stated one; no spread. 0: rays.
+  double range_bias = 0.0;         ///< Added to every range.
+  double ring_bias = 0.0;          ///< Added to every range of one ring.
+  double incidence_walk = 0.0;     ///< Added where a surface is met at 80 degrees; less where more head-on.
+  double warm_up_drift = 0.0;      ///< Added once the sensor is warm.
+  double warm_up_s = 600.0;        ///< Time in which the drift has come to 63 %.
+  double ring_azimuth_deg = 0.0;   ///< A ring looks elsewhere than it reports.
   double ring_elevation_deg = 0.0;
   double mount = 0.0;          ///< Per axis: the sensor sits elsewhere than the recording says,
   double mount_deg = 0.0;      ///< and is turned.
@@ -46,6 +47,7 @@ struct LidarErrorConfig {
 
 /// The errors of one unit. By default it has none.
 struct LidarUnit {
+  double divergence_factor = 0.0;
   double range_bias = 0.0;
   double incidence_walk = 0.0;
   double warm_up_drift = 0.0;
