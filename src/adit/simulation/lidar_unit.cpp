@@ -38,6 +38,8 @@ Vector3 by_axis(double sigma, Rng& rng) {
 
 Fields fields_of(LidarErrorConfig& c) {
   return {
+      {"divergence_factor", &c.divergence_factor, "", 0, 10,
+       "width of the beams, of the sensor's divergence; 0: rays, which hit no edge"},
       {"range_bias", &c.range_bias, "m", 0, 1, "added to every range, constant per robot (sigma, as below)"},
       {"ring_bias", &c.ring_bias, "m", 0, 1, "added to every range of one ring"},
       {"incidence_walk", &c.incidence_walk, "m", 0, 1, "added where a surface is met at 80 degrees"},
@@ -57,6 +59,7 @@ Fields fields_of(LidarErrorConfig& c) {
 
 LidarErrorConfig field_lidar_errors() {
   LidarErrorConfig c;
+  c.divergence_factor = 1.0;
   c.range_bias = 0.015;
   c.ring_bias = 0.008;
   c.incidence_walk = 0.015;
@@ -85,6 +88,7 @@ LidarUnit draw_lidar_unit(const LidarErrorConfig& c, std::size_t rings, std::siz
     return sigma * (c.opposed ? side : draw);
   };
   LidarUnit unit;
+  unit.divergence_factor = c.divergence_factor;
   unit.range_bias = one(c.range_bias);
   unit.incidence_walk = one(c.incidence_walk);
   unit.warm_up_drift = one(c.warm_up_drift);
