@@ -92,11 +92,19 @@ class Program {
 /// For wrong usage that shows only after parsing: ends the command with exit code 2.
 [[noreturn]] void usage_error(const std::string& message);
 
+/// Names of what is simulated; "": as it is configured.
+struct SimulationOptions {
+  std::string lidar = {};  ///< Or several, separated by commas, for the robots in turn.
+  std::string imu = {};
+  std::string conditions = {};
+};
+/// --lidar and --conditions.
+void add_simulation_options(const Command& command, SimulationOptions& options);
+
 /// The configuration of a command, the one tree of keys that `adit config` prints: the profile, then
-/// --config, then the simulated LiDAR and IMU of these names ("": as they are), then --set. A file with an
-/// unknown key or a bad value is an error; a wrong --set, profile, LiDAR or IMU is wrong usage.
-Result<RunConfig> configured(const Common& common, const std::string& lidar = "",
-                             const std::string& imu = "");
+/// --config, then what `simulation` names, then --set. A file with an unknown key or a bad value is an error;
+/// a wrong --set, profile, LiDAR, IMU or condition is wrong usage.
+Result<RunConfig> configured(const Common& common, const SimulationOptions& simulation = {});
 
 /// Prints the lines on stderr, where they do not mix with results.
 void print_notes(const std::string& command, const std::vector<std::string>& notes);

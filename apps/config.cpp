@@ -11,20 +11,20 @@ namespace adit::app {
 void add_config(Program& program) {
   struct ConfigOptions {
     bool markdown = false;
-    std::string lidar;
+    SimulationOptions simulation;
   };
   const auto options = std::make_shared<ConfigOptions>();
   const Command command = program.add_command(
       "config", "Print every configuration field as TOML; every command takes it with --config",
       [options](const Common& common) -> Result<> {
-        Result<RunConfig> config = configured(common, options->lidar);
+        Result<RunConfig> config = configured(common, options->simulation);
         if (!config) return tl::unexpected(config.error());
         const Fields fields = fields_of(*config);
         std::printf("%s", (options->markdown ? to_markdown(fields) : to_toml(fields)).c_str());
         return {};
       });
   command.add_flag("--markdown", options->markdown, "As the tables of docs/configuration.md");
-  command.add_option("--lidar", options->lidar, "With the fields of this simulated LiDAR (default: os2-128)");
+  add_simulation_options(command, options->simulation);
 }
 
 }  // namespace adit::app

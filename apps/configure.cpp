@@ -8,21 +8,35 @@
 
 namespace adit::app {
 
-Result<RunConfig> configured(const Common& common, const std::string& lidar, const std::string& imu) {
+void add_simulation_options(const Command& command, SimulationOptions& options) {
+  const Option lidar = command.add_option(
+      "--lidar", options.lidar,
+      "Simulated LiDAR, or several for the robots in turn, separated by commas (default: os2-128)");
+  if (!options.lidar.empty()) lidar.default_shown();
+  command
+      .add_option("--conditions", options.conditions,
+                  "Simulated conditions: ideal, where every unit of a sensor is the same and nothing "
+                  "changes, or field")
+      .one_of({"ideal", "field"});
+}
+
+Result<RunConfig> configured(const Common& common, const SimulationOptions& simulation) {
   RunConfig config = config_of(common.profile);
   const Fields fields = fields_of(config);
   if (!common.config_file.empty()) {
     if (const Result<> loaded = load_config(common.config_file, fields); !loaded)
       return tl::unexpected(loaded.error());
   }
-  if (!lidar.empty()) {
-    if (const Result<> chosen = choose_lidar(lidar, config.simulation); !chosen)
+  if (!simulation.lidar.empty()) {
+    if (const Result<> chosen = choose_lidars(simulation.lidar, config.simulation); !chosen)
       usage_error(chosen.error().message);
   }
-  if (!imu.empty()) {
-    if (const Result<> chosen = choose_imu(imu, config.simulation); !chosen)
+  if (!simulation.imu.empty()) {
+    if (const Result<> chosen = choose_imu(simulation.imu, config.simulation); !chosen)
       usage_error(chosen.error().message);
   }
+  for (const Conditions conditions : kConditions)
+    if (simulation.conditions == to_string(conditions)) set_conditions(conditions, config.simulation);
   for (const std::string& entry : common.sets) {
     const std::size_t equals = entry.find('=');
     if (equals == std::string::npos) usage_error("--set " + entry + ": key=value is needed");

@@ -92,11 +92,12 @@ std::pair<std::string, std::string> name_and_path(const std::string& input) {
   return {input.substr(0, equals), input.substr(equals + 1)};
 }
 
-Result<> choose_lidar(const std::string& name, ScenarioConfig& config) {
-  return lidar_preset(name).map([&](LidarConfig lidar) {
-    lidar.mount_forward = config.lidar.mount_forward;
-    lidar.mount_height = config.lidar.mount_height;
-    config.lidar = lidar;
+Result<> choose_lidars(const std::string& names, ScenarioConfig& config) {
+  ScenarioConfig chosen = config;
+  chosen.lidars = names;
+  return lidars_of(chosen).map([&](const std::vector<LidarConfig>& lidars) {
+    config.lidar = lidars.front();
+    config.lidars = lidars.size() == 1 ? "" : names;
   });
 }
 

@@ -39,8 +39,8 @@ Result<Inputs> open_inputs(const std::vector<std::string>& inputs, const RunConf
 /// NAME and PATH of NAME=PATH; without a name, or where a file of that very name exists, "" and the whole.
 std::pair<std::string, std::string> name_and_path(const std::string& input);
 
-/// The simulated LiDAR of that name (`--lidar`) put into `config`; its mount stays as it was.
-Result<> choose_lidar(const std::string& name, ScenarioConfig& config);
+/// The simulated LiDARs of these names (`--lidar`) put into `config`; their mount stays as it was.
+Result<> choose_lidars(const std::string& names, ScenarioConfig& config);
 
 /// The simulated IMU of that name put into `config`; "none": no IMU.
 Result<> choose_imu(const std::string& name, ScenarioConfig& config);

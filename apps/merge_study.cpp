@@ -21,7 +21,7 @@ struct MergeStudyOptions {
   std::string worlds;
   std::string out;
   std::string page;
-  std::string lidar = "os2-32";
+  SimulationOptions simulation{.lidar = "os2-32"};
   std::vector<std::string> keyframes = {"all", "tunnel_filter", "adaptive"};
   WorldChoice choice{{"tuning", "check"}, {}};
   std::string variant;
@@ -38,7 +38,7 @@ Result<> print(const std::filesystem::path& results, const std::vector<Table>& t
 
 /// The study under the options. It prints one line of text per run, to stderr if JSON goes to stdout.
 Result<MergeStudy> study_of(const MergeStudyOptions& options, const Common& common) {
-  const Result<RunConfig> config = configured(common, options.lidar);
+  const Result<RunConfig> config = configured(common, options.simulation);
   if (!config) return tl::unexpected(config.error());
   std::FILE* lines = common.json ? stderr : stdout;
   const auto print_line = [lines](const MergeRun& run) {
@@ -96,7 +96,7 @@ void add_merge_study(Program& program) {
   command.add_option("--variant", options->variant,
                      "Added to the policies' names, so that a run with other settings (--set) stands beside "
                      "the usual one instead of replacing it");
-  command.add_option("--lidar", options->lidar, "Simulated LiDAR").default_shown();
+  add_simulation_options(command, options->simulation);
   command.add_option("--page", options->page,
                      "Markdown file whose section between 'merging' marks takes the tables of all runs");
 }

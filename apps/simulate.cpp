@@ -25,8 +25,7 @@ struct SimulateOptions {
   std::string world;
   std::string routes;
   std::string out;
-  std::string lidar;
-  std::string imu;
+  SimulationOptions simulation;
   std::string robot;
   std::optional<std::uint64_t> seed;
 };
@@ -125,7 +124,7 @@ void print(const SimulateOptions& options, const std::vector<Recording>& recordi
 }
 
 Result<> simulate_command(const SimulateOptions& options, const Common& common) {
-  Result<RunConfig> config = configured(common, options.lidar, options.imu);
+  Result<RunConfig> config = configured(common, options.simulation);
   if (!config) return tl::unexpected(config.error());
   if (options.seed) config->simulation.seed = *options.seed;
   auto recordings =
@@ -153,9 +152,9 @@ void add_simulate(Program& program) {
       .add_option("--out", options->out,
                   "Folder for ROBOT.mcap, ROBOT_truth.tum and, where sensors fail, ROBOT_faults.csv")
       .required();
-  command.add_option("--lidar", options->lidar, "Simulated LiDAR (default: os2-128)");
+  add_simulation_options(command, options->simulation);
   command.add_option(
-      "--imu", options->imu,
+      "--imu", options->simulation.imu,
       format("Simulated IMU: {}, or none (default: icm-20948)", fmt::join(imu_presets(), ", ")));
   command.add_option("--robot", options->robot, "Only the robot of this name");
   command.add_option("--seed", options->seed, "Noise seed; overrides --set and --config");

@@ -24,7 +24,7 @@ struct SlamOptions {
   RecordingConfig recording;
   std::vector<std::string> inputs;
   std::string out;
-  std::string lidar;
+  SimulationOptions simulation;
   std::string keyframes;
   std::string rerun;
 };
@@ -37,7 +37,7 @@ struct Job {
 
 Result<Job> job_of(const SlamOptions& options, const Common& common) {
   if (options.inputs.empty()) usage_error("give recordings, folders of scans, one routes.yaml, or --rerun");
-  Result<RunConfig> config = configured(common, options.lidar);
+  Result<RunConfig> config = configured(common, options.simulation);
   if (!config) return tl::unexpected(config.error());
   if (!options.keyframes.empty()) {
     const Result<KeyframeSelection> keyframes = keyframe_selection(options.keyframes);
@@ -55,7 +55,8 @@ Result<Job> job_of(const SlamOptions& options, const Common& common) {
 
 /// The job of an earlier session, from the provenance in its session.toml.
 Result<Job> job_again(const SlamOptions& options, const Common& common) {
-  if (!options.inputs.empty() || !options.lidar.empty() || !options.keyframes.empty() ||
+  if (!options.inputs.empty() || !options.simulation.lidar.empty() ||
+      !options.simulation.conditions.empty() || !options.keyframes.empty() ||
       !options.recording.mount.empty() || !options.recording.points.empty() || !common.sets.empty() ||
       !common.config_file.empty() || common.profile != Profile::standard)
     usage_error("--rerun repeats a session as it was; give no inputs and no configuration with it");
@@ -155,7 +156,7 @@ void add_slam(Program& program) {
                      "Recordings or folders of scans, NAME=FILE to name the robot; or one routes.yaml, "
                      "simulated on the fly");
   command.add_option("--out", options->out, "Session directory to write").required();
-  command.add_option("--lidar", options->lidar, "Simulated LiDAR, for routes.yaml (default: os2-128)");
+  add_simulation_options(command, options->simulation);
   command.add_option("--keyframes", options->keyframes,
                      "Keyframe policy: adaptive (default), all, tunnel_filter or tunnel_filter_keep");
   command.add_option("--rerun", options->rerun,

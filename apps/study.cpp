@@ -22,7 +22,7 @@ struct StudyOptions {
   std::string world;
   std::string routes;
   std::string out;
-  std::string lidar;
+  SimulationOptions simulation;
   std::vector<std::string> keyframes = {"all", "tunnel_filter", "tunnel_filter_keep", "adaptive"};
 };
 
@@ -59,7 +59,7 @@ void print(const StudyResult& result, const std::vector<Table>& tables, const St
 
 Result<> study(const StudyOptions& options, const Common& common) {
   const auto start = std::chrono::steady_clock::now();
-  const Result<RunConfig> config = configured(common, options.lidar);
+  const Result<RunConfig> config = configured(common, options.simulation);
   if (!config) return tl::unexpected(config.error());
   const std::vector<KeyframeSelection> policies = policies_of(options.keyframes);
   const Result<World> world = world_of(options, config->world);
@@ -94,7 +94,7 @@ void add_study(Program& program) {
       "Mesh (PLY, OBJ, STL, DAE, GLB); default: the generated world of the configuration, zab");
   command.add_option("--routes", options->routes, "routes.yaml of that world");
   command.add_option("--out", options->out, "Directory to write").required();
-  command.add_option("--lidar", options->lidar, "Simulated LiDAR (default: os2-128)");
+  add_simulation_options(command, options->simulation);
   command
       .add_option("--keyframes", options->keyframes,
                   "Keyframe policies, separated by commas; all but adaptive run on `paper_odometry`")

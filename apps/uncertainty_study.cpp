@@ -23,6 +23,7 @@ struct UncertaintyOptions {
   std::string out;
   std::vector<std::string> lidars = {"os2-32"};
   std::vector<std::string> imus = {"icm-20948"};
+  std::string conditions;
   std::string page;
   WorldChoice choice{{"tuning", "check"}, {}};
 };
@@ -47,7 +48,7 @@ Result<std::vector<MeasuredUncertainty>> measure_all(const UncertaintyOptions& o
       const std::string sensors =
           imu == "none" ? format("{}, no IMU", lidar) : format("{}, IMU {}", lidar, imu);
       const Result<MeasuredUncertainty> measured =
-          measure(options.out, configured(common, lidar, imu), sensors, worlds);
+          measure(options.out, configured(common, {lidar, imu, options.conditions}), sensors, worlds);
       if (!measured) return tl::unexpected(measured.error());
       all.push_back(*measured);
     }
@@ -112,6 +113,7 @@ void add_uncertainty_study(Program& program) {
   command.add_option("--imu", options->imus, "Simulated IMUs; none: without")
       .separated_by_commas()
       .default_shown();
+  command.add_option("--conditions", options->conditions, "Simulated conditions").one_of({"ideal", "field"});
   command.add_option("--page", options->page,
                      "Markdown file whose section between 'uncertainty' marks takes the table");
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace adit {
@@ -38,6 +39,14 @@ double density(const EqualSignShare& found, const OtherWalls& walls) {
   return sum;
 }
 
+/// `towards`: from the patch to the sensor, whose robot has that upward axis.
+void add(PatchView& sum, const Eigen::Vector3f& normal, const Eigen::Vector3f& towards,
+         const Eigen::Vector3f& up) {
+  const Eigen::Vector3f direction = towards.normalized();
+  sum.cosine += std::abs(normal.dot(direction));
+  sum.elevation += std::asin(std::clamp(-direction.dot(up), -1.0F, 1.0F));
+}
+
 std::int32_t side_of(const Eigen::Vector3f& normal) {
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
@@ -49,11 +58,12 @@ std::int32_t side_of(const Eigen::Vector3f& normal) {
 std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
                                        const Pose& T_map_a, const ReliefConfig& config) {
   struct Sum {
-    double metres = 0.0;
+    SeenOffset seen{0.0, {0.0F, 0.0F}, {0.0F, 0.0F}};
     std::size_t num_points = 0;
   };
   const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
   const Eigen::Vector3f t = T_a_b.translation().cast<float>();
+  const Eigen::Vector3f b_viewpoint = R * b.viewpoint() + t;
   const Eigen::Matrix3f R_map = T_map_a.rotation_matrix().cast<float>();
   const Eigen::Vector3f t_map = T_map_a.translation().cast<float>();
   const auto patch = static_cast<float>(config.patch_m);
@@ -73,26 +83,50 @@ std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& 
     const Eigen::Array3f cell = ((R_map * p + t_map) / patch).array().floor();
     Sum& sum = sums[{static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()),
                      static_cast<std::int32_t>(cell.z()), side_of(R_map * normal)}];
-    sum.metres += static_cast<double>(off);
+    sum.seen.metres += static_cast<double>(off);
+    add(sum.seen.by_a, normal, a.viewpoint() - a.points().points[near->index], Eigen::Vector3f::UnitZ());
+    add(sum.seen.by_b, normal, b_viewpoint - p, R.col(2));
     ++sum.num_points;
   }
   std::vector<PatchOffset> out;
   for (const auto& [where, sum] : sums) {
     if (sum.num_points < static_cast<std::size_t>(config.min_points)) continue;
-    const double mean = sum.metres / static_cast<double>(sum.num_points);
-    if (std::abs(mean) > config.min_offset_m) out.push_back({where, mean});
+    const auto num = static_cast<float>(sum.num_points);
+    const auto mean_of = [&](const PatchView& view) {
+      return PatchView{view.cosine / num, view.elevation / num};
+    };
+    const auto& [metres, by_a, by_b] = sum.seen;
+    out.push_back({where, {metres / static_cast<double>(num), mean_of(by_a), mean_of(by_b)}});
   }
   return out;
 }
 
 void WallOffsets::add(const std::vector<PatchOffset>& of_a_pair) {
   for (const PatchOffset& offset : of_a_pair) {
-    Sides& sides = patches_[offset.patch];
-    ++(offset.metres > 0.0 ? sides.num_in_front : sides.num_behind);
+    patches_.push_back(offset.patch);
+    offsets_.push_back(offset.seen);
   }
+  counted_.reset();
 }
 
 EqualSignShare WallOffsets::counted() const {
+  if (!counted_) counted_ = count();
+  return *counted_;
+}
+
+EqualSignShare WallOffsets::count() const {
+  struct Sides {
+    std::size_t num_in_front = 0;
+    std::size_t num_behind = 0;
+  };
+  const SensorDifference sensors(offsets_, {});
+  std::map<WallPatch, Sides> patches;
+  for (std::size_t i = 0; i < offsets_.size(); ++i) {
+    const double metres = offsets_[i].metres - sensors.explains(offsets_[i]);
+    if (std::abs(metres) <= config_.min_offset_m) continue;
+    Sides& sides = patches[patches_[i]];
+    ++(metres > 0.0 ? sides.num_in_front : sides.num_behind);
+  }
   // A patch weighs as much as the pairs beyond the first that saw it.
   struct OfPatch {
     double weight;
@@ -101,7 +135,7 @@ EqualSignShare WallOffsets::counted() const {
   std::vector<OfPatch> all;
   double weight = 0.0;
   double agreeing = 0.0;
-  for (const auto& [patch, sides] : patches_) {
+  for (const auto& [patch, sides] : patches) {
     const auto front = static_cast<double>(sides.num_in_front);
     const auto behind = static_cast<double>(sides.num_behind);
     const double num = front + behind;

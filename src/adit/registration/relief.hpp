@@ -9,13 +9,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <vector>
 
 #include "adit/core/pose.hpp"
 #include "adit/registration/agreement.hpp"
 #include "adit/registration/registration_config.hpp"
+#include "adit/registration/sensor_difference.hpp"
 
 namespace adit {
 
@@ -24,11 +24,10 @@ using WallPatch = std::array<std::int32_t, 4>;
 
 struct PatchOffset {
   WallPatch patch;
-  double metres =
-      0.0;  ///< How far b's wall is in front of a's, towards free space; mean over the points of b.
+  SeenOffset seen;  ///< Means over the points of b; in front is towards free space.
 };
 
-/// One offset per patch near a that both scans saw well, if it is larger than `min_offset_m`. `T_a_b` brings
+/// One offset per patch near a that both scans saw well. `T_a_b` brings
 /// the points of b into the frame of a, as well as the surfaces allow; `T_map_a` those of a into the frame of
 /// the map whose patches are meant.
 [[nodiscard]] std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& b,
@@ -83,9 +82,11 @@ class EqualSignShares {
 
 /// Offsets from several pairs of scans, no scan in two pairs. For each patch seen by two or more pairs it
 /// counts the pairs whose offsets have equal sign. Noise gives equal signs as often as not, whatever the
-/// number of pairs.
+/// number of pairs. What the sensors explain is taken off before, and offsets of less than `min_offset_m`
+/// have no sign.
 class WallOffsets {
  public:
+  explicit WallOffsets(const ReliefConfig& config = {}) : config_(config) {}
   void add(const std::vector<PatchOffset>& of_a_pair);
   /// Over the patches that two pairs or more saw.
   [[nodiscard]] EqualSignShare counted() const;
@@ -96,11 +97,12 @@ class WallOffsets {
   [[nodiscard]] double evidence(const EqualSignShares& shares) const;
 
  private:
-  struct Sides {
-    std::size_t num_in_front = 0;
-    std::size_t num_behind = 0;
-  };
-  std::map<WallPatch, Sides> patches_;
+  [[nodiscard]] EqualSignShare count() const;
+
+  ReliefConfig config_;
+  std::vector<WallPatch> patches_;  ///< Of each offset.
+  std::vector<SeenOffset> offsets_;
+  mutable std::optional<EqualSignShare> counted_;
 };
 
 }  // namespace adit

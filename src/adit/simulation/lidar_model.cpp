@@ -13,98 +13,15 @@
 #include "adit/core/parallel.hpp"
 #include "adit/core/rng.hpp"
 #include "adit/core/simd.hpp"
+#include "adit/simulation/beam.hpp"
 #include "adit/simulation/scan_pattern.hpp"
 
 namespace adit {
 namespace {
 
-constexpr std::size_t kColumnsPerPart = 64;  ///< Of a parallel loop.
-
-LidarConfig ouster(const std::string& name, int beams, double half_field_deg) {
-  LidarConfig c;
-  c.name = name;
-  c.beams = beams;
-  c.elevation_min_deg = -half_field_deg;
-  c.elevation_max_deg = half_field_deg;
-  return c;
-}
-
-LidarConfig with_columns(LidarConfig c, int columns) {
-  c.columns = columns;
-  return c;
-}
-
-LidarConfig with_range(LidarConfig c, double min, double max) {
-  c.range_min = min;
-  c.range_max = max;
-  return c;
-}
-
-LidarConfig with_noise(LidarConfig c, double near, double far) {
-  c.noise_near = near;
-  c.noise_far = far;
-  return c;
-}
-
-LidarConfig vlp16() {
-  LidarConfig c = ouster("vlp-16", 16, 15.0);
-  return with_noise(with_range(with_columns(c, 1800), 0.5, 100.0), 0.03, 0.03);
-}
-
-LidarConfig os1_64_front() {
-  LidarConfig c = with_noise(with_range(ouster("os1-64-front", 64, 22.5), 0.5, 120.0), 0.007, 0.05);
-  c.azimuth_min_deg = -45.0;
-  c.azimuth_max_deg = 45.0;
-  return c;
-}
-
-LidarConfig livox(const std::string& name, LidarPattern pattern, int shots_per_column) {
-  LidarConfig c;
-  c.name = name;
-  c.pattern = pattern;
-  c.columns = 400;  // 0.25 ms each
-  c.beams = shots_per_column;
-  return with_noise(c, 0.02, 0.02);
-}
-
-LidarConfig mid40() {
-  LidarConfig c = livox("livox-mid-40", LidarPattern::rosette, 25);
-  c.elevation_min_deg = -19.2;
-  c.elevation_max_deg = 19.2;
-  return with_range(c, 1.0, 260.0);
-}
-
-LidarConfig avia() {
-  LidarConfig c = livox("livox-avia", LidarPattern::rosette, 60);
-  c.elevation_min_deg = -36.0;
-  c.elevation_max_deg = 36.0;
-  return with_range(c, 1.0, 320.0);
-}
-
-LidarConfig mid360() {
-  LidarConfig c = livox("livox-mid-360", LidarPattern::wave, 50);
-  c.elevation_min_deg = -7.0;
-  c.elevation_max_deg = 52.0;
-  c.first_rpm = 1813.0;
-  c.second_rpm = 11057.0;
-  return with_range(c, 0.1, 70.0);
-}
-
-// Fields of view, ranges and range noise after the makers' data sheets.
-std::vector<LidarConfig> presets() {
-  return {ouster("os2-128", 128, 11.25),
-          with_columns(ouster("os2-128-512", 128, 11.25), 512),
-          with_columns(ouster("os2-128-2048", 128, 11.25), 2048),
-          with_columns(ouster("os2-32", 32, 11.25), 512),
-          with_noise(with_range(ouster("os1-64", 64, 22.5), 0.5, 120.0), 0.007, 0.05),
-          with_noise(with_range(ouster("os1-128", 128, 22.5), 0.5, 120.0), 0.007, 0.05),
-          with_noise(with_range(ouster("os0-128", 128, 45.0), 0.3, 50.0), 0.008, 0.04),
-          vlp16(),
-          os1_64_front(),
-          mid40(),
-          avia(),
-          mid360()};
-}
+constexpr std::size_t kColumnsPerPart = 64;       ///< Of a parallel loop.
+constexpr float kDustReach = 5.0F;                ///< Metres: beyond, dust returns too little.
+constexpr double kWalkStatedAt = 80.0 * kDegree;  ///< Incidence, of LidarErrorConfig::incidence_walk.
 
 // For 0 <= x <= 1, to 1e-6 (Abramowitz and Stegun, 4.4.46). The C library's is not vectorized.
 float arc_cosine(float x) {
@@ -122,22 +39,29 @@ struct Chance {
   // Near normal with mean 0 and standard deviation 1: the sum of four 16-bit uniform numbers (Irwin and
   // Hall). No logarithm, so every machine draws the same; and bounded by 3.5, as no sensor errs by metres.
   RayBlock::Numbers noise;
-  RayBlock::Numbers dropout;  // uniform in [0, 1)
+  RayBlock::Numbers dropout;  // uniform in [0, 1), as the others below
+  RayBlock::Numbers falseness;
+  RayBlock::Numbers share;  // of the range, where it is false
 
   Chance(std::uint64_t column_seed, std::size_t first_beam, std::size_t num) {
     std::array<std::int32_t, RayBlock::kCapacity> sums;
     std::array<std::int32_t, RayBlock::kCapacity> draws;
+    std::array<std::int32_t, RayBlock::kCapacity> more_draws;
     for (std::size_t i = 0; i < num; ++i) {
       const std::uint64_t ray_seed = mix64(column_seed ^ (first_beam + i));
       const std::uint64_t bits = mix64(ray_seed);
       const std::uint64_t pairs = (bits & 0xffff0000ffffU) + ((bits >> 16U) & 0xffff0000ffffU);
       sums[i] = static_cast<std::int32_t>((pairs >> 32U) + (pairs & 0xffffffffU));
-      draws[i] = static_cast<std::int32_t>(mix64(~ray_seed) >> 40U);
+      const std::uint64_t others = mix64(~ray_seed);
+      draws[i] = static_cast<std::int32_t>(others >> 40U);
+      more_draws[i] = static_cast<std::int32_t>(others & 0x7fffffffU);
     }
     constexpr double kMean = 2.0 * 0xffff;
     for (std::size_t i = 0; i < num; ++i) {
       noise[i] = static_cast<float>((sums[i] - kMean) * (std::numbers::sqrt3 / 0x10000));
       dropout[i] = static_cast<float>(draws[i]) * 0x1p-24F;
+      falseness[i] = static_cast<float>(more_draws[i] & 0xfffff) * 0x1p-20F;
+      share[i] = static_cast<float>(more_draws[i] >> 20) * 0x1p-11F;
     }
   }
 };
@@ -151,28 +75,37 @@ struct Returns {
   float cos_dropout_start;
   float dropout_start;
   float dropout_width;
+  float walk;  ///< Per squared (1 - cosine).
+  float false_returns;
+  float false_or_dust;
 
-  explicit Returns(const LidarConfig& c)
+  Returns(const LidarConfig& c, const LidarUnit& unit, double dust)
       : range_min(static_cast<float>(c.range_min)),
         range_max(static_cast<float>(c.range_max)),
         noise_near(static_cast<float>(c.noise_near)),
         noise_slope(static_cast<float>((c.noise_far - c.noise_near) / (c.range_max - c.range_min))),
         cos_dropout_start(static_cast<float>(std::cos(c.dropout_start_deg * kDegree))),
         dropout_start(static_cast<float>(c.dropout_start_deg * kDegree)),
-        dropout_width(static_cast<float>(c.dropout_end_deg * kDegree) - dropout_start) {}
+        dropout_width(static_cast<float>(c.dropout_end_deg * kDegree) - dropout_start),
+        walk(static_cast<float>(unit.incidence_walk / std::pow(1.0 - std::cos(kWalkStatedAt), 2))),
+        false_returns(static_cast<float>(unit.false_returns)),
+        false_or_dust(static_cast<float>(unit.false_returns + dust)) {}
 };
 
-// The ranges that are reported, or misses. Beyond the end of the drop-out, all of 0 to 1 is below the share
-// that is lost.
+// The ranges that are reported, or misses; `biases` are those of the rings. Beyond the end of the drop-out,
+// all of 0 to 1 is below the share that is lost.
 ADIT_WIDE_VECTORS void measure(const Returns& returns, const Chance& chance,
                                const RayBlock::Numbers& distances, const RayBlock::Numbers& cosines,
-                               std::size_t num, RayBlock::Numbers& ranges) {
-  const auto [range_min, range_max, noise_near, noise_slope, cos_dropout_start, dropout_start,
-              dropout_width] = returns;
+                               const RayBlock::Numbers& biases, std::size_t num, RayBlock::Numbers& ranges) {
+  const auto [range_min, range_max, noise_near, noise_slope, cos_dropout_start, dropout_start, dropout_width,
+              walk, false_returns, false_or_dust] = returns;
   for (std::size_t i = 0; i < num; ++i) {
     const float sigma = noise_near + noise_slope * (distances[i] - range_min);
-    const float range = distances[i] + sigma * chance.noise[i];
     const float cosine = std::min(cosines[i], 1.0F);
+    const float off_normal = 1.0F - cosine;
+    const float true_return =
+        distances[i] + sigma * chance.noise[i] + (biases[i] + walk * off_normal * off_normal);
+    const float range = chance.falseness[i] < false_returns ? chance.share[i] * true_return : true_return;
     const float share_lost = (arc_cosine(cosine) - dropout_start) / dropout_width;
     const bool lost = (cosine < cos_dropout_start) & (chance.dropout[i] < share_lost);
     const bool kept = !lost & (distances[i] < RayHit::kMiss) & (range >= range_min) & (range <= range_max);
@@ -180,20 +113,57 @@ ADIT_WIDE_VECTORS void measure(const Returns& returns, const Chance& chance,
   }
 }
 
-// All that is the same for every scan of one sensor, in the units of the inner loop.
+// Directions of the beams at azimuth 0.
+struct Fan {
+  std::vector<float> forward;
+  std::vector<float> left;
+  std::vector<float> up;
+
+  void add(double azimuth, double elevation) {
+    forward.push_back(static_cast<float>(std::cos(elevation) * std::cos(azimuth)));
+    left.push_back(static_cast<float>(std::cos(elevation) * std::sin(azimuth)));
+    up.push_back(static_cast<float>(std::sin(elevation)));
+  }
+  /// In the lidar frame, when the sensor has turned to an azimuth.
+  void turned(double azimuth, std::size_t first_beam, std::size_t num, RayBlock::Vectors& directions) const {
+    const auto x = static_cast<float>(std::cos(azimuth));
+    const auto y = static_cast<float>(std::sin(azimuth));
+    for (std::size_t i = 0; i < num; ++i) {
+      directions.x[i] = forward[first_beam + i] * x - left[first_beam + i] * y;
+      directions.y[i] = forward[first_beam + i] * y + left[first_beam + i] * x;
+      directions.z[i] = up[first_beam + i];
+    }
+  }
+};
+
+// All that is the same for every ray of one scan, in the units of the inner loop.
 class Sensor {
  public:
-  explicit Sensor(const LidarConfig& c) : config_(c), returns_(c) {
+  Sensor(const LidarConfig& c, const LidarUnit& unit, const Sweep& sweep)
+      : config_(c),
+        looks_elsewhere_(!unit.ring_azimuth.empty() || !unit.ring_elevation.empty()),
+        returns_(c, unit, sweep.dust) {
+    beam_.divergence = unit.divergence_factor * c.divergence_deg * kDegree;
+    const auto of_ring = [](const std::vector<double>& errors, std::size_t ring) {
+      return errors.empty() ? 0.0 : errors[ring];
+    };
     const double step = c.beams > 1 ? (c.elevation_max_deg - c.elevation_min_deg) / (c.beams - 1) : 0.0;
-    for (int beam = 0; beam < c.beams; ++beam) {
-      const double elevation = (c.elevation_max_deg - step * beam) * kDegree;
-      cosines_.push_back(static_cast<float>(std::cos(elevation)));
-      sines_.push_back(static_cast<float>(std::sin(elevation)));
+    const double bias = unit.bias_at(sweep.end - Stamp{});
+    for (std::size_t beam = 0; beam < static_cast<std::size_t>(c.beams); ++beam) {
+      const double elevation = (c.elevation_max_deg - step * static_cast<double>(beam)) * kDegree;
+      reported_.add(0.0, elevation);
+      true_.add(of_ring(unit.ring_azimuth, beam), elevation + of_ring(unit.ring_elevation, beam));
+      biases_.push_back(static_cast<float>(bias + of_ring(unit.ring_range, beam)));
     }
   }
 
-  [[nodiscard]] std::size_t num_beams() const { return cosines_.size(); }
+  [[nodiscard]] std::size_t num_beams() const { return biases_.size(); }
   [[nodiscard]] const Returns& returns() const { return returns_; }
+  [[nodiscard]] const Beam& beam() const { return beam_; }
+  /// Of ranges, in the order of the beams.
+  void biases(std::size_t first_beam, std::size_t num, RayBlock::Numbers& out) const {
+    std::copy_n(biases_.begin() + static_cast<std::ptrdiff_t>(first_beam), num, out.begin());
+  }
 
   /// The directions of shots from `first` on, `step` apart, of a pattern that does not repeat.
   void look(Stamp first, Duration step, std::size_t num, RayBlock::Vectors& directions) const {
@@ -205,22 +175,25 @@ class Sensor {
     }
   }
 
-  /// The directions of beams at an azimuth, in the lidar frame.
-  void look(double azimuth, std::size_t first_beam, std::size_t num, RayBlock::Vectors& directions) const {
-    const auto x = static_cast<float>(std::cos(azimuth));
-    const auto y = static_cast<float>(std::sin(azimuth));
-    for (std::size_t i = 0; i < num; ++i) {
-      directions.x[i] = cosines_[first_beam + i] * x;
-      directions.y[i] = cosines_[first_beam + i] * y;
-      directions.z[i] = sines_[first_beam + i];
+  /// The directions that beams report at an azimuth, and those in which they look.
+  void look(double azimuth, std::size_t first_beam, std::size_t num, RayBlock::Vectors& reported,
+            RayBlock::Vectors& really) const {
+    reported_.turned(azimuth, first_beam, num, reported);
+    if (looks_elsewhere_) {
+      true_.turned(azimuth, first_beam, num, really);
+    } else {
+      really = reported;
     }
   }
 
  private:
   LidarConfig config_;
-  std::vector<float> cosines_;  // of the elevations of the beams
-  std::vector<float> sines_;
+  Fan reported_;
+  Fan true_;
+  bool looks_elsewhere_;
+  std::vector<float> biases_;
   Returns returns_;
+  Beam beam_;
 };
 
 // One turn: where the sensor is and looks at each column.
@@ -295,21 +268,26 @@ void cast_column(const Raycaster& raycaster, const Sensor& sensor, const Turn& t
   const Pose T_world_lidar = turn.T_world_lidar(column);
   const std::uint64_t column_seed = mix64(turn.sweep.noise_seed, static_cast<std::uint64_t>(column));
   RayBlock rays;
+  RayBlock::Vectors reported;
   RayBlock::Vectors directions;
+  RayBlock::Numbers biases;
   RayBlock::Numbers ranges;
   for (std::size_t beam = 0; beam < sensor.num_beams(); beam += rays.size) {
     rays.size = std::min(RayBlock::kCapacity, sensor.num_beams() - beam);
     if (turn.config.pattern == LidarPattern::spinning) {
-      sensor.look(turn.azimuth(column), beam, rays.size, directions);
+      sensor.look(turn.azimuth(column), beam, rays.size, reported, directions);
     } else {
       const Duration before = static_cast<std::int64_t>(beam) * turn.shot_time();
       sensor.look(turn.first_shot(column) + before, turn.shot_time(), rays.size, directions);
+      reported = directions;
     }
     aim(T_world_lidar, directions, rays);
-    raycaster.cast(rays, sensor.returns().range_max);
+    cast_beams(raycaster, turn.sweep.movers, sensor.beam(), sensor.returns().range_max,
+               mix64(~column_seed, beam), rays);
     const Chance chance(column_seed, beam, rays.size);
-    measure(sensor.returns(), chance, rays.distances, rays.cosines, rays.size, ranges);
-    append_returns(ranges, directions, rays.size, turn.offset_ns(column), cloud);
+    sensor.biases(beam, rays.size, biases);
+    measure(sensor.returns(), chance, rays.distances, rays.cosines, biases, rays.size, ranges);
+    append_returns(ranges, reported, rays.size, turn.offset_ns(column), cloud);
   }
 }
 
@@ -358,24 +336,14 @@ Result<> check_lidar(LidarConfig config) {
   return check_ascending("drop-out", config.dropout_start_deg, config.dropout_end_deg);
 }
 
-std::vector<std::string> lidar_presets() {
-  std::vector<std::string> names;
-  for (const LidarConfig& preset : presets()) names.push_back(preset.name);
-  return names;
+std::size_t num_rings(const LidarConfig& config) {
+  return config.pattern == LidarPattern::spinning ? static_cast<std::size_t>(config.beams) : 0;
 }
 
-Result<LidarConfig> lidar_preset(const std::string& name) {
-  for (LidarConfig& preset : presets()) {
-    if (preset.name == name) return preset;
-  }
-  std::string known;
-  for (const std::string& preset : lidar_presets()) known += (known.empty() ? "" : ", ") + preset;
-  return fail("unknown LiDAR '" + name + "'; known are " + known);
-}
-
-Scan cast_scan(const Raycaster& raycaster, const LidarConfig& config, const Sweep& sweep) {
+Scan cast_scan(const Raycaster& raycaster, const LidarConfig& config, const Sweep& sweep,
+               const LidarUnit& unit) {
   ADIT_CHECK(check_lidar(config).has_value(), "the lidar's configuration passes check_lidar");
-  const Sensor sensor(config);
+  const Sensor sensor(config, unit, sweep);
   const Turn turn{config, sweep};
   const auto columns = static_cast<std::size_t>(config.columns);
   std::vector<PointCloud> parts((columns + kColumnsPerPart - 1) / kColumnsPerPart);

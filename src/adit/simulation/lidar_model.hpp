@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "adit/core/config.hpp"
 #include "adit/core/pose.hpp"
 #include "adit/core/records.hpp"
+#include "adit/simulation/lidar_unit.hpp"
 #include "adit/simulation/raycaster.hpp"
 
 namespace adit {
@@ -40,8 +42,10 @@ struct LidarConfig {
   double rate_hz = 10.0;
   double range_min = 0.5;
   double range_max = 200.0;
-  double noise_near = 0.025;        ///< Standard deviation of a range at range_min; linear in between.
-  double noise_far = 0.08;          ///< The same at range_max.
+  double noise_near = 0.025;  ///< Standard deviation of a range at range_min; linear in between.
+  double noise_far = 0.08;    ///< The same at range_max.
+  double divergence_deg =
+      0.09;  ///< Of the beam, full angle; felt as LidarErrorConfig::divergence_factor says.
   double dropout_start_deg = 75.0;  ///< Incidence angle (0: head-on) from which returns start to get lost ...
   double dropout_end_deg = 88.0;    ///< ... and from which none is left; linear in between.
   double mount_forward = 0.0;       ///< Position on the robot, in the base frame.
@@ -70,6 +74,8 @@ inline Fields fields_of(LidarConfig& c) {
       {"range_max", &c.range_max, "m", 0.1, 1000, "farther returns are dropped"},
       {"noise_near", &c.noise_near, "m", 0, 1, "standard deviation of a range at range_min"},
       {"noise_far", &c.noise_far, "m", 0, 1, "standard deviation of a range at range_max"},
+      {"divergence_deg", &c.divergence_deg, "deg", 0, 5,
+       "width of a beam, full angle; times lidar_errors.divergence_factor"},
       {"dropout_start_deg", &c.dropout_start_deg, "deg", 0, 90,
        "incidence angle where returns start to get lost"},
       {"dropout_end_deg", &c.dropout_end_deg, "deg", 0, 90, "incidence angle beyond which no return is left"},
@@ -90,6 +96,9 @@ Result<> check_lidar(LidarConfig config);
 [[nodiscard]] inline Pose T_base_lidar(const LidarConfig& config) {
   return Pose::translation_of(config.mount_forward, 0.0, config.mount_height);
 }
+/// Beams that are lasers of their own, each with its own errors; 0 where one laser draws a pattern.
+[[nodiscard]] std::size_t num_rings(const LidarConfig& config);
+
 /// Duration of one scan.
 [[nodiscard]] inline Duration sweep_time(const LidarConfig& config) {
   return from_seconds(1.0 / config.rate_hz);
@@ -104,13 +113,17 @@ struct Sweep {
   /// One per scan. A ray's noise depends on it, its beam and its column alone.
   std::uint64_t noise_seed = 0;
   std::vector<Pose> T_world_lidar_between = {};  ///< At equal intervals of time; without start and end.
+  double dust = 0.0;                     ///< Share of rays that end in dust, within 5 m of the sensor.
+  std::optional<Raycaster> movers = {};  ///< What is there during this sweep alone.
 };
 
 /// What the sensor sees during one sweep, as it would report it: each point in the lidar frame of its own
 /// column's time, with motion distortion, range noise and drop-out. Columns in the order of time (clockwise
 /// from straight back where the sensor spins), beams from the highest down; rays without a return leave no
 /// point. Time offsets run from almost minus one turn to 0 at the last column: the stamp is the END of the
-/// sweep.
-[[nodiscard]] Scan cast_scan(const Raycaster& raycaster, const LidarConfig& config, const Sweep& sweep);
+/// sweep. The errors of `unit` are added, those of mount and clocks apart, which the caller knows; its rings
+/// are none or num_rings().
+[[nodiscard]] Scan cast_scan(const Raycaster& raycaster, const LidarConfig& config, const Sweep& sweep,
+                             const LidarUnit& unit = {});
 
 }  // namespace adit

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
@@ -18,10 +19,15 @@ struct Robot {
   std::string name;
   Raycaster raycaster;
   LidarConfig lidar;
+  LidarUnit unit;
   std::uint64_t seed = 0;
   Trajectory truth;
-  std::vector<Stamp> scan_stamps;
-  bool sways = false;  ///< So that a sweep is not steady.
+  std::vector<Stamp> sweep_ends;
+  std::vector<Stamp> scan_stamps;  ///< As reported.
+  bool sways = false;              ///< So that a sweep is not steady.
+  VisitConfig visits;
+
+  [[nodiscard]] Pose T_base_sensor() const { return T_base_lidar(lidar) * unit.T_nominal_true; }
 
   /// Of the LiDAR within the sweep that ends then.
   [[nodiscard]] std::vector<Pose> poses_between(Stamp end) const {
@@ -29,7 +35,7 @@ struct Robot {
     std::vector<Pose> poses;
     const Duration sweep = sweep_time(lidar);
     for (int k = 1; sways && k < kPieces; ++k)
-      poses.push_back(*pose_at(truth, end - sweep + sweep * k / kPieces) * T_base_lidar(lidar));
+      poses.push_back(*pose_at(truth, end - sweep + sweep * k / kPieces) * T_base_sensor());
     return poses;
   }
 
@@ -37,27 +43,48 @@ struct Robot {
     if (i >= scan_stamps.size()) {
       return fail(format("{}: there is no scan {}; the recording has {}", name, i, scan_stamps.size()));
     }
-    const Stamp end = scan_stamps[i];
-    const Pose T_base_sensor = T_base_lidar(lidar);
+    const Stamp end = sweep_ends[i];
     const Result<Pose> T_world_start = pose_at(truth, end - sweep_time(lidar));
     const Result<Pose> T_world_end = pose_at(truth, end);
     if (!T_world_start) return fail(name, T_world_start.error());
     if (!T_world_end) return fail(name, T_world_end.error());
-    return cast_scan(raycaster, lidar,
-                     {*T_world_start * T_base_sensor, *T_world_end * T_base_sensor, end, mix64(seed, i),
-                      poses_between(end)});
+    Sweep sweep{*T_world_start * T_base_sensor(),
+                *T_world_end * T_base_sensor(),
+                end,
+                mix64(seed, i),
+                poses_between(end),
+                visits.dust};
+    if (visits.people > 0) {
+      Result<Raycaster> people = Raycaster::build(people_around(truth, end, visits.people));
+      if (!people) return fail(name, people.error());
+      sweep.movers = *std::move(people);
+    }
+    Scan scan = cast_scan(raycaster, lidar, sweep, unit);
+    scan.stamp = scan_stamps[i];
+    return scan;
   }
 };
 
-// Stamps from the end of the second turn on, so that the first sweep begins well after the first wheel
-// odometry.
-std::vector<Stamp> scan_stamps(const Trajectory& truth, const LidarConfig& lidar) {
+// From the end of the second turn on, so that the first sweep begins well after the first wheel odometry.
+std::vector<Stamp> sweep_ends(const Trajectory& truth, const LidarConfig& lidar) {
   std::vector<Stamp> stamps;
   for (std::int64_t i = 2;; ++i) {
     const Stamp stamp = truth.front().stamp + from_seconds(static_cast<double>(i) / lidar.rate_hz);
     if (stamp > truth.back().stamp) return stamps;
     stamps.push_back(stamp);
   }
+}
+
+// As reported: in order, and within the time that the truth covers.
+std::vector<Stamp> with_jitter(std::vector<Stamp> stamps, Stamp last, double sigma_s, std::uint64_t seed) {
+  constexpr double kMostSigmas = 2.0;
+  if (sigma_s == 0.0) return stamps;
+  Rng rng(seed);
+  for (Stamp& stamp : stamps) {
+    const double off = sigma_s * std::clamp(rng.normal(), -kMostSigmas, kMostSigmas);
+    stamp = std::min(stamp + from_seconds(off), last);
+  }
+  return stamps;
 }
 
 Trajectory with_poses_at(const Trajectory& truth, const std::vector<Stamp>& stamps) {
@@ -74,6 +101,7 @@ Trajectory with_poses_at(const Trajectory& truth, const std::vector<Stamp>& stam
 Result<> check(const World& world, ScenarioConfig config) {
   if (Result<> fields = check_fields(fields_of(config)); !fields) return fields;
   if (Result<> lidar = check_lidar(config.lidar); !lidar) return lidar;
+  if (const auto lidars = lidars_of(config); !lidars) return fail("lidars", lidars.error());
   if (Result<> wheels = check_wheels(config.wheels); !wheels) return wheels;
   if (Result<> imu = check_imu(config.imu); !imu) return imu;
   if (world.routes.empty()) return fail(world.name + ": the world has no routes, so no robot can drive");
@@ -85,10 +113,15 @@ Result<> check(const World& world, ScenarioConfig config) {
   return {};
 }
 
-constexpr std::uint64_t kImuStream = 0x696d75;  // numbers of their own for the IMU's errors
+// Numbers of their own for the errors of each.
+constexpr std::uint64_t kImuStream = 0x696d75;
+constexpr std::uint64_t kUnitStream = 0x756e6974;
+constexpr std::uint64_t kJitterStream = 0x6a69747465;
+constexpr std::uint64_t kVisitStream = 0x7669736974;
 
-void add_wheels(Recording& recording, const Robot& robot, const WheelConfig& wheels) {
+void add_wheels(Recording& recording, const Robot& robot, WheelConfig wheels) {
   if (!wheels.on) return;
+  wheels.time_offset += to_seconds(robot.unit.wheels_late);
   const std::uint64_t seed = mix64(robot.seed);
   recording.wheel = wheel_odometry(robot.truth, wheels, seed);
   recording.faults = wheel_faults(robot.truth, wheels, seed);
@@ -100,7 +133,9 @@ void add_imu(Recording& recording, const Robot& robot, const ImuConfig& imu) {
   recording.imu_mount_source = "simulation";
   recording.imu_name = imu.name;
   recording.imu_covariance = covariance_of(imu);
-  recording.imu = imu_samples(robot.truth, recording.T_base_imu, imu, mix64(robot.seed, kImuStream));
+  const Pose T_base_imu = robot.T_base_sensor() * T_lidar_imu(imu);
+  recording.imu = imu_samples(robot.truth, T_base_imu, imu, mix64(robot.seed, kImuStream));
+  for (ImuSample& sample : recording.imu) sample.stamp = sample.stamp + robot.unit.imu_late;
   std::ranges::copy(imu_faults(imu, robot.truth.front().stamp), std::back_inserter(recording.faults));
   std::ranges::stable_sort(recording.faults, {}, &SensorFault::begin);
 }
@@ -113,7 +148,9 @@ Recording recording_of(Robot robot, const ScenarioConfig& config) {
   recording.mount_source = "simulation";
   add_wheels(recording, robot, config.wheels);
   add_imu(recording, robot, config.imu);
-  robot.scan_stamps = scan_stamps(robot.truth, robot.lidar);
+  robot.sweep_ends = sweep_ends(robot.truth, robot.lidar);
+  robot.scan_stamps = with_jitter(robot.sweep_ends, robot.truth.back().stamp, robot.unit.jitter_s,
+                                  mix64(robot.seed, kJitterStream));
   robot.truth = with_poses_at(robot.truth, robot.scan_stamps);
   recording.scan_stamps = robot.scan_stamps;
   recording.truth = robot.truth;
@@ -122,9 +159,14 @@ Recording recording_of(Robot robot, const ScenarioConfig& config) {
   return recording;
 }
 
+struct Drives {
+  Raycaster floor;
+  std::vector<Trajectory> truths;
+};
+
 // Uses a watertight raycaster, so that no wheel falls between two triangles. Scans use the fast one:
 // watertight edges would move one point in some 1e5, and with it the bytes of every recording.
-Result<std::vector<Trajectory>> drive_all(const World& world, const DriveConfig& config) {
+Result<Drives> drive_all(const World& world, const DriveConfig& config) {
   const Phase phase("driving the routes", world.routes.size() + 1);
   const Result<Raycaster> floor = Raycaster::build(world.mesh, EdgeRule::watertight);
   if (!floor) return fail(world.name, floor.error());
@@ -134,32 +176,84 @@ Result<std::vector<Trajectory>> drive_all(const World& world, const DriveConfig&
     driven[i] = drive(*floor, world.routes[i], config, Stamp{});
     phase.advance();
   });
-  std::vector<Trajectory> truths;
+  Drives drives{*floor, {}};
   for (Result<Trajectory>& truth : driven) {
     if (!truth) return tl::unexpected(truth.error());
-    truths.push_back(std::move(*truth));
+    drives.truths.push_back(std::move(*truth));
   }
-  return truths;
+  return drives;
+}
+
+// What each robot's LiDAR sees: the world, and what stands in it during that robot's visit.
+Result<std::vector<Raycaster>> raycasters_of(const World& world, const Drives& drives,
+                                             const ScenarioConfig& config) {
+  const Result<Raycaster> empty = Raycaster::build(world.mesh);
+  if (!empty) return fail(world.name, empty.error());
+  std::vector<Raycaster> raycasters;
+  for (const TriangleMesh& things :
+       parked_things(drives.floor, drives.truths, config.visits, mix64(config.seed, kVisitStream))) {
+    Result<Raycaster> met = *empty;
+    if (!things.empty()) {
+      TriangleMesh mesh = world.mesh;
+      append(mesh, things);
+      met = Raycaster::build(mesh);
+      if (!met) return fail(world.name, met.error());
+    }
+    raycasters.push_back(*std::move(met));
+  }
+  return raycasters;
 }
 
 }  // namespace
 
+std::string_view to_string(Conditions conditions) {
+  return conditions == Conditions::field ? "field" : "ideal";
+}
+
+Result<std::vector<LidarConfig>> lidars_of(const ScenarioConfig& config) {
+  std::vector<LidarConfig> lidars;
+  std::istringstream names(config.lidars);
+  for (std::string name; std::getline(names, name, ',');) {
+    std::erase(name, ' ');
+    Result<LidarConfig> lidar = lidar_preset(name);
+    if (!lidar) return lidar.map([](LidarConfig) { return std::vector<LidarConfig>(); });
+    lidar->mount_forward = config.lidar.mount_forward;
+    lidar->mount_height = config.lidar.mount_height;
+    lidars.push_back(*std::move(lidar));
+  }
+  if (lidars.empty()) lidars.push_back(config.lidar);
+  return lidars;
+}
+
+void set_conditions(Conditions conditions, ScenarioConfig& config) {
+  const bool field = conditions == Conditions::field;
+  config.lidar_errors = field ? field_lidar_errors() : LidarErrorConfig();
+  config.visits = field ? field_visits() : VisitConfig();
+}
+
 Result<std::vector<Recording>> simulate(const World& world, const ScenarioConfig& config) {
   if (const Result<> checked = check(world, config); !checked) return tl::unexpected(checked.error());
-  const Result<std::vector<Trajectory>> truths = drive_all(world, config.drive);
-  if (!truths) return tl::unexpected(truths.error());
-  const Result<Raycaster> raycaster = Raycaster::build(world.mesh);
-  if (!raycaster) return fail(world.name, raycaster.error());
+  const Result<Drives> drives = drive_all(world, config.drive);
+  if (!drives) return tl::unexpected(drives.error());
+  const Result<std::vector<Raycaster>> raycasters = raycasters_of(world, *drives, config);
+  if (!raycasters) return tl::unexpected(raycasters.error());
+  const std::vector<LidarConfig> lidars = *lidars_of(config);
   std::vector<Recording> recordings;
   for (std::size_t i = 0; i < world.routes.size(); ++i) {
-    recordings.push_back(recording_of({world.routes[i].name,
-                                       *raycaster,
-                                       config.lidar,
-                                       mix64(config.seed, i),
-                                       (*truths)[i],
-                                       {},
-                                       config.drive.sway_hz > 0.0},
-                                      config));
+    const LidarConfig& lidar = lidars[i % lidars.size()];
+    const std::uint64_t seed = mix64(config.seed, i);
+    recordings.push_back(
+        recording_of({world.routes[i].name,
+                      (*raycasters)[i],
+                      lidar,
+                      draw_lidar_unit(config.lidar_errors, num_rings(lidar), i, mix64(seed, kUnitStream)),
+                      seed,
+                      drives->truths[i],
+                      {},
+                      {},
+                      config.drive.sway_hz > 0.0,
+                      config.visits},
+                     config));
   }
   return recordings;
 }

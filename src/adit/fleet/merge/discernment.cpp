@@ -95,7 +95,7 @@ WallOffsets Discernment::compare_own_walls() {
     }
   }
   const std::vector<LocalFit> found = compare(pairs, FitFrom::guess);
-  WallOffsets offsets;
+  WallOffsets offsets(config_.registration.relief);
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (!differ(found[i].agreement))
       offsets.add(patch_offsets(surfaces_.at(pairs[i].a), surfaces_.at(pairs[i].b), found[i].T_a_b,

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Beams that have a width: what they meet at edges and on walls that they graze.
+///
+/// A beam's footprint grows with the range. Where it lies on two surfaces, the sensor reports the stronger
+/// return, or a point in between where both are less than a pulse apart. On a wall that is met at a grazing
+/// angle the footprint is long, and the range lies anywhere within it (Lichti, Gordon and Tipdecho, "Error
+/// models and propagation in directly georeferenced terrestrial laser scanner networks", 2005).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "adit/simulation/raycaster.hpp"
+
+namespace adit {
+
+struct Beam {
+  double divergence = 0.0;  ///< Radians, full angle; 0: no width.
+  double pulse_m = 0.3;     ///< Returns nearer to one another than this are one.
+};
+
+/// Casts the rays of a block at the world and at what is there beside it for now. Where a beam has a width
+/// and neighbours in the block show an edge, or a surface is met at more than 70 degrees, a ring of rays
+/// around it finds the footprint. `seed` draws where in a long footprint the range lies.
+void cast_beams(const Raycaster& world, const std::optional<Raycaster>& movers, const Beam& beam,
+                float range_max, std::uint64_t seed, RayBlock& rays);
+
+}  // namespace adit

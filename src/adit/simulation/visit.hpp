@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What a robot meets in a working mine and another robot does not: vehicles and pallets that stand elsewhere
+/// at the next visit, people who walk along, dust.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "adit/core/config.hpp"
+#include "adit/core/records.hpp"
+#include "adit/geometry/triangle_mesh.hpp"
+#include "adit/simulation/raycaster.hpp"
+
+namespace adit {
+
+/// All zero, as by default, is an empty world in which nothing changes.
+struct VisitConfig {
+  double vehicles_per_km = 0.0;  ///< Parked beside the path of each robot.
+  double pallets_per_km = 0.0;
+  double changed = 1.0;  ///< Share of them that only one robot meets; the others stand there for all.
+  int people = 0;        ///< Who walk with the robot, some ahead of it and some behind.
+  double dust = 0.0;     ///< Share of rays that end in dust, near the sensor.
+};
+[[nodiscard]] Fields fields_of(VisitConfig& config);
+
+/// A working mine by day: a vehicle every 250 m and a pallet every 125 m, half of which stay; one person.
+[[nodiscard]] VisitConfig field_visits();
+
+/// What stands in the world while each of the robots drives along its `truths` (T_world_base), in their
+/// order, world frame. Things stand at the walls, where a robot that drives that path passes them by 0.5 m or
+/// more; where a tunnel has no room for them there are fewer. `floor` is watertight (EdgeRule).
+[[nodiscard]] std::vector<TriangleMesh> parked_things(const Raycaster& floor,
+                                                      std::span<const Trajectory> truths,
+                                                      const VisitConfig& config, std::uint64_t seed);
+
+/// The people around the robot at that time, world frame; empty where nobody walks with it. `truth` covers
+/// the time.
+[[nodiscard]] TriangleMesh people_around(const Trajectory& truth, Stamp stamp, int num_people);
+
+}  // namespace adit
