@@ -64,7 +64,8 @@ Result<Job> job_again(const SlamOptions& options, const Common& common) {
   if (!text) return tl::unexpected(text.error());
   Result<SessionHeader> header = parse_session_toml(*text);
   if (!header) return fail(options.rerun, header.error());
-  Job job{{}, std::move(header->provenance)};
+  Job job;
+  job.provenance = std::move(header->provenance);
   if (job.provenance.inputs.empty()) return fail(options.rerun + ": names no inputs; is it a session.toml?");
   const Result<> set = parse_config(fields_of(job.config), job.provenance.configuration);
   if (!set) return fail(options.rerun + ": configuration", set.error());
