@@ -39,13 +39,13 @@ double density(const EqualSignShare& found, const OtherWalls& walls) {
   return sum;
 }
 
-/// `towards`: from the patch to the sensor, whose robot has that upward axis.
-void add(PatchView& sum, const Eigen::Vector3f& normal, const Eigen::Vector3f& towards,
-         const Eigen::Vector3f& up) {
-  const Eigen::Vector3f direction = towards.normalized();
-  sum.cosine += std::abs(normal.dot(direction));
-  sum.elevation += std::asin(std::clamp(-direction.dot(up), -1.0F, 1.0F));
-}
+/// Sums over the points of b on a patch.
+struct OnPatch {
+  double metres = 0.0;
+  SensorTerms terms = SensorTerms::Zero();
+  Vector6 motion = Vector6::Zero();
+  int num_points = 0;
+};
 
 std::int32_t side_of(const Eigen::Vector3f& normal) {
   Eigen::Index axis = 0;
@@ -56,14 +56,10 @@ std::int32_t side_of(const Eigen::Vector3f& normal) {
 }  // namespace
 
 std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
-                                       const Pose& T_map_a, const ReliefConfig& config) {
-  struct Sum {
-    SeenOffset seen{0.0, {0.0F, 0.0F}, {0.0F, 0.0F}};
-    std::size_t num_points = 0;
-  };
+                                       const Pose& T_map_a, const RegistrationConfig& registration) {
+  const ReliefConfig& config = registration.relief;
   const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
   const Eigen::Vector3f t = T_a_b.translation().cast<float>();
-  const Eigen::Vector3f b_viewpoint = R * b.viewpoint() + t;
   const Eigen::Matrix3f R_map = T_map_a.rotation_matrix().cast<float>();
   const Eigen::Vector3f t_map = T_map_a.translation().cast<float>();
   const auto patch = static_cast<float>(config.patch_m);
@@ -71,42 +67,47 @@ std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& 
   const auto pairing_distance = static_cast<float>(config.pairing_distance_m);
   const auto max_offset = static_cast<float>(config.max_offset_m);
   const auto min_cosine = static_cast<float>(config.min_normal_cosine);
-  std::map<WallPatch, Sum> sums;
+  const SensorTermsOf terms_of(a, b, T_a_b);
+  std::map<WallPatch, OnPatch> patches;
   for (std::size_t i = 0; i < b.points().size(); ++i) {
     const Eigen::Vector3f p = R * b.points().points[i] + t;
     if ((p - a.viewpoint()).norm() > max_range) continue;
     const auto near = a.tree().nearest(p, pairing_distance);
     if (!near) continue;
-    const Eigen::Vector3f& normal = a.points().normals[near->index];
-    const float off = normal.dot(p - a.points().points[near->index]);
-    if (std::abs(off) > max_offset || (R * b.points().normals[i]).dot(normal) < min_cosine) continue;
+    const WallPair pair{a.points().points[near->index], p, a.points().normals[near->index]};
+    const float off = pair.normal.dot(p - pair.seen_by_a);
+    if (std::abs(off) > max_offset || (R * b.points().normals[i]).dot(pair.normal) < min_cosine) continue;
     const Eigen::Array3f cell = ((R_map * p + t_map) / patch).array().floor();
-    Sum& sum = sums[{static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()),
-                     static_cast<std::int32_t>(cell.z()), side_of(R_map * normal)}];
-    sum.seen.metres += static_cast<double>(off);
-    add(sum.seen.by_a, normal, a.viewpoint() - a.points().points[near->index], Eigen::Vector3f::UnitZ());
-    add(sum.seen.by_b, normal, b_viewpoint - p, R.col(2));
+    OnPatch& sum = patches[{static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()),
+                            static_cast<std::int32_t>(cell.z()), side_of(R_map * pair.normal)}];
+    sum.metres += static_cast<double>(off);
+    sum.motion += motion_terms(pair);
+    terms_of.add(pair, 1.0, sum.terms);
     ++sum.num_points;
   }
+  const FitShift shift = fit_shift(a, b, T_a_b, registration);
   std::vector<PatchOffset> out;
-  for (const auto& [where, sum] : sums) {
-    if (sum.num_points < static_cast<std::size_t>(config.min_points)) continue;
-    const auto num = static_cast<float>(sum.num_points);
-    const auto mean_of = [&](const PatchView& view) {
-      return PatchView{view.cosine / num, view.elevation / num};
-    };
-    const auto& [metres, by_a, by_b] = sum.seen;
-    out.push_back({where, {metres / static_cast<double>(num), mean_of(by_a), mean_of(by_b)}});
-  }
+  for (const auto& [where, sum] : patches)
+    if (sum.num_points >= config.min_points)
+      out.push_back({where, sum.metres / sum.num_points,
+                     (sum.terms + shift.transpose() * sum.motion) / sum.num_points});
   return out;
 }
 
 void WallOffsets::add(const std::vector<PatchOffset>& of_a_pair) {
-  for (const PatchOffset& offset : of_a_pair) {
-    patches_.push_back(offset.patch);
-    offsets_.push_back(offset.seen);
-  }
+  offsets_.insert(offsets_.end(), of_a_pair.begin(), of_a_pair.end());
   counted_.reset();
+}
+
+Eigen::VectorXd WallOffsets::left_by_sensors() const {
+  Eigen::VectorXd metres(std::ssize(offsets_));
+  Eigen::MatrixXd terms(std::ssize(offsets_), kSensorErrors);
+  for (Eigen::Index i = 0; i < metres.size(); ++i) {
+    const PatchOffset& offset = offsets_[static_cast<std::size_t>(i)];
+    metres[i] = offset.metres;
+    terms.row(i) = offset.terms.transpose();
+  }
+  return metres - explained_by_sensors(terms, metres, {});
 }
 
 EqualSignShare WallOffsets::counted() const {
@@ -119,12 +120,12 @@ EqualSignShare WallOffsets::count() const {
     std::size_t num_in_front = 0;
     std::size_t num_behind = 0;
   };
-  const SensorDifference sensors(offsets_, {});
+  const Eigen::VectorXd left = left_by_sensors();
   std::map<WallPatch, Sides> patches;
   for (std::size_t i = 0; i < offsets_.size(); ++i) {
-    const double metres = offsets_[i].metres - sensors.explains(offsets_[i]);
+    const double metres = left[static_cast<Eigen::Index>(i)];
     if (std::abs(metres) <= config_.min_offset_m) continue;
-    Sides& sides = patches[patches_[i]];
+    Sides& sides = patches[offsets_[i].patch];
     ++(metres > 0.0 ? sides.num_in_front : sides.num_behind);
   }
   // A patch weighs as much as the pairs beyond the first that saw it.

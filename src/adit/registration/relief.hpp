@@ -24,15 +24,16 @@ using WallPatch = std::array<std::int32_t, 4>;
 
 struct PatchOffset {
   WallPatch patch;
-  SeenOffset seen;  ///< Means over the points of b; in front is towards free space.
+  /// How far b's wall is in front of a's, towards free space; mean over the points of b.
+  double metres = 0.0;
+  SensorTerms terms = SensorTerms::Zero();  ///< By how much the errors of the sensors change that.
 };
 
-/// One offset per patch near a that both scans saw well. `T_a_b` brings
-/// the points of b into the frame of a, as well as the surfaces allow; `T_map_a` those of a into the frame of
-/// the map whose patches are meant.
+/// One offset per patch near a that both scans saw well. `T_a_b` is the fit of the points of b to a, in the
+/// frame of a; `T_map_a` brings those of a into the frame of the map whose patches are meant.
 [[nodiscard]] std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& b,
                                                      const Pose& T_a_b, const Pose& T_map_a,
-                                                     const ReliefConfig& config);
+                                                     const RegistrationConfig& config);
 
 /// The share of equal signs: how often two pairs of scans that saw a patch put the wall on the same side.
 /// 0.5, as by chance, where no patch was seen twice.
@@ -98,10 +99,11 @@ class WallOffsets {
 
  private:
   [[nodiscard]] EqualSignShare count() const;
+  /// Of each offset, what the sensors do not explain.
+  [[nodiscard]] Eigen::VectorXd left_by_sensors() const;
 
   ReliefConfig config_;
-  std::vector<WallPatch> patches_;  ///< Of each offset.
-  std::vector<SeenOffset> offsets_;
+  std::vector<PatchOffset> offsets_;
   mutable std::optional<EqualSignShare> counted_;
 };
 

@@ -67,7 +67,7 @@ EqualSignShares where_others_agree(double share, int num_stretches = 5) {
   return shares;
 }
 
-PatchOffset offset_of(const WallPatch& patch, double metres) { return {patch, {metres, {}, {}}}; }
+PatchOffset offset_of(const WallPatch& patch, double metres) { return {patch, metres}; }
 
 // A thousand patches that two pairs saw, `num_equal` of them with equal signs, as many in front as behind.
 WallOffsets of_a_thousand(int num_equal) {
@@ -148,7 +148,7 @@ TEST(Relief, OffsetsAreTowardsTheFreeSide) {
   int num = 0;
   for (const PatchOffset& one : patch_offsets(a, {bulged, Vector3::Zero()}, Pose(), Pose(), {})) {
     const bool is_there = one.patch[0] == 2 && one.patch[1] == 3;
-    EXPECT_NEAR(one.seen.metres, is_there ? 0.05 : 0.0, 0.01);
+    EXPECT_NEAR(one.metres, is_there ? 0.05 : 0.0, 0.01);
     num += is_there ? 1 : 0;
   }
   EXPECT_GE(num, 2);

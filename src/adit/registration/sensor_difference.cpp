@@ -3,8 +3,8 @@
 #include "adit/registration/sensor_difference.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -13,53 +13,30 @@
 namespace adit {
 namespace {
 
-/// Rings are taken together by elevation: errors at nodes, linear in between.
 constexpr double kNodeSpacing = 4.0 * kDegree;
-constexpr int kNodesToEachSide = 8;
-constexpr int kNodes = 2 * kNodesToEachSide + 1;
-constexpr int kOfSensor = 2 + kNodes;  ///< Bias, walk, nodes.
-constexpr int kAll = 2 * kOfSensor;
+constexpr double kLastNode = 2.0 * kElevationNodesToEachSide;
 
-/// The derivative of an offset by the errors of one sensor, where it is not zero.
-struct Terms {
-  std::array<int, 4> index;
-  std::array<double, 4> value;
-};
-
-/// A range that is too long by e puts the wall e times the cosine behind.
-Terms terms_of(const PatchView& view, double sign, int first) {
-  const auto cosine = static_cast<double>(view.cosine);
-  const double moved = -sign * cosine;
+/// A range that is too long by e moves the wall back by e times the cosine of incidence. `towards`: from the
+/// wall to the sensor, whose robot stands upright along `up`.
+void add_view(const Eigen::Vector3f& towards, const Eigen::Vector3f& up, const Eigen::Vector3f& normal,
+              double weight, Eigen::Ref<Eigen::Matrix<double, kErrorsOfSensor, 1>> sum) {
+  const Eigen::Vector3f direction = towards.normalized();
+  const auto cosine = static_cast<double>(std::abs(normal.dot(direction)));
+  const auto elevation = static_cast<double>(std::asin(std::clamp(-direction.dot(up), -1.0F, 1.0F)));
   const double place =
-      std::clamp(static_cast<double>(view.elevation) / kNodeSpacing + kNodesToEachSide, 0.0, kNodes - 1.001);
-  const int node = static_cast<int>(place);
-  const double beyond = place - node;
-  return {{first, first + 1, first + 2 + node, first + 3 + node},
-          {moved, moved * (1.0 - cosine), moved * (1.0 - beyond), moved * beyond}};
+      std::clamp(elevation / kNodeSpacing + kElevationNodesToEachSide, 0.0, kLastNode - 1e-9);
+  const auto node = static_cast<Eigen::Index>(place);
+  const double beyond = place - static_cast<double>(node);
+  const double moved = weight * cosine;
+  sum[0] += moved;
+  sum[1] += moved * (1.0 - cosine);
+  sum[2 + node] += moved * (1.0 - beyond);
+  sum[3 + node] += moved * beyond;
 }
 
-struct Row {
-  std::array<int, 8> index;
-  std::array<double, 8> value;
-
-  explicit Row(const SeenOffset& offset) {
-    const Terms b = terms_of(offset.by_b, 1.0, kOfSensor);
-    const Terms a = terms_of(offset.by_a, -1.0, 0);
-    std::ranges::copy(a.index, index.begin());
-    std::ranges::copy(b.index, index.begin() + 4);
-    std::ranges::copy(a.value, value.begin());
-    std::ranges::copy(b.value, value.begin() + 4);
-  }
-  [[nodiscard]] double times(const Eigen::VectorXd& errors) const {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < index.size(); ++i) sum += value[i] * errors[index[i]];
-    return sum;
-  }
-};
-
 Eigen::VectorXd prior_weights(const SensorPrior& prior) {
-  Eigen::VectorXd weights = Eigen::VectorXd::Constant(kAll, 1.0 / (prior.ring_m * prior.ring_m));
-  for (const int first : {0, kOfSensor}) {
+  Eigen::VectorXd weights = Eigen::VectorXd::Constant(kSensorErrors, 1.0 / (prior.ring_m * prior.ring_m));
+  for (const int first : {0, kErrorsOfSensor}) {
     weights[first] = 1.0 / (prior.bias_m * prior.bias_m);
     weights[first + 1] = 1.0 / (prior.walk_m * prior.walk_m);
   }
@@ -67,51 +44,82 @@ Eigen::VectorXd prior_weights(const SensorPrior& prior) {
 }
 
 /// Of a normal distribution, from the median of absolute values.
-double robust_sigma(std::vector<double> residuals) {
+double robust_sigma(const Eigen::VectorXd& residuals) {
   constexpr double kOfMedian = 1.4826;
   constexpr double kLeast = 1e-4;
-  for (double& residual : residuals) residual = std::abs(residual);
-  const auto middle = residuals.begin() + std::ssize(residuals) / 2;
-  std::ranges::nth_element(residuals, middle);
+  std::vector<double> sizes(residuals.data(), residuals.data() + residuals.size());
+  for (double& size : sizes) size = std::abs(size);
+  const auto middle = sizes.begin() + std::ssize(sizes) / 2;
+  std::ranges::nth_element(sizes, middle);
   return std::max(kOfMedian * *middle, kLeast);
 }
 
 }  // namespace
 
-SensorDifference::SensorDifference() : errors_(Eigen::VectorXd::Zero(kAll)) {}
+SensorTermsOf::SensorTermsOf(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b)
+    : viewpoint_a_(a.viewpoint()),
+      viewpoint_b_((T_a_b * b.viewpoint().cast<double>()).cast<float>()),
+      up_a_(Eigen::Vector3f::UnitZ()),
+      up_b_(T_a_b.rotation_matrix().col(2).cast<float>()) {}
 
-SensorDifference::SensorDifference(std::span<const SeenOffset> offsets, const SensorPrior& prior)
-    : SensorDifference() {
-  constexpr int kRounds = 5;
-  constexpr double kHuber = 1.345;  // sigmas: 95 % efficient where errors are normal
-  if (offsets.empty()) return;
-  std::vector<Row> rows;
-  for (const SeenOffset& offset : offsets) rows.emplace_back(offset);
-  std::vector<double> residuals(rows.size());
-  const Eigen::VectorXd known_before = prior_weights(prior);
-  for (int round = 0; round < kRounds; ++round) {
-    for (std::size_t i = 0; i < rows.size(); ++i) residuals[i] = offsets[i].metres - rows[i].times(errors_);
-    const double sigma = robust_sigma(residuals);
-    Eigen::MatrixXd H = known_before.asDiagonal();
-    Eigen::VectorXd g = Eigen::VectorXd::Zero(kAll);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const double weight =
-          std::min(1.0, kHuber * sigma / std::max(std::abs(residuals[i]), 1e-12)) / (sigma * sigma);
-      const auto& [index, value] = rows[i];
-      for (std::size_t j = 0; j < index.size(); ++j) {
-        g[index[j]] += weight * value[j] * offsets[i].metres;
-        for (std::size_t k = 0; k < index.size(); ++k) H(index[j], index[k]) += weight * value[j] * value[k];
-      }
-    }
-    errors_ = H.llt().solve(g);
-  }
+void SensorTermsOf::add(const WallPair& pair, double weight, SensorTerms& sum) const {
+  add_view(viewpoint_a_ - pair.seen_by_a, up_a_, pair.normal, weight, sum.head<kErrorsOfSensor>());
+  add_view(viewpoint_b_ - pair.seen_by_b, up_b_, pair.normal, -weight, sum.tail<kErrorsOfSensor>());
 }
 
-double SensorDifference::explains(const SeenOffset& offset) const { return Row(offset).times(errors_); }
+Vector6 motion_terms(const WallPair& pair) {
+  const Vector3 normal = pair.normal.cast<double>();
+  Vector6 terms;
+  terms << normal, pair.seen_by_b.cast<double>().cross(normal);
+  return terms;
+}
 
-double SensorDifference::bias_m() const {
-  const int horizon = 2 + kNodesToEachSide;
-  return errors_[kOfSensor] + errors_[kOfSensor + horizon] - errors_[0] - errors_[horizon];
+FitShift fit_shift(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
+                   const RegistrationConfig& config) {
+  constexpr double kDamping = 1e-3;  // as the fit's own: along open directions nothing moves
+  const auto distance = static_cast<float>(config.refine_distance_voxels * config.voxel_size);
+  const double squared_kernel = std::pow(config.refine_kernel_voxels * config.voxel_size, 2);
+  const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
+  const Eigen::Vector3f t = T_a_b.translation().cast<float>();
+  const SensorTermsOf terms_of(a, b, T_a_b);
+  Matrix6 H = Matrix6::Zero();
+  FitShift moved = FitShift::Zero();
+  for (const Eigen::Vector3f& point : b.some().points) {
+    const Eigen::Vector3f p = R * point + t;
+    const auto near = a.tree().nearest(p, distance);
+    if (!near) continue;
+    const WallPair pair{a.points().points[near->index], p, a.points().normals[near->index]};
+    const auto off = static_cast<double>(pair.normal.dot(p - pair.seen_by_a));
+    const double weight = std::pow(squared_kernel / (squared_kernel + off * off), 2);  // Geman and McClure
+    const Vector6 motion = motion_terms(pair);
+    SensorTerms terms = SensorTerms::Zero();
+    terms_of.add(pair, weight, terms);
+    H += weight * motion * motion.transpose();
+    moved += motion * terms.transpose();
+  }
+  H.diagonal().head<3>().array() += kDamping * H.diagonal().head<3>().mean() + 1e-12;
+  H.diagonal().tail<3>().array() += kDamping * H.diagonal().tail<3>().mean() + 1e-12;
+  return -H.ldlt().solve(moved);
+}
+
+Eigen::VectorXd explained_by_sensors(const Eigen::MatrixXd& terms, const Eigen::VectorXd& offsets,
+                                     const SensorPrior& prior) {
+  constexpr int kRounds = 5;
+  constexpr double kHuber = 1.345;  // sigmas: 95 % efficient where errors are normal
+  if (offsets.size() == 0) return offsets;
+  const Eigen::VectorXd known_before = prior_weights(prior);
+  Eigen::VectorXd errors = Eigen::VectorXd::Zero(kSensorErrors);
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::VectorXd residuals = offsets - terms * errors;
+    const double sigma = robust_sigma(residuals);
+    const Eigen::VectorXd weights =
+        (kHuber * sigma * residuals.array().abs().max(1e-12).inverse()).min(1.0) / (sigma * sigma);
+    const Eigen::MatrixXd weighted = terms.transpose() * weights.asDiagonal();
+    Eigen::MatrixXd H = weighted * terms;
+    H.diagonal() += known_before;
+    errors = H.llt().solve(weighted * offsets);
+  }
+  return terms * errors;
 }
 
 }  // namespace adit

@@ -6,24 +6,49 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <span>
 
 #include "adit/core/pose.hpp"
+#include "adit/registration/agreement.hpp"
 
 namespace adit {
 
-/// How a sensor sees a patch of wall.
-struct PatchView {
-  float cosine = 1.0F;     ///< Of the angle between ray and normal.
-  float elevation = 0.0F;  ///< Of the ray, radians, in the frame of the robot.
+/// Of each sensor: constant, by incidence, and by elevation at nodes four degrees apart up to 32 degrees,
+/// linear in between.
+inline constexpr int kElevationNodesToEachSide = 8;
+inline constexpr int kErrorsOfSensor = 2 + 2 * kElevationNodesToEachSide + 1;
+inline constexpr int kSensorErrors = 2 * kErrorsOfSensor;  ///< Those of a, then those of b.
+
+/// The derivatives of an offset, how far b's wall is in front of a's, by the errors of both sensors.
+using SensorTerms = Eigen::Matrix<double, kSensorErrors, 1>;
+
+/// A pair of points, one of each scan, on one wall. Frame of a.
+struct WallPair {
+  Eigen::Vector3f seen_by_a;
+  Eigen::Vector3f seen_by_b;
+  Eigen::Vector3f normal;  ///< Towards free space.
 };
 
-/// How far a patch of b's wall is in front of a's, metres, and how both saw it.
-struct SeenOffset {
-  double metres = 0.0;
-  PatchView by_a;
-  PatchView by_b;
+/// Adds up the terms of pairs of points of two scans.
+class SensorTermsOf {
+ public:
+  SensorTermsOf(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b);
+  void add(const WallPair& pair, double weight, SensorTerms& sum) const;
+
+ private:
+  Eigen::Vector3f viewpoint_a_;  // in the frame of a, as all
+  Eigen::Vector3f viewpoint_b_;
+  Eigen::Vector3f up_a_;  // of the robots
+  Eigen::Vector3f up_b_;
 };
+
+/// By how much a pair's offset grows when b moves by [translation; rotation] in the frame of a.
+[[nodiscard]] Vector6 motion_terms(const WallPair& pair);
+
+/// How errors of the sensors move the pose that fits b to a (fit_near): [translation; rotation] in the frame
+/// of a, a column for each error.
+using FitShift = Eigen::Matrix<double, 6, kSensorErrors>;
+[[nodiscard]] FitShift fit_shift(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
+                                 const RegistrationConfig& config);
 
 /// Errors of range by sensor, standard deviations in metres: what data sheets allow.
 struct SensorPrior {
@@ -32,21 +57,9 @@ struct SensorPrior {
   double ring_m = 0.01;
 };
 
-/// Errors of range of both sensors. Only what tells them apart is well known; the rest is the prior's.
-class SensorDifference {
- public:
-  /// None.
-  SensorDifference();
-  /// Robust (Huber), with the prior; `offsets` may be few or none.
-  SensorDifference(std::span<const SeenOffset> offsets, const SensorPrior& prior);
-
-  /// The part of the offset that the sensors explain.
-  [[nodiscard]] double explains(const SeenOffset& offset) const;
-  /// Range error of b minus that of a for a surface met head-on at the horizon.
-  [[nodiscard]] double bias_m() const;
-
- private:
-  Eigen::VectorXd errors_;
-};
+/// The part of `offsets`, metres, that the sensors explain: a robust fit (Huber) of their errors with the
+/// prior. `terms` has a row for each.
+[[nodiscard]] Eigen::VectorXd explained_by_sensors(const Eigen::MatrixXd& terms,
+                                                   const Eigen::VectorXd& offsets, const SensorPrior& prior);
 
 }  // namespace adit

@@ -99,7 +99,7 @@ WallOffsets Discernment::compare_own_walls() {
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (!differ(found[i].agreement))
       offsets.add(patch_offsets(surfaces_.at(pairs[i].a), surfaces_.at(pairs[i].b), found[i].T_a_b,
-                                chain_.pose(pairs[i].a), config_.registration.relief));
+                                chain_.pose(pairs[i].a), config_.registration));
   return offsets;
 }
 

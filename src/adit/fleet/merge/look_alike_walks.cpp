@@ -97,7 +97,7 @@ void LookAlikeWalks::follow(Measured& measured) {
         continue;
       }
       offsets[walk.look_alike].add(patch_offsets(surfaces.at(a), surfaces.at(b), step.found[w].T_a_b,
-                                                 chain_.pose(a), config_.registration.relief));
+                                                 chain_.pose(a), config_.registration));
       if (is_distinctive[w]) measured.look_alikes.add_agreed(walk.num_passed++);
     }
     std::erase_if(walks_, [](const Walk& walk) { return walk.is_over; });

@@ -101,7 +101,7 @@ ComparedPlace with_offsets(std::uint32_t theirs, int num_equal) {
   ComparedPlace place = kAgrees;
   for (int i = 0; i < 100; ++i)
     for (const double metres : {0.01, i < num_equal ? 0.01 : -0.01})
-      place.offsets.push_back({{static_cast<int>(theirs), i, 0, 0}, {metres, {}, {}}});
+      place.offsets.push_back({{static_cast<int>(theirs), i, 0, 0}, metres});
   return place;
 }
 

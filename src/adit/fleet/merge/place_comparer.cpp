@@ -24,8 +24,7 @@ ComparedPlace PlaceComparer::compared(const PlannedComparison& place, const Seen
   const LocalFit fit = fit_near(own, theirs, place.T_own_theirs, limit, registration_);
   ComparedPlace out{fit.agreement.largest_difference / limit, is_distinctive};
   if (!out.differs())
-    out.offsets =
-        patch_offsets(own, theirs, fit.T_a_b, map_.keyframes[place.own].T_odom_base, registration_.relief);
+    out.offsets = patch_offsets(own, theirs, fit.T_a_b, map_.keyframes[place.own].T_odom_base, registration_);
   return out;
 }
 
