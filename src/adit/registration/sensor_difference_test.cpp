@@ -9,118 +9,118 @@
 #include <vector>
 
 #include "adit/core/rng.hpp"
+#include "adit/registration/features.hpp"
+#include "adit/registration/relief.hpp"
 
 namespace adit {
 namespace {
 
-struct Errors {
+/// A drift with a flat floor, seen from a metre above it: a range error moves walls and roof, and hardly the
+/// floor.
+const Eigen::Array3f kLow(-9.0F, -2.5F, -1.0F);
+const Eigen::Array3f kHigh(9.0F, 3.0F, 4.0F);
+
+struct RangeErrors {
   double bias = 0.0;
   double walk = 0.0;  ///< Squared in 1 - cosine, unlike the model.
-  double tilt = 0.0;  ///< Of ranges, per radian of elevation: rings differ.
-  [[nodiscard]] double of(const PatchView& view) const {
-    const auto cosine = static_cast<double>(view.cosine);
-    return bias + walk * std::pow(1.0 - cosine, 2) + tilt * static_cast<double>(view.elevation);
-  }
 };
 
-PatchView random_view(Rng& rng) {
-  const double cosine = rng.uniform(0.2, 1.0);
-  const double elevation = rng.uniform(-0.3, 0.3);
-  return {static_cast<float>(cosine), static_cast<float>(elevation)};
+/// Ranges of a LiDAR at that place in the drift, in its own frame.
+SeenSurface seen_from(const Eigen::Vector3f& viewpoint, const RangeErrors& errors, std::uint64_t seed) {
+  Rng rng(seed);
+  PointCloud cloud;
+  for (int i = 0; i < 9000; ++i) {
+    const auto azimuth = static_cast<float>(rng.uniform(-3.1416, 3.1416));
+    const auto elevation = static_cast<float>(rng.uniform(-0.7, 0.7));
+    const Eigen::Array3f direction(std::cos(elevation) * std::cos(azimuth),
+                                   std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+    const Eigen::Array3f reach = ((direction > 0.0F).select(kHigh, kLow) - viewpoint.array()) / direction;
+    Eigen::Index wall = 0;
+    const float range = reach.minCoeff(&wall);
+    const auto off_normal = static_cast<double>(1.0F - std::abs(direction[wall]));
+    const double error = errors.bias + errors.walk * off_normal * off_normal + 0.01 * rng.normal();
+    cloud.points.emplace_back((range + static_cast<float>(error)) * direction.matrix());
+  }
+  return {compute_surface(cloud, {}), Vector3::Zero()};
 }
 
-/// Two scans of patches all around that stand `relief` apart, by turns in front and behind, fitted to one
-/// another as a whole.
-struct TwoScans {
-  std::vector<SeenOffset> offsets;
+const Eigen::Vector3f kFromA(0.0F, 0.0F, 0.0F);
+const Eigen::Vector3f kFromB(1.0F, 0.4F, 0.0F);
+const Pose kT_a_b = Pose::translation_of(1.0, 0.4, 0.0);
 
-  TwoScans(const Errors& a, const Errors& b, double relief, double noise) : offsets(3000) {
-    Rng rng(5);
-    for (std::size_t i = 0; i < offsets.size(); ++i) {
-      SeenOffset& one = offsets[i];
-      one.by_a = random_view(rng);
-      one.by_b = random_view(rng);
-      one.normal = -random_direction(rng);
-      one.point = -5.0F * one.normal + random_direction(rng);
-      one.metres = a.of(one.by_a) * static_cast<double>(one.by_a.cosine) -
-                   b.of(one.by_b) * static_cast<double>(one.by_b.cosine) + (i % 2 == 0 ? relief : -relief) +
-                   noise * rng.normal();
-    }
-    fit();
-  }
-
-  [[nodiscard]] Eigen::VectorXd metres() const {
-    Eigen::VectorXd out(std::ssize(offsets));
-    for (std::size_t i = 0; i < offsets.size(); ++i) out[static_cast<Eigen::Index>(i)] = offsets[i].metres;
-    return out;
-  }
-  /// Root mean square of what the sensors do not explain.
-  [[nodiscard]] double rms_left() const {
-    const Eigen::VectorXd left = metres() - explained_by_sensors(sensor_terms(offsets), metres(), {});
-    return std::sqrt(left.squaredNorm() / static_cast<double>(left.size()));
-  }
-
- private:
-  static Eigen::Vector3f random_direction(Rng& rng) {
-    const auto x = static_cast<float>(rng.normal());
-    const auto y = static_cast<float>(rng.normal());
-    const auto z = static_cast<float>(rng.normal());
-    return Eigen::Vector3f(x, y, z).normalized();
-  }
-  /// Point to plane: moves b by what makes the offsets least.
-  void fit() {
-    Eigen::MatrixXd motion(std::ssize(offsets), 6);
-    for (Eigen::Index i = 0; i < motion.rows(); ++i) {
-      const SeenOffset& one = offsets[static_cast<std::size_t>(i)];
-      motion.row(i) << one.normal.cast<double>().transpose(),
-          one.point.cross(one.normal).cast<double>().transpose();
-    }
-    const Eigen::VectorXd moved = motion * motion.colPivHouseholderQr().solve(metres());
-    for (std::size_t i = 0; i < offsets.size(); ++i) offsets[i].metres -= moved[static_cast<Eigen::Index>(i)];
-  }
-};
+Pose fitted(const SeenSurface& a, const SeenSurface& b) {
+  return fit_near(a, b, kT_a_b, 0.0, {}, FitFrom::guess).T_a_b;
+}
 
 double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
 
-TEST(SensorDifference, ExplainsWhatUnitsOfASensorDifferIn) {
-  const TwoScans scans({-0.02, 0.0, -0.02}, {0.03, 0.03, 0.02}, 0.0, 0.005);
-  EXPECT_GT(rms(scans.metres()), 0.02);
-  EXPECT_LT(scans.rms_left(), 0.0055);
+struct Offsets {
+  Eigen::VectorXd metres;
+  Eigen::MatrixXd terms;
+  [[nodiscard]] Eigen::VectorXd left() const { return metres - explained_by_sensors(terms, metres, {}); }
+};
+
+Offsets offsets_between(const RangeErrors& of_a, const RangeErrors& of_b) {
+  const SeenSurface a = seen_from(kFromA, of_a, 1);
+  const SeenSurface b = seen_from(kFromB, of_b, 2);
+  const std::vector<PatchOffset> found = patch_offsets(a, b, fitted(a, b), Pose(), {});
+  Offsets out{Eigen::VectorXd(std::ssize(found)), Eigen::MatrixXd(std::ssize(found), kSensorErrors)};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    out.metres[static_cast<Eigen::Index>(i)] = found[i].metres;
+    out.terms.row(static_cast<Eigen::Index>(i)) = found[i].terms.transpose();
+  }
+  return out;
 }
 
-// Half of the patches see the error, so a fit of the scans tilts and moves by a part of it.
-TEST(SensorDifference, WhatTheFitOfTheScansTookOverIsFoundToo) {
-  TwoScans scans({}, {}, 0.0, 0.0);
-  for (SeenOffset& one : scans.offsets) {
-    one.by_a = one.by_b = {one.normal.z() < 0.0F ? 1.0F : 0.1F, 0.0F};
-    one.metres = -0.03 * static_cast<double>(one.by_b.cosine);
+TEST(SensorDifference, TheFitShiftsAsItSays) {
+  constexpr double kBias = 0.04;
+  const SeenSurface a = seen_from(kFromA, {}, 1);
+  const Pose T_without = fitted(a, seen_from(kFromB, {}, 2));
+  const SeenSurface b = seen_from(kFromB, {kBias, 0.0}, 2);
+  const Pose T_with = fitted(a, b);
+  const Vector3 shifted = T_with.translation() - T_without.translation();
+  const FitShift shift = fit_shift(a, b, T_with, {});
+  const Vector6 predicted = kBias * shift.col(kErrorsOfSensor);  // the bias of b
+  ASSERT_GT(shifted.norm(), 0.005) << "roof and floor pull apart";
+  // In the frame of a: the rotation moves the origin of b, too.
+  const Vector3 at_b = predicted.head<3>() + predicted.tail<3>().cross(T_with.translation());
+  EXPECT_LT((at_b - shifted).norm(), 0.3 * shifted.norm());
+}
+
+TEST(SensorDifference, ExplainsWhatUnitsDifferIn) {
+  const double noise = rms(offsets_between({}, {}).left());
+  ASSERT_LT(noise, 0.004);
+  for (const RangeErrors& of_b : {RangeErrors{0.03, 0.0}, {-0.02, 0.02}, {0.06, 0.0}, {0.0, 0.03}}) {
+    const Offsets offsets = offsets_between({-0.01, 0.0}, of_b);
+    EXPECT_GT(rms(offsets.metres), 1.5 * noise) << of_b.bias;
+    EXPECT_LT(rms(offsets.left()), 1.25 * noise) << of_b.bias;
   }
-  const SensorTerms terms = sensor_terms(scans.offsets);
-  EXPECT_LT(rms(terms.col(0)), 0.9 * rms(scans.metres()) / 0.03) << "a part is motion";
-  const Eigen::VectorXd fitted = -0.03 * terms.col(0);  // what is left after the fit
-  EXPECT_LT(rms(fitted - explained_by_sensors(terms, fitted, {})), 1e-3);
 }
 
 TEST(SensorDifference, ReliefIsNotOfTheSensors) {
-  EXPECT_NEAR(TwoScans({}, {}, 0.01, 0.002).rms_left(), 0.01, 0.001);
+  Offsets offsets = offsets_between({}, {});
+  Rng rng(3);
+  for (double& metres : offsets.metres) metres += rng.uniform() < 0.5 ? 0.01 : -0.01;
+  EXPECT_GT(rms(offsets.left()), 0.009);
 }
 
 TEST(SensorDifference, ChangedPlacesDoNotDisturbIt) {
-  TwoScans scans({}, {0.02, 0.0, 0.0}, 0.0, 0.005);
-  for (std::size_t i = 0; i < scans.offsets.size(); i += 5) scans.offsets[i].metres += 0.1;
-  const SensorTerms terms = sensor_terms(scans.offsets);
-  const Eigen::VectorXd left = scans.metres() - explained_by_sensors(terms, scans.metres(), {});
-  std::vector<double> unchanged;
-  for (std::size_t i = 1; i < scans.offsets.size(); i += 5)
-    unchanged.push_back(std::abs(left[static_cast<Eigen::Index>(i)]));
-  std::ranges::nth_element(unchanged, unchanged.begin() + std::ssize(unchanged) / 2);
-  EXPECT_LT(unchanged[unchanged.size() / 2], 0.008);
+  Offsets offsets = offsets_between({}, {0.03, 0.0});
+  const Eigen::VectorXd before = offsets.left();
+  for (Eigen::Index i = 0; i < offsets.metres.size(); i += 8) offsets.metres[i] += 0.1;
+  const Eigen::VectorXd after = offsets.left();
+  std::vector<double> moved;
+  for (Eigen::Index i = 1; i < after.size(); i += 8) moved.push_back(std::abs(after[i] - before[i]));
+  std::ranges::nth_element(moved, moved.begin() + std::ssize(moved) / 2);
+  EXPECT_LT(moved[moved.size() / 2], 0.003);
 }
 
 TEST(SensorDifference, FewOffsetsLeaveThePrior) {
-  EXPECT_EQ(explained_by_sensors({}, {}, {}).size(), 0);
-  const std::vector<SeenOffset> one(1, {0.5});
-  EXPECT_LT(std::abs(explained_by_sensors(sensor_terms(one), Eigen::VectorXd::Constant(1, 0.5), {})[0]), 0.5);
+  EXPECT_EQ(explained_by_sensors(Eigen::MatrixXd(0, kSensorErrors), Eigen::VectorXd(0), {}).size(), 0);
+  Eigen::MatrixXd terms = Eigen::MatrixXd::Zero(1, kSensorErrors);
+  terms(0, kErrorsOfSensor) = -1.0;
+  const Eigen::VectorXd far = Eigen::VectorXd::Constant(1, 0.5);
+  EXPECT_LT(std::abs(explained_by_sensors(terms, far, {})[0]), 0.1);
 }
 
 }  // namespace
