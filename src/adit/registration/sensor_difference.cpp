@@ -76,7 +76,8 @@ Vector6 motion_terms(const WallPair& pair) {
 
 FitShift fit_shift(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
                    const RegistrationConfig& config) {
-  constexpr double kDamping = 1e-3;  // as the fit's own: along open directions nothing moves
+  constexpr double kDamping = 1e-3;         // as of align_to_planes: along open directions nothing moves
+  constexpr float kAgreeingNormals = 0.8F;  // as of PlaneAligner
   const auto distance = static_cast<float>(config.refine_distance_voxels * config.voxel_size);
   const double squared_kernel = std::pow(config.refine_kernel_voxels * config.voxel_size, 2);
   const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
@@ -84,18 +85,25 @@ FitShift fit_shift(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b
   const SensorTermsOf terms_of(a, b, T_a_b);
   Matrix6 H = Matrix6::Zero();
   FitShift moved = FitShift::Zero();
-  for (const Eigen::Vector3f& point : b.some().points) {
-    const Eigen::Vector3f p = R * point + t;
+  const OrientedPoints& sample = b.some();
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    const Eigen::Vector3f p = R * sample.points[i] + t;
     const auto near = a.tree().nearest(p, distance);
     if (!near) continue;
-    const WallPair pair{a.points().points[near->index], p, a.points().normals[near->index]};
-    const auto off = static_cast<double>(pair.normal.dot(p - pair.seen_by_a));
-    const double weight = std::pow(squared_kernel / (squared_kernel + off * off), 2);  // Geman and McClure
-    const Vector6 motion = motion_terms(pair);
-    SensorTerms terms = SensorTerms::Zero();
-    terms_of.add(pair, weight, terms);
-    H += weight * motion * motion.transpose();
-    moved += motion * terms.transpose();
+    const Eigen::Vector3f& p_a = a.points().points[near->index];
+    const Eigen::Vector3f& normal_a = a.points().normals[near->index];
+    const Eigen::Vector3f normal_b = R * sample.normals[i];
+    if (std::abs(normal_a.dot(normal_b)) < kAgreeingNormals) continue;
+    for (const Eigen::Vector3f& normal : {normal_a, normal_b}) {
+      const WallPair pair{p_a, p, normal};
+      const auto off = static_cast<double>(normal.dot(p - p_a));
+      const double weight = std::pow(squared_kernel / (squared_kernel + off * off), 2);  // Geman and McClure
+      const Vector6 motion = motion_terms(pair);
+      SensorTerms terms = SensorTerms::Zero();
+      terms_of.add(pair, weight, terms);
+      H += weight * motion * motion.transpose();
+      moved += motion * terms.transpose();
+    }
   }
   H.diagonal().head<3>().array() += kDamping * H.diagonal().head<3>().mean() + 1e-12;
   H.diagonal().tail<3>().array() += kDamping * H.diagonal().tail<3>().mean() + 1e-12;

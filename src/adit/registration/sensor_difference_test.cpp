@@ -74,22 +74,27 @@ Offsets offsets_between(const RangeErrors& of_a, const RangeErrors& of_b) {
 
 TEST(SensorDifference, TheFitShiftsAsItSays) {
   constexpr double kBias = 0.04;
-  const SeenSurface a = seen_from(kFromA, {}, 1);
-  const Pose T_without = fitted(a, seen_from(kFromB, {}, 2));
-  const SeenSurface b = seen_from(kFromB, {kBias, 0.0}, 2);
-  const Pose T_with = fitted(a, b);
-  const Vector3 shifted = T_with.translation() - T_without.translation();
-  const FitShift shift = fit_shift(a, b, T_with, {});
-  const Vector6 predicted = kBias * shift.col(kErrorsOfSensor);  // the bias of b
+  constexpr int kTrials = 20;  // a bias moves points into other voxels: noise
+  Vector3 shifted = Vector3::Zero();
+  Vector3 predicted = Vector3::Zero();
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const auto seed = static_cast<std::uint64_t>(2 * trial);
+    const SeenSurface a = seen_from(kFromA, {}, seed);
+    const SeenSurface b = seen_from(kFromB, {kBias, 0.0}, seed + 1);
+    const Pose T_with = fitted(a, b);
+    shifted += (T_with.translation() - fitted(a, seen_from(kFromB, {}, seed + 1)).translation()) / kTrials;
+    const Vector6 shift = kBias * fit_shift(a, b, T_with, {}).col(kErrorsOfSensor);  // the bias of b
+    // In the frame of a: the rotation moves the origin of b, too.
+    predicted += (shift.head<3>() + shift.tail<3>().cross(T_with.translation())) / kTrials;
+  }
   ASSERT_GT(shifted.norm(), 0.005) << "roof and floor pull apart";
-  // In the frame of a: the rotation moves the origin of b, too.
-  const Vector3 at_b = predicted.head<3>() + predicted.tail<3>().cross(T_with.translation());
-  EXPECT_LT((at_b - shifted).norm(), 0.3 * shifted.norm());
+  EXPECT_LT((predicted - shifted).norm(), 0.25 * shifted.norm())
+      << predicted.transpose() << ", was " << shifted.transpose();
 }
 
 TEST(SensorDifference, ExplainsWhatUnitsDifferIn) {
   const double noise = rms(offsets_between({}, {}).left());
-  ASSERT_LT(noise, 0.004);
+  ASSERT_LT(noise, 0.006);
   for (const RangeErrors& of_b : {RangeErrors{0.03, 0.0}, {-0.02, 0.02}, {0.06, 0.0}, {0.0, 0.03}}) {
     const Offsets offsets = offsets_between({-0.01, 0.0}, of_b);
     EXPECT_GT(rms(offsets.metres), 1.5 * noise) << of_b.bias;

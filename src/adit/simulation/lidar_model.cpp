@@ -105,7 +105,11 @@ ADIT_WIDE_VECTORS void measure(const Returns& returns, const Chance& chance,
     const float off_normal = 1.0F - cosine;
     const float true_return =
         distances[i] + sigma * chance.noise[i] + (biases[i] + walk * off_normal * off_normal);
-    const float range = chance.falseness[i] < false_returns ? chance.share[i] * true_return : true_return;
+    const float in_dust = range_min + kDustReach * chance.share[i] * chance.share[i];
+    const bool is_false = chance.falseness[i] < false_returns;
+    const bool is_dust = !is_false & (chance.falseness[i] < false_or_dust);
+    const float not_false = is_dust ? std::min(in_dust, true_return) : true_return;
+    const float range = is_false ? chance.share[i] * true_return : not_false;
     const float share_lost = (arc_cosine(cosine) - dropout_start) / dropout_width;
     const bool lost = (cosine < cos_dropout_start) & (chance.dropout[i] < share_lost);
     const bool kept = !lost & (distances[i] < RayHit::kMiss) & (range >= range_min) & (range <= range_max);

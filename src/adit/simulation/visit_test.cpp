@@ -69,7 +69,7 @@ TEST(Visit, TheSameThingsStandThereForAllButThoseThatChange) {
 }
 
 TEST(Visit, NothingStandsWhereThereIsNoRoom) {
-  for (const TriangleMesh& mesh : parked(2.2, 1.0)) EXPECT_EQ(num_things(mesh), 0U);
+  for (const TriangleMesh& mesh : parked(1.6, 1.0)) EXPECT_EQ(num_things(mesh), 0U);
 }
 
 TEST(Visit, PeopleWalkBesideTheRobotAndNotInIt) {
