@@ -178,8 +178,7 @@ TEST(LidarUnit, RecordingsStateTheNominalMountAndScansComeFromTheTrueOne) {
   ASSERT_GT(std::abs(true_height - config.lidar.mount_height), 0.05);
   const Scan scan = recording.read_scan(0).value();
   double lowest = 0.0;  // the robot stands at first
-  for (const Eigen::Vector3f& p : scan.cloud.points)
-    lowest = std::min(lowest, static_cast<double>(p.z()));
+  for (const Eigen::Vector3f& p : scan.cloud.points) lowest = std::min(lowest, static_cast<double>(p.z()));
   EXPECT_NEAR(lowest, -true_height, 1e-3);
 }
 
