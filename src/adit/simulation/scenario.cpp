@@ -216,7 +216,7 @@ Result<std::vector<LidarConfig>> lidars_of(const ScenarioConfig& config) {
   for (std::string name; std::getline(names, name, ',');) {
     std::erase(name, ' ');
     Result<LidarConfig> lidar = lidar_preset(name);
-    if (!lidar) return lidar.map([](LidarConfig) { return std::vector<LidarConfig>(); });
+    if (!lidar) return tl::unexpected(lidar.error());
     lidar->mount_forward = config.lidar.mount_forward;
     lidar->mount_height = config.lidar.mount_height;
     lidars.push_back(*std::move(lidar));

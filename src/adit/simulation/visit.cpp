@@ -182,11 +182,12 @@ TriangleMesh people_around(const Trajectory& truth, Stamp stamp, int num_people)
   constexpr double kGait = 0.15;   // metres to the side, once per second: nobody walks on rails
   TriangleMesh mesh;
   for (int i = 0; i < num_people; ++i) {
-    const double away = kNearest + kOneAfterTheOther * (i / 2);
+    const int pair = i / 2;
+    const double away = kNearest + kOneAfterTheOther * pair;
     const Stamp there = stamp + from_seconds(i % 2 == 0 ? away : -away);
     const Result<Pose> T_world_base =
         pose_at(truth, std::clamp(there, truth.front().stamp, truth.back().stamp));
-    const double side = (i / 2) % 2 == 0 ? 1.0 : -1.0;
+    const double side = pair % 2 == 0 ? 1.0 : -1.0;
     const double sway = kGait * std::sin(2.0 * std::numbers::pi * stamp.seconds());
     const Pose T_world_person = *T_world_base * Pose::translation_of(0.0, side * kBeside + sway, 0.0);
     append(mesh, box(T_world_person, {-0.1, -0.18, 0.0}, {0.1, 0.18, 0.9}));
