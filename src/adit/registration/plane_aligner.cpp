@@ -11,7 +11,6 @@
 namespace adit {
 namespace {
 
-constexpr float kAgreeingNormals = 0.8F;  ///< Least cosine between the normals of a pair: 37 degrees.
 /// A search looks this many times farther than pairs may be apart, so that a point without a partner need not
 /// be searched again at once.
 constexpr float kReach = 1.25F;

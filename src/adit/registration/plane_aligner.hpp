@@ -11,6 +11,9 @@
 
 namespace adit {
 
+/// Least cosine between the normals of a pair that counts: 37 degrees.
+inline constexpr float kAgreeingNormals = 0.8F;
+
 /// Gauss-Newton's normal equations H step = -g of the plane residuals at one pose, weighted by the
 /// Geman-McClure kernel, for a right perturbation [translation; rotation].
 struct PlaneEquations {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adit/core/angles.hpp"
+#include "adit/registration/plane_aligner.hpp"
 
 namespace adit {
 namespace {
@@ -76,8 +77,7 @@ Vector6 motion_terms(const WallPair& pair) {
 
 FitShift fit_shift(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
                    const RegistrationConfig& config) {
-  constexpr double kDamping = 1e-3;         // as of align_to_planes: along open directions nothing moves
-  constexpr float kAgreeingNormals = 0.8F;  // as of PlaneAligner
+  constexpr double kDamping = 1e-3;  // as of align_to_planes: along open directions nothing moves
   const auto distance = static_cast<float>(config.refine_distance_voxels * config.voxel_size);
   const double squared_kernel = std::pow(config.refine_kernel_voxels * config.voxel_size, 2);
   const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
