@@ -30,9 +30,10 @@ struct Drive {
   std::vector<Recording> recordings;
   std::vector<std::pair<std::size_t, std::size_t>> scans;  // recording, scan
 
-  Drive() : world(make_world({}).value()) {
+  explicit Drive(Conditions conditions) : world(make_world({}).value()) {
     ScenarioConfig config;
     config.lidar = lidar;
+    set_conditions(conditions, config);
     recordings = simulate(world, config).value();
     for (std::size_t r = 0; r < recordings.size(); ++r) {
       for (std::size_t k = 0; k < kScansARoute; ++k) {
@@ -200,7 +201,8 @@ const auto registered = [] {
         "simulation/zab-os2-128-" + std::to_string(threads) + "-thread" + (threads > 1 ? "s" : "");
     const double num_scans = 4 * kScansARoute;
     Case({.name = name,
-          .work = "scans of 131,072 rays with rolling shutter, noise and drop-out; Embree: the rays alone",
+          .work = "scans of 131,072 rays with rolling shutter, noise and drop-out; adit-field: --conditions "
+                  "field; Embree: the rays alone",
           .scene = "world zab, seed 1, 16 scans of an OS2-128",
           .num_threads = threads,
           .peer = "embree",
@@ -209,18 +211,20 @@ const auto registered = [] {
                   "and three 64-bit hashes per ray",
           .per_run = num_scans,
           .unit = "scan"});
-    Side(name, "adit", [] {
-      return [drive = std::make_shared<const Drive>()] {
-        double num_points = 0.0;
-        for (const auto& [r, s] : drive->scans) {
-          num_points += static_cast<double>(drive->recordings[r].read_scan(s).value().cloud.size());
-        }
-        return Figures{{"returns", num_points / static_cast<double>(drive->num_rays())}};
-      };
-    });
+    for (const Conditions conditions : kConditions) {
+      Side(name, conditions == Conditions::ideal ? "adit" : "adit-field", [conditions] {
+        return [drive = std::make_shared<const Drive>(conditions)] {
+          double num_points = 0.0;
+          for (const auto& [r, s] : drive->scans) {
+            num_points += static_cast<double>(drive->recordings[r].read_scan(s).value().cloud.size());
+          }
+          return Figures{{"returns", num_points / static_cast<double>(drive->num_rays())}};
+        };
+      });
+    }
     Side(name, "embree",
          [] {
-           const Drive drive;
+           const Drive drive(Conditions::ideal);
            return [cast = fastest_caster(drive)] {
              cast();
              return Figures{};
