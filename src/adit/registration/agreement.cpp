@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <utility>
 
+#include "adit/registration/changed_thing.hpp"
 #include "adit/registration/icp_refine.hpp"
 
 namespace adit {
@@ -21,6 +21,7 @@ constexpr int kRows = 60;
 // of the range.
 constexpr float kMarginVoxels = 1.0F;
 constexpr float kMarginShare = 0.01F;
+constexpr float kSameSurface = 0.8F;                           // cosine between normals
 constexpr std::size_t kEnoughToAlign = 1500;                   // points, or up to twice as many
 constexpr double kWideVoxels = 5.0;                            // farthest pairs of the first of two fits
 constexpr double kMaxCorrection = 2.5;                         // metres
@@ -41,39 +42,6 @@ std::size_t cell_of(const Eigen::Vector3f& direction) {
   return place(row, column);
 }
 
-// Number of points in the largest set that is connected over neighbouring cells of a grid.
-std::size_t largest_patch(const std::vector<Eigen::Vector3f>& points, float cell_size) {
-  using Cell = std::array<int, 3>;
-  std::map<Cell, std::size_t> cells;
-  for (const Eigen::Vector3f& p : points) {
-    const Eigen::Vector3f scaled = p / cell_size;
-    ++cells[{static_cast<int>(std::floor(scaled.x())), static_cast<int>(std::floor(scaled.y())),
-             static_cast<int>(std::floor(scaled.z()))}];
-  }
-  std::size_t largest = 0;
-  std::vector<Cell> reached;
-  while (!cells.empty()) {
-    std::size_t size = 0;
-    const auto take = [&](std::map<Cell, std::size_t>::iterator cell) {
-      size += cell->second;
-      reached.push_back(cell->first);
-      cells.erase(cell);
-    };
-    take(cells.begin());
-    while (!reached.empty()) {
-      const Cell at = reached.back();
-      reached.pop_back();
-      for (int neighbour = 0; neighbour < 27; ++neighbour) {
-        const Cell next = {at[0] + neighbour % 3 - 1, at[1] + neighbour / 3 % 3 - 1,
-                           at[2] + neighbour / 9 - 1};
-        if (const auto cell = cells.find(next); cell != cells.end()) take(cell);
-      }
-    }
-    largest = std::max(largest, size);
-  }
-  return largest;
-}
-
 OrientedPoints every_nth(const OrientedPoints& all) {
   const std::size_t step = std::max<std::size_t>(all.size() / kEnoughToAlign, 1);
   OrientedPoints some;
@@ -84,10 +52,31 @@ OrientedPoints every_nth(const OrientedPoints& all) {
   return some;
 }
 
+// What a saw where a point of b lies, given in the frame of a.
+Compared compared(const SeenSurface& a, const Eigen::Vector3f& p, const Eigen::Vector3f& normal,
+                  const RegistrationConfig& config) {
+  const auto voxel = static_cast<float>(config.voxel_size);
+  const auto reach = static_cast<float>(config.overlap_distance_voxels) * voxel;
+  const auto thickness = static_cast<float>(config.refine_kernel_voxels) * voxel;
+  const Eigen::Vector3f ray = p - a.viewpoint();
+  const SeenSurface::Ranges& seen = a.towards(ray);
+  if (seen.empty()) return Compared::unseen;
+  const float range = ray.norm();
+  const float margin = kMarginVoxels * voxel + kMarginShare * range;
+  if (range > seen.farthest + margin) return Compared::unseen;  // hidden
+  if (range < seen.nearest - margin) return Compared::differs;
+  const auto near = a.tree().nearest(p, reach);
+  if (!near) return Compared::unseen;  // between the beams
+  const Eigen::Vector3f& a_normal = a.points().normals[near->index];
+  if (!(std::abs(a_normal.dot(p - a.points().points[near->index])) < thickness)) return Compared::differs;
+  return a_normal.dot(normal) > kSameSurface ? Compared::same_surface : Compared::confirmed;
+}
+
 struct Counts {
   std::size_t confirmed = 0;
   std::size_t differing = 0;
   std::size_t largest_difference = 0;
+  std::vector<ChangedThing> things;  // in the frame of b
 };
 
 // Compares the points of b with what a saw in the same space.
@@ -95,33 +84,33 @@ Counts seen_by(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
                const RegistrationConfig& config) {
   const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
   const Eigen::Vector3f t = T_a_b.translation().cast<float>();
-  const auto voxel = static_cast<float>(config.voxel_size);
-  const auto reach = static_cast<float>(config.overlap_distance_voxels) * voxel;
-  const auto thickness = static_cast<float>(config.refine_kernel_voxels) * voxel;
+  const OrientedPoints& points = b.points();
   Counts counts;
-  std::vector<Eigen::Vector3f> differing;
-  for (const Eigen::Vector3f& point : b.points().points) {
-    const Eigen::Vector3f p = R * point + t;
-    const Eigen::Vector3f ray = p - a.viewpoint();
-    const SeenSurface::Ranges& seen = a.towards(ray);
-    if (seen.empty()) continue;
-    const float range = ray.norm();
-    const float margin = kMarginVoxels * voxel + kMarginShare * range;
-    if (range > seen.farthest + margin) continue;  // hidden
-    bool is_confirmed = false;
-    if (range >= seen.nearest - margin) {
-      const auto near = a.tree().nearest(p, reach);
-      if (!near) continue;  // between the beams
-      const float off = a.points().normals[near->index].dot(p - a.points().points[near->index]);
-      is_confirmed = std::abs(off) < thickness;
-    }
-    if (is_confirmed)
+  std::vector<Compared> all(points.size());
+  std::vector<std::size_t> differing;
+  std::vector<Eigen::Vector3f> where;  // those differ, in the frame of a
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3f p = R * points.points[i] + t;
+    all[i] = compared(a, p, R * points.normals[i], config);
+    if (all[i] == Compared::unseen) continue;
+    if (all[i] != Compared::differs) {
       ++counts.confirmed;
-    else
-      differing.push_back(p);
+      continue;
+    }
+    differing.push_back(i);
+    where.push_back(p);
   }
   counts.differing = differing.size();
-  counts.largest_difference = largest_patch(differing, voxel);
+  for (std::vector<std::size_t>& patch : connected_patches(where, static_cast<float>(config.voxel_size))) {
+    for (std::size_t& i : patch) i = differing[i];
+    if (!may_be_a_thing(b, patch, all, config)) {
+      counts.largest_difference = patch.size();
+      break;
+    }
+    Vector3 sum = Vector3::Zero();
+    for (const std::size_t i : patch) sum += points.points[i].cast<double>();
+    counts.things.push_back({sum / static_cast<double>(patch.size()), patch.size()});
+  }
   return counts;
 }
 
@@ -166,7 +155,9 @@ std::size_t SeenSurface::num_bytes() const {
 Agreement agreement(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
                     const RegistrationConfig& config) {
   const std::array<Counts, 2> both = {seen_by(a, b, T_a_b, config), seen_by(b, a, T_a_b.inverse(), config)};
-  Agreement out{1.0, 0.0};
+  Agreement out{1.0, 0.0, both[1].things};
+  for (const ChangedThing& thing : both[0].things)
+    out.things.push_back({T_a_b * thing.position, thing.num_points});
   for (const Counts& counts : both) {
     if (counts.confirmed == 0) return {};
     out.confirmed = std::min(out.confirmed, static_cast<double>(counts.confirmed) /

@@ -44,16 +44,24 @@ class SeenSurface {
   std::vector<Ranges> ranges_;
 };
 
+/// A patch that differs and may be a thing that comes and goes (changed_thing.hpp).
+struct ChangedThing {
+  Vector3 position;  ///< Of its middle, as it was seen; metres.
+  std::size_t num_points = 0;
+};
+
 /// How well two scans agree at a given relative pose, where both could see. Of each scan, only points count
 /// that lie where the other scan saw too. They are confirmed when they lie on its surfaces. They differ when
 /// they lie off a surface near them, or in space that the other scan saw to be free. Points hidden behind the
 /// other's surfaces, or between its beams, do not count.
 struct Agreement {
   double confirmed = 0.0;  ///< Share of the points that count, the smaller of both directions.
-  /// Number of points, one per voxel, in the largest connected patch that differs; the larger of both
-  /// directions. A niche or a cabinet that only one of two tubes has makes one large patch; noise and beams
-  /// that miss make many small ones.
+  /// Number of points, one per voxel, in the largest connected patch that differs and is no thing that may
+  /// come and go; the larger of both directions. A niche or a passage that only one of two tubes has makes one
+  /// large patch; noise and beams that miss make many small ones.
   double largest_difference = std::numeric_limits<double>::infinity();
+  /// Larger patches than that, of things that may come and go, wherever either scan saw them; frame of a.
+  std::vector<ChangedThing> things = {};
   [[nodiscard]] bool is_comparable() const { return confirmed > 0.0; }  ///< Points of both scans count.
 };
 

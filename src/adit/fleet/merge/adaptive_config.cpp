@@ -52,6 +52,8 @@ Fields fields_of(MergeCheckConfig& c) {
       {"gross_difference", &c.gross_difference, "", 1.0, 1000.0,
        "differences beyond this times the limit are niches or cabinets, not noise"},
       {"gross_rate", &c.gross_rate, "", 1e-6, 0.5, "chance of such a difference between scans of one place"},
+      {"changed_per_km", &c.changed_per_km, "1/km", 0.0, 1e4,
+       "vehicles and the like that one robot meets on a shared stretch and the other does not, at worst"},
       {"misplaced_m", &c.misplaced_m, "m", 0.0, 1000.0,
        "a loop contradicts another one nearby if they disagree by more"},
       {"misplaced_keyframes", &c.misplaced_keyframes, "", 0, 1e6,

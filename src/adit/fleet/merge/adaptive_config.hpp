@@ -41,6 +41,7 @@ struct MergeCheckConfig {
   double agreement_at_worst = 0.95;
   double gross_difference = 3.0;
   double gross_rate = 0.005;
+  double changed_per_km = 40.0;
   double misplaced_m = 0.75;
   int misplaced_keyframes = 60;
   int misplaced_neighbours = 5;

@@ -83,6 +83,13 @@ void plan_comparisons(Hypothesis& hypothesis, const LoopsBetween& between, doubl
 
 }  // namespace
 
+void ChangedThings::add(const std::vector<Vector3>& seen) {
+  constexpr double kOneThing = 5.0;  // metres between the middles of what is seen of it from two sides
+  for (const Vector3& place : seen)
+    if (std::ranges::none_of(places_, [&](const Vector3& other) { return (other - place).norm() < kOneThing; }))
+      places_.push_back(place);
+}
+
 bool Hypothesis::is_finished() const { return compared.size() == plan.size() && to_look_at_again().empty(); }
 
 std::vector<std::size_t> Hypothesis::to_look_at_again() const {

@@ -20,7 +20,18 @@ struct ComparedPlace {
   double difference = 0.0;      ///< Over the limit of Discernment: above 1 the scans cannot be of one place.
   bool is_distinctive = false;  ///< A displacement along the tunnel would have shown.
   std::vector<PatchOffset> offsets = {};  ///< Of their walls from the own ones; none where it differs.
+  std::vector<Vector3> things = {};  ///< Where one robot met what may come and go; own odometry frame, metres.
   [[nodiscard]] bool differs() const { return !(difference <= 1.0); }
+};
+
+/// Things that one robot met and the other did not, each counted once however often it was seen.
+class ChangedThings {
+ public:
+  void add(const std::vector<Vector3>& seen);
+  [[nodiscard]] std::size_t num() const { return places_.size(); }
+
+ private:
+  std::vector<Vector3> places_;  ///< Where each was seen first.
 };
 
 struct Hypothesis {
@@ -29,6 +40,7 @@ struct Hypothesis {
   std::vector<std::optional<PlannedComparison>> second_looks;  ///< Of each place of the plan, until taken.
   std::vector<ComparedPlace> compared;  ///< Of the first places of the plan, without their offsets.
   WallOffsets offsets;                  ///< Of all compared walls.
+  ChangedThings things;                 ///< At all compared places.
   std::vector<double> apart_m;  ///< To each hypothesis before this one: where they put the other robot.
   double known_before = 0.0;    ///< Evidence that does not come from comparing scans.
 

@@ -29,6 +29,7 @@ MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first) c
   // Against copies. Scans of one place seldom differ, and one wall stands apart from itself to either side.
   if (has_other_walls(best)) return MergeDecision::other_walls;
   if (differs_too_often(best)) return MergeDecision::scans_differ;
+  if (changed_too_much(best)) return MergeDecision::things_differ;
 
   // Against chance. Only places where a displacement along the tunnel would show are evidence, by how seldom
   // look-alikes of the own map agree for as long (Wald's test).
@@ -60,8 +61,19 @@ bool MergeChecker::differs_too_often(const Hypothesis& h) const {
              config_.refusal_rate;
 }
 
+double MergeChecker::compared_km(const Hypothesis& h) const {
+  constexpr double kSight = 20.0;  // metres of a tunnel that a pair of scans shows
+  const double by_places = static_cast<double>(h.compared.size()) * kSight;
+  const double whole = static_cast<double>(h.plan.size()) * config_.spacing_m + kSight;
+  return std::min(by_places, whole) / 1000.0;
+}
+
+bool MergeChecker::changed_too_much(const Hypothesis& h) const {
+  return poisson_tail(h.things.num(), config_.changed_per_km * compared_km(h)) < config_.refusal_rate;
+}
+
 bool MergeChecker::is_refuted(const Hypothesis& h) const {
-  return differs_too_often(h) || has_other_walls(h);
+  return differs_too_often(h) || changed_too_much(h) || has_other_walls(h);
 }
 
 bool MergeChecker::are_rivals(const Hypothesis& best, const Hypothesis& other) const {
@@ -133,6 +145,7 @@ void MergeChecker::add(const std::vector<ComparedPlace>& places) {
   ADIT_CHECK(h.compared.size() + places.size() <= h.plan.size(), "only what was asked for is added");
   for (const ComparedPlace& place : places) {
     h.offsets.add(place.offsets);
+    h.things.add(place.things);
     h.compared.push_back({place.difference, place.is_distinctive});
   }
 }
@@ -144,6 +157,7 @@ void MergeChecker::add_second_looks(Hypothesis& h, const std::vector<ComparedPla
     h.second_looks[again[i]].reset();
     if (places[i].differs()) continue;
     h.offsets.add(places[i].offsets);
+    h.things.add(places[i].things);
     h.compared[again[i]] = {places[i].difference, places[i].is_distinctive};
   }
 }

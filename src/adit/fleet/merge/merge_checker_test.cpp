@@ -96,6 +96,41 @@ TEST(MergeChecker, SoManyLoopsHaveToAgreeWhateverThePlacesSay) {
   EXPECT_NE(too_few.reason.find("2 loops agree, 3 are needed"), std::string::npos) << too_few.reason;
 }
 
+TEST(MergeChecker, AThingCountsOnceHoweverOftenItIsSeen) {
+  ChangedThings things;
+  things.add({{10.0, 0.0, 0.0}, {40.0, 0.0, 0.0}});
+  things.add({{12.0, 1.0, 0.0}, {43.0, -1.0, 0.0}, {20.0, 0.0, 0.0}});
+  EXPECT_EQ(things.num(), 3U);
+}
+
+// A thing in every so many places, 9 m apart from the next one at least.
+MergeCheck check_with_things(std::uint32_t every) {
+  MergeChecker checker = a_check(kTrueLoops);
+  return run(checker, [&](const PlannedComparison& check) {
+    ComparedPlace place = kAgrees;
+    if (check.theirs % every == 0) place.things.emplace_back(9.0 * check.theirs, 0.0, 0.0);
+    return place;
+  });
+}
+
+TEST(MergeChecker, ThingsMayHaveComeAndGone) {
+  const MergeCheck check = check_with_things(40);
+  EXPECT_TRUE(check.accepted) << check.reason;
+}
+
+TEST(MergeChecker, MoreThingsThanComeAndGoAreOfOtherTunnels) {
+  const MergeCheck check = check_with_things(1);
+  EXPECT_FALSE(check.accepted);
+  EXPECT_NE(check.reason.find("things that stand on the floor"), std::string::npos) << check.reason;
+}
+
+TEST(MergeEvidence, PoissonTail) {
+  EXPECT_DOUBLE_EQ(poisson_tail(0, 2.0), 1.0);
+  EXPECT_NEAR(poisson_tail(1, 2.0), 1.0 - std::exp(-2.0), 1e-12);
+  EXPECT_NEAR(poisson_tail(3, 2.0), 1.0 - 5.0 * std::exp(-2.0), 1e-12);
+  EXPECT_DOUBLE_EQ(poisson_tail(1, 0.0), 0.0);
+}
+
 // Patches of its own for each place, seen there twice; of so many in a hundred both offsets lie on one side.
 ComparedPlace with_offsets(std::uint32_t theirs, int num_equal) {
   ComparedPlace place = kAgrees;

@@ -35,6 +35,16 @@ std::vector<double> evidence_at_places(const std::vector<TestedPlace>& places, c
   return evidence;
 }
 
+double poisson_tail(std::size_t k, double mean) {
+  double fewer = 0.0;
+  double term = std::exp(-mean);
+  for (std::size_t i = 0; i < k; ++i) {
+    fewer += term;
+    term *= mean / static_cast<double>(i + 1);
+  }
+  return std::max(1.0 - fewer, 0.0);
+}
+
 double binomial_tail(std::size_t k, std::size_t n, double p) {
   double chance = 0.0;
   for (std::size_t i = k; i <= n; ++i) {

@@ -22,9 +22,12 @@ ComparedPlace PlaceComparer::compared(const PlannedComparison& place, const Seen
   const double limit = discernment_.limit();
   const SeenSurface& own = discernment_.surfaces().at(place.own);
   const LocalFit fit = fit_near(own, theirs, place.T_own_theirs, limit, registration_);
+  const Pose& T_odom_own = map_.keyframes[place.own].T_odom_base;
   ComparedPlace out{fit.agreement.largest_difference / limit, is_distinctive};
+  for (const ChangedThing& thing : fit.agreement.things)
+    if (static_cast<double>(thing.num_points) > limit) out.things.push_back(T_odom_own * thing.position);
   if (!out.differs())
-    out.offsets = patch_offsets(own, theirs, fit.T_a_b, map_.keyframes[place.own].T_odom_base, registration_);
+    out.offsets = patch_offsets(own, theirs, fit.T_a_b, T_odom_own, registration_);
   return out;
 }
 
