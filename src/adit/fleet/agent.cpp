@@ -65,7 +65,7 @@ Agent::Agent(std::shared_ptr<const RobotMap> map, const AgentConfig& config)
     : map_(std::move(map)),
       config_(config),
       ledger_(map_->id, graph_of(*map_), config.policy),
-      features_(std::make_shared<FeatureStore>(map_, config.registration_in_use())),
+      features_(std::make_shared<FeatureStore>(map_, config.registration_in_use(), config.submap_in_use())),
       registration_(features_, registration_of(config)),
       search_(std::make_shared<CandidateSearch>(map_, chain_by(map_->id), config.place,
                                                 config.adaptive.search)) {}
@@ -114,7 +114,7 @@ Agent::Replies Agent::on(RobotId /*from*/, const MergeChecks& part) {
 }
 
 Agent::Replies Agent::on(RobotId /*from*/, const CloudRequest& request) const {
-  return {clouds_of(*map_, request, config_.registration_in_use().voxel_size)};
+  return {clouds_of(*map_, request, {config_.registration_in_use().voxel_size, config_.submap_in_use()})};
 }
 
 // ---- searching: candidates -------------------------------------------------------------------------------

@@ -33,6 +33,10 @@ struct AgentConfig {
   [[nodiscard]] const RegistrationConfig& registration_in_use() const {
     return policy == MergePolicy::adaptive ? adaptive.registration : registration;
   }
+  /// The paper registers single scans.
+  [[nodiscard]] SubmapConfig submap_in_use() const {
+    return policy == MergePolicy::adaptive ? adaptive.submap : SubmapConfig{.reach_m = 0.0};
+  }
 };
 Fields fields_of(AgentConfig& config);
 

@@ -21,6 +21,8 @@ constexpr int kRows = 60;
 // of the range.
 constexpr float kMarginVoxels = 1.0F;
 constexpr float kMarginShare = 0.01F;
+// Between two rings, as far apart as those of sparse LiDARs, floors and roofs are seen from aside.
+constexpr float kRingGap = 0.035F;                             // radians
 constexpr float kSameSurface = 0.8F;                           // cosine between normals
 constexpr std::size_t kEnoughToAlign = 1500;                   // points, or up to twice as many
 constexpr double kWideVoxels = 5.0;                            // farthest pairs of the first of two fits
@@ -52,6 +54,15 @@ OrientedPoints every_nth(const OrientedPoints& all) {
   return some;
 }
 
+// By how much the range of a surface changes from one ring to the next.
+float between_rings(const Eigen::Vector3f& ray, float range, const Eigen::Vector3f& normal) {
+  constexpr float kLeastCosine = 0.05F;
+  const Eigen::Vector3f direction = ray / range;
+  const Eigen::Vector3f upward = Eigen::Vector3f::UnitZ() - direction.z() * direction;
+  return kRingGap * range * std::abs(normal.dot(upward)) /
+         std::max(std::abs(normal.dot(direction)), kLeastCosine);
+}
+
 // What a saw where a point of b lies, given in the frame of a.
 Compared compared(const SeenSurface& a, const Eigen::Vector3f& p, const Eigen::Vector3f& normal,
                   const RegistrationConfig& config) {
@@ -62,13 +73,18 @@ Compared compared(const SeenSurface& a, const Eigen::Vector3f& p, const Eigen::V
   const SeenSurface::Ranges& seen = a.towards(ray);
   if (seen.empty()) return Compared::unseen;
   const float range = ray.norm();
-  const float margin = kMarginVoxels * voxel + kMarginShare * range;
+  const float margin = kMarginVoxels * voxel + kMarginShare * range + between_rings(ray, range, normal);
   if (range > seen.farthest + margin) return Compared::unseen;  // hidden
   if (range < seen.nearest - margin) return Compared::differs;
   const auto near = a.tree().nearest(p, reach);
   if (!near) return Compared::unseen;  // between the beams
   const Eigen::Vector3f& a_normal = a.points().normals[near->index];
-  if (!(std::abs(a_normal.dot(p - a.points().points[near->index])) < thickness)) return Compared::differs;
+  const float off = a_normal.dot(p - a.points().points[near->index]);
+  if (!(std::abs(off) < thickness)) {
+    // Behind that surface is what it hides: the wall beside something that stands in front of it.
+    const bool is_behind = off * a_normal.dot(ray) > 0.0F;
+    return is_behind ? Compared::unseen : Compared::differs;
+  }
   return a_normal.dot(normal) > kSameSurface ? Compared::same_surface : Compared::confirmed;
 }
 
@@ -130,7 +146,10 @@ SeenSurface::SeenSurface(OrientedPoints points, const Vector3& viewpoint)
   std::vector<Ranges> own(ranges_.size());
   for (const Eigen::Vector3f& p : points_.points) {
     const Eigen::Vector3f ray = p - viewpoint_;
-    own[cell_of(ray)].add({ray.norm(), ray.norm()});
+    const float range = ray.norm();
+    own[cell_of(ray)].add({range, range});
+    lowest_ = std::min(lowest_, ray.z() / range);
+    highest_ = std::max(highest_, ray.z() / range);
   }
   for (int row = 0; row < kRows; ++row) {
     for (int column = 0; column < kColumns; ++column) {
@@ -143,6 +162,9 @@ SeenSurface::SeenSurface(OrientedPoints points, const Vector3& viewpoint)
 }
 
 const SeenSurface::Ranges& SeenSurface::towards(const Eigen::Vector3f& direction) const {
+  static constexpr Ranges kNothing;
+  const float sine = direction.z() / direction.norm();
+  if (sine < lowest_ || sine > highest_) return kNothing;
   return ranges_[cell_of(direction)];
 }
 

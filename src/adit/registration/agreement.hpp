@@ -33,6 +33,7 @@ class SeenSurface {
   [[nodiscard]] const OrientedPoints& some() const { return some_; }
   [[nodiscard]] const KdTree& tree() const { return tree_; }
   [[nodiscard]] const Eigen::Vector3f& viewpoint() const { return viewpoint_; }
+  /// Nothing was seen above and below the sensor's field of view, however near a surface ends there.
   [[nodiscard]] const Ranges& towards(const Eigen::Vector3f& direction) const;
   [[nodiscard]] std::size_t num_bytes() const;
 
@@ -42,6 +43,8 @@ class SeenSurface {
   KdTree tree_;
   Eigen::Vector3f viewpoint_;
   std::vector<Ranges> ranges_;
+  float lowest_ = 1.0F;  ///< Sines of the elevations between which something was seen.
+  float highest_ = -1.0F;
 };
 
 /// A patch that differs and may be a thing that comes and goes (changed_thing.hpp).
@@ -57,8 +60,8 @@ struct ChangedThing {
 struct Agreement {
   double confirmed = 0.0;  ///< Share of the points that count, the smaller of both directions.
   /// Number of points, one per voxel, in the largest connected patch that differs and is no thing that may
-  /// come and go; the larger of both directions. A niche or a passage that only one of two tubes has makes one
-  /// large patch; noise and beams that miss make many small ones.
+  /// come and go; the larger of both directions. A niche or a passage that only one of two tubes has makes
+  /// one large patch; noise and beams that miss make many small ones.
   double largest_difference = std::numeric_limits<double>::infinity();
   /// Larger patches than that, of things that may come and go, wherever either scan saw them; frame of a.
   std::vector<ChangedThing> things = {};

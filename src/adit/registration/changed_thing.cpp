@@ -97,8 +97,8 @@ bool may_be_a_thing(const SeenSurface& scan, std::span<const std::size_t> patch,
                     const std::vector<Compared>& compared, const RegistrationConfig& config) {
   Eigen::AlignedBox3f box;
   for (const std::size_t i : patch) box.extend(scan.points().points[i]);
-  if (box.isEmpty() || box.sizes().head<2>().norm() > kLongest) return false;
   const std::optional<float> floor = floor_under(scan, box);
+  if (box.isEmpty() || box.sizes().head<2>().norm() > kLongest) return false;
   if (!floor || box.min().z() > *floor + kHighestFoot || box.max().z() > *floor + kTallest) return false;
   const auto num_continuing = std::ranges::count_if(patch, [&](std::size_t i) {
     return continues_a_wall(scan, i, compared, static_cast<float>(config.voxel_size));

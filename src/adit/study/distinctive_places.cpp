@@ -40,7 +40,7 @@ Result<Seen> seen_by(const RobotRun& run, const SlamConfig& config) {
     if (!T_world_base) return fail(run.result.name, T_world_base.error());
     seen.positions.push_back(T_world_base->translation());
   }
-  seen.features = std::make_shared<FeatureStore>(seen.map, registration);
+  seen.features = std::make_shared<FeatureStore>(seen.map, registration, config.loops.adaptive.submap);
   seen.discernment = std::make_unique<Discernment>(
       seen.map, chain_of(graph_of(*seen.map)), [] { return std::vector<LoopCandidate>(); }, seen.features,
       config.loops.adaptive);

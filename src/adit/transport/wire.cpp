@@ -252,11 +252,29 @@ void get(Reader& in, Places& places) {
   places.last = in.scalar<std::uint8_t>() != 0;
 }
 
-void put(Writer& out, const CloudRequest& request) { out.vector(request.indices); }
-void get(Reader& in, CloudRequest& request) { in.vector(request.indices, kCloudsPerMessage); }
+void put(Writer& out, CloudKind kind) { out.scalar(kind); }
+void get(Reader& in, CloudKind& kind) {
+  kind = in.scalar<CloudKind>();
+  if (kind > CloudKind::submap) in.refuse();
+}
 
-void put(Writer& out, const Clouds& clouds) { out.vector(clouds.clouds); }
-void get(Reader& in, Clouds& clouds) { in.vector(clouds.clouds, kCloudsPerMessage); }
+void put(Writer& out, const CloudRequest& request) {
+  put(out, request.kind);
+  out.vector(request.indices);
+}
+void get(Reader& in, CloudRequest& request) {
+  get(in, request.kind);
+  in.vector(request.indices, kCloudsPerMessage);
+}
+
+void put(Writer& out, const Clouds& clouds) {
+  put(out, clouds.kind);
+  out.vector(clouds.clouds);
+}
+void get(Reader& in, Clouds& clouds) {
+  get(in, clouds.kind);
+  in.vector(clouds.clouds, kCloudsPerMessage);
+}
 
 void put(Writer& out, const Loops& loops) {
   out.scalar(loops.author.value);

@@ -15,6 +15,8 @@ Fields fields_of(DiscernmentConfig& c) {
       {"usual_share", &c.usual_share, "", 0.0, 1.0,
        "share of pairs of scans of one place that differ less than usual"},
       {"allowance", &c.allowance, "", 1.0, 100.0, "scans differ beyond this times the usual difference"},
+      {"least_difference_m2", &c.least_difference_m2, "m2", 0.0, 100.0,
+       "smaller differences are none, as small as the usual one may be: beams that meet an edge elsewhere"},
       {"second_looks", &c.second_looks, "", 0, 0,
        "a place differs only if a second pair of scans, nearby, differs too: one fit in many fails"},
       {"second_look_m", &c.second_look_m, "m", 0.1, 100.0,
@@ -78,6 +80,7 @@ Fields fields_of(AdaptiveConfig& c) {
       {"second_search_share", &c.second_search_share, "", 1, 1e6,
        "the search goes on where at least one candidate in this many became a loop and all are refuted"});
   append(fields, "registration", fields_of(c.registration));
+  append(fields, "submap", fields_of(c.submap));
   append(fields, "merge_check", fields_of(c.merge_check));
   return fields;
 }

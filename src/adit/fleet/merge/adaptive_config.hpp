@@ -6,6 +6,7 @@
 #include "adit/core/config.hpp"
 #include "adit/fleet/search/candidate_search.hpp"
 #include "adit/registration/registration_config.hpp"
+#include "adit/robot/submap.hpp"
 
 namespace adit {
 
@@ -16,6 +17,7 @@ struct DiscernmentConfig {
   double displacement_m = 5.0;
   double usual_share = 0.9;
   double allowance = 1.5;
+  double least_difference_m2 = 1.44;
   bool second_looks = true;
   double second_look_m = 1.0;
   double followed_m = 60.0;
@@ -55,6 +57,7 @@ Fields fields_of(MergeCheckConfig& config);
 struct AdaptiveConfig {
   SearchConfig search;
   RegistrationConfig registration;
+  SubmapConfig submap;
   double one_place_m = 10.0;
   int second_search_share = 4;
   MergeCheckConfig merge_check;

@@ -22,7 +22,10 @@ Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryCha
       find_look_alikes_(std::move(find_look_alikes)),
       features_(std::move(features)),
       surfaces_(map, config.registration) {
-  limit_ = config_.merge_check.discernment.allowance * usual_difference();
+  const double usual = config_.merge_check.discernment.allowance * usual_difference();
+  const double voxel = config_.registration.voxel_size;
+  if (usual > 0.0)
+    limit_ = std::max(usual, config_.merge_check.discernment.least_difference_m2 / (voxel * voxel));
 }
 
 const Measured& Discernment::measured() {

@@ -28,7 +28,7 @@ std::vector<LoopCandidate> similar_places(const std::shared_ptr<const RobotMap>&
 struct OnAMap {
   explicit OnAMap(const std::shared_ptr<const RobotMap>& map)
       : discernment(map, chain_of(graph_of(*map)), [map] { return similar_places(map); },
-                    std::make_shared<FeatureStore>(map, RegistrationConfig{}), {}) {}
+                    std::make_shared<FeatureStore>(map, RegistrationConfig{}, SubmapConfig{}), {}) {}
   Discernment discernment;
 };
 

@@ -14,11 +14,11 @@ std::size_t bytes_of(const Features& features) {
 }  // namespace
 
 FeatureStore::FeatureStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
-                           std::size_t max_bytes)
+                           const SubmapConfig& submap_config, std::size_t max_bytes)
     : KeyframeStore(
           std::move(map),
-          [config](const RobotMap& of, std::uint32_t k) {
-            return compute_features(*of.keyframes[k].cloud, config);
+          [config, submap_config](const RobotMap& of, std::uint32_t k) {
+            return compute_features(submap(of, k, submap_config), config);
           },
           bytes_of, max_bytes) {}
 

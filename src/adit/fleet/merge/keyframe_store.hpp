@@ -15,6 +15,7 @@
 #include "adit/registration/agreement.hpp"
 #include "adit/registration/features.hpp"
 #include "adit/robot/robot_map.hpp"
+#include "adit/robot/submap.hpp"
 
 namespace adit {
 
@@ -81,12 +82,12 @@ class KeyframeStore {
   std::size_t num_bytes_ = 0;
 };
 
-/// Keyframes made ready for registration.
+/// Keyframes, each with those around it, made ready for registration.
 class FeatureStore : public KeyframeStore<Features> {
  public:
   static constexpr std::size_t kMaxBytes = 256'000'000;
   FeatureStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
-               std::size_t max_bytes = kMaxBytes);
+               const SubmapConfig& submap_config, std::size_t max_bytes = kMaxBytes);
 };
 
 /// Keyframes made ready for comparing them.

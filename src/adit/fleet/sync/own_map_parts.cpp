@@ -29,13 +29,16 @@ std::vector<MessageBody> places_since(const RobotMap& map, std::size_t first) {
   return out;
 }
 
-Clouds clouds_of(const RobotMap& map, const CloudRequest& request, double voxel_m) {
+Clouds clouds_of(const RobotMap& map, const CloudRequest& request, const SentClouds& config) {
   Clouds clouds;
+  clouds.kind = request.kind;
   for (const std::uint32_t index : request.indices) {
     if (index >= map.keyframes.size()) continue;
     // The receiver thins clouds to the same voxels: more points would change nothing.
-    clouds.clouds.push_back(
-        {index, map.viewpoint.cast<float>(), voxel_centroids(*map.keyframes[index].cloud, voxel_m).points});
+    const PointCloud thinned = request.kind == CloudKind::submap
+                                   ? voxel_centroids(submap(map, index, config.submap), config.voxel_m)
+                                   : voxel_centroids(*map.keyframes[index].cloud, config.voxel_m);
+    clouds.clouds.push_back({index, map.viewpoint.cast<float>(), thinned.points});
   }
   return clouds;
 }

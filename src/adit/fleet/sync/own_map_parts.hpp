@@ -9,6 +9,7 @@
 
 #include "adit/fleet/sync/protocol.hpp"
 #include "adit/robot/robot_map.hpp"
+#include "adit/robot/submap.hpp"
 
 namespace adit {
 
@@ -18,7 +19,12 @@ namespace adit {
 /// Descriptors of the searchable keyframes, from number `first` of them on.
 [[nodiscard]] std::vector<MessageBody> places_since(const RobotMap& map, std::size_t first);
 
-/// The clouds that a peer asks for, one point per voxel; keyframes that do not exist are left out.
-[[nodiscard]] Clouds clouds_of(const RobotMap& map, const CloudRequest& request, double voxel_m);
+/// What the clouds that a robot sends are made of.
+struct SentClouds {
+  double voxel_m = 0.3;  ///< One point each.
+  SubmapConfig submap;
+};
+/// The clouds that a peer asks for; keyframes that do not exist are left out.
+[[nodiscard]] Clouds clouds_of(const RobotMap& map, const CloudRequest& request, const SentClouds& config);
 
 }  // namespace adit

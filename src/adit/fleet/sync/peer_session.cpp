@@ -63,23 +63,25 @@ std::size_t PeerSession::num_waiting() const {
 
 std::optional<CloudRequest> PeerSession::request() const {
   CloudRequest request;
+  request.kind = CloudKind::submap;
   for (const auto& [index, candidates] : waiting_) {
     if (request.indices.size() == kCloudsPerMessage) break;
     request.indices.push_back(index);
   }
-  if (request.indices.empty()) request.indices = to_compare_;
+  if (request.indices.empty()) request = {CloudKind::scan, to_compare_};
   if (request.indices.empty()) return std::nullopt;
   return request;
 }
 
 bool PeerSession::has_comparison(const Clouds& clouds) const {
-  return std::ranges::all_of(to_compare_, [&](std::uint32_t keyframe) {
-    return std::ranges::find(clouds.clouds, keyframe, &Clouds::Cloud::index) != clouds.clouds.end();
-  });
+  return clouds.kind == CloudKind::scan && std::ranges::all_of(to_compare_, [&](std::uint32_t keyframe) {
+           return std::ranges::find(clouds.clouds, keyframe, &Clouds::Cloud::index) != clouds.clouds.end();
+         });
 }
 
 std::vector<PeerSession::Arrived> PeerSession::take_arrived(const Clouds& clouds) {
   std::vector<Arrived> arrived;
+  if (clouds.kind != CloudKind::submap) return arrived;
   for (std::size_t c = 0; c < clouds.clouds.size(); ++c) {
     const auto waiting = waiting_.extract(clouds.clouds[c].index);
     if (waiting.empty()) continue;

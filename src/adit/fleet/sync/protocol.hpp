@@ -16,7 +16,7 @@
 
 namespace adit {
 
-inline constexpr std::uint8_t kProtocolVersion = 5;
+inline constexpr std::uint8_t kProtocolVersion = 6;
 inline constexpr std::size_t kPlacesPerMessage = 64;
 inline constexpr std::size_t kCloudsPerMessage = 16;
 inline constexpr std::size_t kNodesPerMessage = 512;
@@ -64,12 +64,17 @@ struct Places {
   bool last = false;  ///< Nothing follows.
 };
 
+/// Scans are compared, as what is seen from one point; submaps (robot/submap.hpp) are registered.
+enum class CloudKind : std::uint8_t { scan, submap };
+
 struct CloudRequest {
+  CloudKind kind = CloudKind::scan;
   std::vector<std::uint32_t> indices;
 };
 
 /// The sender's own keyframe clouds, each in its keyframe's base frame.
 struct Clouds {
+  CloudKind kind = CloudKind::scan;
   struct Cloud {
     std::uint32_t index = 0;
     Eigen::Vector3f viewpoint = Eigen::Vector3f::Zero();  ///< The LiDAR, in the frame of the points.
