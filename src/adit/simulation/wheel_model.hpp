@@ -79,6 +79,11 @@ inline Fields fields_of(WheelConfig& c) {
        "(m/s too fast), lift, freeze, jump (metres), silent"}};
 }
 
+/// The configuration with a burst of slip every two minutes, of 5 to 30 % for a second: loose ground and
+/// puddles, where a wheel that drives slips 10 to 30 % before its grip is gone (J. Wong, "Theory of Ground
+/// Vehicles", 2008, chapter 2).
+[[nodiscard]] WheelConfig field_wheels(WheelConfig config);
+
 /// Ranges of the fields, and the text of the faults.
 Result<> check_wheels(WheelConfig config);
 
