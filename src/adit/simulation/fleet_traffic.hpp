@@ -21,7 +21,7 @@ struct TrafficConfig {
 };
 [[nodiscard]] Fields fields_of(TrafficConfig& config);
 
-/// Robots see one another, and a vehicle passes each every five minutes.
+/// Robots see one another, and a vehicle passes each every five minutes: chosen, not measured.
 [[nodiscard]] TrafficConfig field_traffic();
 
 /// A vehicle on the path of one robot, beside it, at twice the robot's pace.

@@ -26,8 +26,9 @@ struct SurfaceConfig {
 };
 [[nodiscard]] Fields fields_of(SurfaceConfig& config);
 
-/// Rock and coal 5 to 20 %, shotcrete and concrete 20 to 60 % (at 905 nm: maker's tables of target
-/// reflectivities, RIEGL VZ-400 data sheet), one in 500 squares a sign, one floor patch in 30 wet.
+/// Rock, coal and wet walls 5 to 20 %, shotcrete and concrete 20 to 60 % (at 900 nm lava has 8 %, asphalt 17,
+/// smooth concrete 24, dry sand 57: A. Wehr and U. Lohr, "Airborne laser scanning: an introduction and
+/// overview", 1999, table 2), one square in 500 a sign; one floor patch in 30 wet, which is chosen.
 [[nodiscard]] SurfaceConfig field_surfaces();
 
 /// The reflectivity for which data sheets state a sensor's reach.

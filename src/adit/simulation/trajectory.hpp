@@ -51,9 +51,9 @@ inline Fields fields_of(DriveConfig& c) {
 }
 
 /// The configuration with motion as in practice: a body on its suspension, which rolls by half a degree
-/// at 1.3 Hz (the range of a car's: T. Gillespie, "Fundamentals of Vehicle Dynamics", 1992, chapter 5), bumps
-/// of 1 cm under the wheels (as on a graded gravel road, class D of ISO 8608, for waves of metres),
-/// field_manoeuvres().
+/// at 1.3 Hz (bodies of cars swing at 1 to 1.5 Hz: T. Gillespie, "Fundamentals of Vehicle Dynamics", 1992,
+/// chapter 5), bumps of 1 cm under the wheels (class D of ISO 8608, a poor gravel road, has as much in waves
+/// of up to 10 m; these are shorter), field_manoeuvres().
 [[nodiscard]] DriveConfig field_drive(DriveConfig config);
 /// The configuration without any of these.
 [[nodiscard]] DriveConfig ideal_drive(DriveConfig config);
