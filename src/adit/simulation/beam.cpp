@@ -26,18 +26,21 @@ constexpr float kEdge = 0.03F;        ///< Neighbours whose ranges differ by mor
 constexpr float kGrazing = 0.34202F;  ///< Cosine of 70 degrees.
 constexpr float kLeastCosine = 0.05F;
 
-// What is nearer than the world so far.
-void cast_at_all(const Raycaster& world, const std::optional<Raycaster>& movers, float range_max,
+// Returns whether a mover is nearer than the world anywhere.
+bool cast_at_all(const Raycaster& world, const std::optional<Raycaster>& movers, float range_max,
                  RayBlock& rays) {
   world.cast(rays, range_max);
-  if (!movers) return;
+  if (!movers) return false;
+  bool meets_movers = false;
   RayBlock nearer = rays;
   movers->cast(nearer, range_max);
   for (std::size_t i = 0; i < rays.size; ++i) {
     const bool hits = nearer.distances[i] < rays.distances[i];
+    meets_movers = meets_movers || hits;
     rays.distances[i] = hits ? nearer.distances[i] : rays.distances[i];
     rays.cosines[i] = hits ? nearer.cosines[i] : rays.cosines[i];
   }
+  return meets_movers;
 }
 
 bool is_edge(float one, float other) {
@@ -106,8 +109,10 @@ Part strongest(std::array<Part, kSubRays + 1> parts, float pulse, float share) {
 void cast_beams(const Raycaster& world, const std::optional<Raycaster>& movers, const Beam& beam,
                 float range_max, std::uint64_t seed, RayBlock& rays) {
   constexpr std::size_t kAtOnce = RayBlock::kCapacity / kSubRays;
-  cast_at_all(world, movers, range_max, rays);
+  const bool meets_movers = cast_at_all(world, movers, range_max, rays);
   if (beam.divergence <= 0.0) return;
+  // Without a mover in the block, none is looked for in footprints: most columns see none.
+  const std::optional<Raycaster> near_movers = meets_movers ? movers : std::nullopt;
   const float radius = kRingRadius * static_cast<float>(beam.divergence / 2.0);
   std::array<std::size_t, RayBlock::kCapacity> wide;
   std::size_t num_wide = 0;
@@ -117,7 +122,7 @@ void cast_beams(const Raycaster& world, const std::optional<Raycaster>& movers, 
     const std::size_t to = std::min(num_wide, from + kAtOnce);
     RayBlock ring;
     for (std::size_t k = from; k < to; ++k) add_ring(rays, wide[k], radius, ring);
-    cast_at_all(world, movers, range_max, ring);
+    cast_at_all(world, near_movers, range_max, ring);
     for (std::size_t k = from; k < to; ++k) {
       const std::size_t i = wide[k];
       std::array<Part, kSubRays + 1> parts;

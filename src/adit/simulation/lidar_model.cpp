@@ -76,6 +76,7 @@ struct Returns {
   float dropout_start;
   float dropout_width;
   float walk;  ///< Per squared (1 - cosine).
+  float intensity_walk;
   float false_returns;
   float false_or_dust;
 
@@ -88,32 +89,67 @@ struct Returns {
         dropout_start(static_cast<float>(c.dropout_start_deg * kDegree)),
         dropout_width(static_cast<float>(c.dropout_end_deg * kDegree) - dropout_start),
         walk(static_cast<float>(unit.incidence_walk / std::pow(1.0 - std::cos(kWalkStatedAt), 2))),
+        intensity_walk(static_cast<float>(unit.intensity_walk)),
         false_returns(static_cast<float>(unit.false_returns)),
         false_or_dust(static_cast<float>(unit.false_returns + dust)) {}
 };
 
-// The ranges that are reported, or misses; `biases` are those of the rings. Beyond the end of the drop-out,
-// all of 0 to 1 is below the share that is lost.
-ADIT_WIDE_VECTORS void measure(const Returns& returns, const Chance& chance,
-                               const RayBlock::Numbers& distances, const RayBlock::Numbers& cosines,
-                               const RayBlock::Numbers& biases, std::size_t num, RayBlock::Numbers& ranges) {
-  const auto [range_min, range_max, noise_near, noise_slope, cos_dropout_start, dropout_start, dropout_width,
-              walk, false_returns, false_or_dust] = returns;
+// Of each ray of a block.
+struct Errors {
+  RayBlock::Numbers sigmas;
+  RayBlock::Numbers biases;
+};
+
+ADIT_WIDE_VECTORS void add_noise_by_range(const Returns& returns, const RayBlock& rays,
+                                          RayBlock::Numbers& sigmas) {
+  for (std::size_t i = 0; i < rays.size; ++i)
+    sigmas[i] = returns.noise_near + returns.noise_slope * (rays.distances[i] - returns.range_min);
+}
+
+// As photons are counted: with the root of their number, from the nominal surface the same as by range.
+ADIT_WIDE_VECTORS void add_noise_by_signal(const Returns& returns, const RayBlock::Numbers& signals,
+                                           std::size_t num, Errors& errors) {
+  constexpr float kMost = 1.5F;  // of the noise of a return that is just seen
+  const float grows = returns.noise_slope * (returns.range_max - returns.range_min);
   for (std::size_t i = 0; i < num; ++i) {
-    const float sigma = noise_near + noise_slope * (distances[i] - range_min);
-    const float cosine = std::min(cosines[i], 1.0F);
+    errors.sigmas[i] = returns.noise_near + grows * std::min(kMost, 1.0F / std::sqrt(signals[i]));
+    errors.biases[i] += returns.intensity_walk * share_of_walk(signals[i]);
+  }
+}
+
+// The ranges that are reported, or misses. Beyond the end of the drop-out, all of 0 to 1 is below the share
+// that is lost.
+ADIT_WIDE_VECTORS void measure(const Returns& returns, const Chance& chance, const RayBlock& rays,
+                               const Errors& errors, RayBlock::Numbers& ranges) {
+  const auto& distances = rays.distances;
+  const float range_min = returns.range_min;
+  const float range_max = returns.range_max;
+  for (std::size_t i = 0; i < rays.size; ++i) {
+    const float cosine = std::min(rays.cosines[i], 1.0F);
     const float off_normal = 1.0F - cosine;
-    const float true_return =
-        distances[i] + sigma * chance.noise[i] + (biases[i] + walk * off_normal * off_normal);
+    const float true_return = distances[i] + errors.sigmas[i] * chance.noise[i] +
+                              (errors.biases[i] + returns.walk * off_normal * off_normal);
     const float in_dust = range_min + kDustReach * chance.share[i] * chance.share[i];
-    const bool is_false = chance.falseness[i] < false_returns;
-    const bool is_dust = !is_false & (chance.falseness[i] < false_or_dust);
+    const bool is_false = chance.falseness[i] < returns.false_returns;
+    const bool is_dust = !is_false & (chance.falseness[i] < returns.false_or_dust);
     const float not_false = is_dust ? std::min(in_dust, true_return) : true_return;
     const float range = is_false ? chance.share[i] * true_return : not_false;
-    const float share_lost = (arc_cosine(cosine) - dropout_start) / dropout_width;
-    const bool lost = (cosine < cos_dropout_start) & (chance.dropout[i] < share_lost);
+    const float share_lost = (arc_cosine(cosine) - returns.dropout_start) / returns.dropout_width;
+    const bool lost = (cosine < returns.cos_dropout_start) & (chance.dropout[i] < share_lost);
     const bool kept = !lost & (distances[i] < RayHit::kMiss) & (range >= range_min) & (range <= range_max);
     ranges[i] = kept ? range : RayHit::kMiss;
+  }
+}
+
+// Reflectivity times the cosine of the incidence, in percent, as far as the signal tells.
+ADIT_WIDE_VECTORS void add_intensities(const RayBlock& rays, const RayBlock::Numbers& signals, float reach,
+                                       const Chance& chance, RayBlock::Numbers& intensities) {
+  constexpr float kSpread = 0.1F;  // of readings, evenly
+  constexpr float kPercent = 100.0F * kNominalReflectivity;
+  for (std::size_t i = 0; i < rays.size; ++i) {
+    const float share = rays.distances[i] / reach;
+    const float reading = kPercent * signals[i] * share * share;
+    intensities[i] = std::min(255.0F, reading * (1.0F + kSpread * (chance.share[i] - 0.5F)));
   }
 }
 
@@ -164,6 +200,7 @@ class Sensor {
   [[nodiscard]] std::size_t num_beams() const { return biases_.size(); }
   [[nodiscard]] const Returns& returns() const { return returns_; }
   [[nodiscard]] const Beam& beam() const { return beam_; }
+  [[nodiscard]] float reach() const { return static_cast<float>(config_.reach); }
   /// Of ranges, in the order of the beams.
   void biases(std::size_t first_beam, std::size_t num, RayBlock::Numbers& out) const {
     std::copy_n(biases_.begin() + static_cast<std::ptrdiff_t>(first_beam), num, out.begin());
@@ -254,9 +291,18 @@ void aim(const Pose& T_world_lidar, const RayBlock::Vectors& directions, RayBloc
   }
 }
 
-void append_returns(const RayBlock::Numbers& ranges, const RayBlock::Vectors& directions, std::size_t num,
-                    std::int32_t offset_ns, PointCloud& cloud) {
-  std::size_t size = cloud.size();
+// What a sensor reports of a block of rays.
+struct Report {
+  RayBlock::Vectors directions;
+  RayBlock::Numbers ranges;
+  RayBlock::Numbers intensities;
+  bool has_intensities = false;
+};
+
+void append_returns(const Report& report, std::size_t num, std::int32_t offset_ns, PointCloud& cloud) {
+  const auto& [directions, ranges, intensities, has_intensities] = report;
+  const std::size_t before = cloud.size();
+  std::size_t size = before;
   cloud.points.resize(size + num);
   for (std::size_t i = 0; i < num; ++i) {  // a miss is written too, and then overwritten
     cloud.points[size] = ranges[i] * Eigen::Vector3f(directions.x[i], directions.y[i], directions.z[i]);
@@ -264,6 +310,26 @@ void append_returns(const RayBlock::Numbers& ranges, const RayBlock::Vectors& di
   }
   cloud.points.resize(size);
   cloud.time_offsets_ns.resize(size, offset_ns);
+  for (std::size_t i = 0; has_intensities && i < num; ++i)
+    if (ranges[i] < RayHit::kMiss) cloud.intensities.push_back(intensities[i]);
+}
+
+// What happens to light between the sensor and the surfaces, and how exact it leaves ranges. `seed` is the
+// block's.
+void measure_light(const Sensor& sensor, const Sweep& sweep, const Chance& chance, std::uint64_t seed,
+                   RayBlock& rays, Errors& errors, Report& report) {
+  constexpr std::uint64_t kWeakStream = 1;
+  constexpr std::uint64_t kAirStream = 2;
+  RayBlock::Numbers reflectivities;
+  RayBlock::Numbers signals;
+  sweep.surfaces.reflectivities(rays, reflectivities);
+  add_signals(rays, reflectivities, sensor.reach(), signals);
+  if (!sweep.air.is_clear()) look_through(sweep.air, sensor.reach(), mix64(seed, kAirStream), rays, signals);
+  drop_weak(signals, mix64(seed, kWeakStream), rays);
+  report.has_intensities = !sweep.surfaces.are_alike();
+  if (!report.has_intensities) return;
+  add_noise_by_signal(sensor.returns(), signals, rays.size, errors);
+  add_intensities(rays, signals, sensor.reach(), chance, report.intensities);
 }
 
 void cast_column(const Raycaster& raycaster, const Sensor& sensor, const Turn& turn, int column,
@@ -271,27 +337,31 @@ void cast_column(const Raycaster& raycaster, const Sensor& sensor, const Turn& t
   if (turn.is_dark(column)) return;
   const Pose T_world_lidar = turn.T_world_lidar(column);
   const std::uint64_t column_seed = mix64(turn.sweep.noise_seed, static_cast<std::uint64_t>(column));
+  const Sweep& sweep = turn.sweep;
+  const bool is_plain = sweep.surfaces.are_alike() && sweep.air.is_clear();
   RayBlock rays;
-  RayBlock::Vectors reported;
   RayBlock::Vectors directions;
-  RayBlock::Numbers biases;
-  RayBlock::Numbers ranges;
+  Errors errors;
+  Report report;
   for (std::size_t beam = 0; beam < sensor.num_beams(); beam += rays.size) {
     rays.size = std::min(RayBlock::kCapacity, sensor.num_beams() - beam);
     if (turn.config.pattern == LidarPattern::spinning) {
-      sensor.look(turn.azimuth(column), beam, rays.size, reported, directions);
+      sensor.look(turn.azimuth(column), beam, rays.size, report.directions, directions);
     } else {
       const Duration before = static_cast<std::int64_t>(beam) * turn.shot_time();
       sensor.look(turn.first_shot(column) + before, turn.shot_time(), rays.size, directions);
-      reported = directions;
+      report.directions = directions;
     }
     aim(T_world_lidar, directions, rays);
-    cast_beams(raycaster, turn.sweep.movers, sensor.beam(), sensor.returns().range_max,
-               mix64(~column_seed, beam), rays);
+    const std::uint64_t block_seed = mix64(~column_seed, beam);
+    cast_beams(raycaster, sweep.movers, sensor.beam(), sensor.returns().range_max, block_seed, rays);
+    sweep.surfaces.mirror(raycaster, sensor.returns().range_max, ~block_seed, rays);
     const Chance chance(column_seed, beam, rays.size);
-    sensor.biases(beam, rays.size, biases);
-    measure(sensor.returns(), chance, rays.distances, rays.cosines, biases, rays.size, ranges);
-    append_returns(ranges, reported, rays.size, turn.offset_ns(column), cloud);
+    sensor.biases(beam, rays.size, errors.biases);
+    add_noise_by_range(sensor.returns(), rays, errors.sigmas);
+    if (!is_plain) measure_light(sensor, sweep, chance, block_seed, rays, errors, report);
+    measure(sensor.returns(), chance, rays, errors, report.ranges);
+    append_returns(report, rays.size, turn.offset_ns(column), cloud);
   }
 }
 
@@ -305,6 +375,7 @@ PointCloud joined(const std::vector<PointCloud>& parts) {
     cloud.points.insert(cloud.points.end(), part.points.begin(), part.points.end());
     cloud.time_offsets_ns.insert(cloud.time_offsets_ns.end(), part.time_offsets_ns.begin(),
                                  part.time_offsets_ns.end());
+    cloud.intensities.insert(cloud.intensities.end(), part.intensities.begin(), part.intensities.end());
   }
   return cloud;
 }

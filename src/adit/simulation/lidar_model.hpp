@@ -14,8 +14,10 @@
 #include "adit/core/config.hpp"
 #include "adit/core/pose.hpp"
 #include "adit/core/records.hpp"
+#include "adit/simulation/air.hpp"
 #include "adit/simulation/lidar_unit.hpp"
 #include "adit/simulation/raycaster.hpp"
+#include "adit/simulation/surface_signal.hpp"
 
 namespace adit {
 
@@ -44,6 +46,7 @@ struct LidarConfig {
   double range_max = 200.0;
   double noise_near = 0.025;  ///< Standard deviation of a range at range_min; linear in between.
   double noise_far = 0.08;    ///< The same at range_max.
+  double reach = 200.0;       ///< Where a surface of 10 % is just seen, head-on; felt as Surfaces say.
   double divergence_deg =
       0.09;  ///< Of the beam, full angle; felt as LidarErrorConfig::divergence_factor says.
   double dropout_start_deg = 75.0;  ///< Incidence angle (0: head-on) from which returns start to get lost ...
@@ -74,6 +77,7 @@ inline Fields fields_of(LidarConfig& c) {
       {"range_max", &c.range_max, "m", 0.1, 1000, "farther returns are dropped"},
       {"noise_near", &c.noise_near, "m", 0, 1, "standard deviation of a range at range_min"},
       {"noise_far", &c.noise_far, "m", 0, 1, "standard deviation of a range at range_max"},
+      {"reach", &c.reach, "m", 0.1, 1000, "range at which a surface of 10 % reflectivity is just seen"},
       {"divergence_deg", &c.divergence_deg, "deg", 0, 5,
        "width of a beam, full angle; times lidar_errors.divergence_factor"},
       {"dropout_start_deg", &c.dropout_start_deg, "deg", 0, 90,
@@ -115,14 +119,17 @@ struct Sweep {
   std::vector<Pose> T_world_lidar_between = {};  ///< At equal intervals of time; without start and end.
   double dust = 0.0;                     ///< Share of rays that end in dust, within 5 m of the sensor.
   std::optional<Raycaster> movers = {};  ///< What is there during this sweep alone.
+  Surfaces surfaces = {};
+  Air air = {};
 };
 
 /// What the sensor sees during one sweep, as it would report it: each point in the lidar frame of its own
 /// column's time, with motion distortion, range noise and drop-out. Columns in the order of time (clockwise
 /// from straight back where the sensor spins), beams from the highest down; rays without a return leave no
-/// point. Time offsets run from almost minus one turn to 0 at the last column: the stamp is the END of the
-/// sweep. The errors of `unit` are added, those of mount and clocks apart, which the caller knows; its rings
-/// are none or num_rings().
+/// point. Where surfaces are not alike, points have intensities: reflectivity times the cosine of the
+/// incidence, in percent. Time offsets run from almost minus one turn to 0 at the last column: the stamp is
+/// the END of the sweep. The errors of `unit` are added, those of mount and clocks apart, which the caller
+/// knows; its rings are none or num_rings().
 [[nodiscard]] Scan cast_scan(const Raycaster& raycaster, const LidarConfig& config, const Sweep& sweep,
                              const LidarUnit& unit = {});
 

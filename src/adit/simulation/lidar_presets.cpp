@@ -25,6 +25,12 @@ LidarConfig with_range(LidarConfig c, double min, double max) {
   return c;
 }
 
+// For which data sheets state a target of 10 %.
+LidarConfig with_reach(LidarConfig c, double reach) {
+  c.reach = reach;
+  return c;
+}
+
 LidarConfig with_divergence(LidarConfig c, double degrees) {
   c.divergence_deg = degrees;
   return c;
@@ -38,11 +44,13 @@ LidarConfig with_noise(LidarConfig c, double near, double far) {
 
 LidarConfig vlp16() {
   LidarConfig c = ouster("vlp-16", 16, 15.0);
-  return with_divergence(with_noise(with_range(with_columns(c, 1800), 0.5, 100.0), 0.03, 0.03), 0.18);
+  c = with_noise(with_range(with_columns(c, 1800), 0.5, 100.0), 0.03, 0.03);
+  return with_reach(with_divergence(c, 0.18), 50.0);  // not stated; half of its range, as of others
 }
 
 LidarConfig os1(const std::string& name, int beams) {
-  return with_divergence(with_noise(with_range(ouster(name, beams, 22.5), 0.5, 120.0), 0.007, 0.05), 0.18);
+  const LidarConfig c = with_noise(with_range(ouster(name, beams, 22.5), 0.5, 120.0), 0.007, 0.05);
+  return with_reach(with_divergence(c, 0.18), 90.0);
 }
 
 LidarConfig os1_64_front() {
@@ -50,6 +58,11 @@ LidarConfig os1_64_front() {
   c.azimuth_min_deg = -45.0;
   c.azimuth_max_deg = 45.0;
   return c;
+}
+
+LidarConfig os0() {
+  const LidarConfig c = with_noise(with_range(ouster("os0-128", 128, 45.0), 0.3, 50.0), 0.008, 0.04);
+  return with_reach(with_divergence(c, 0.35), 35.0);
 }
 
 LidarConfig livox(const std::string& name, LidarPattern pattern, int shots_per_column) {
@@ -65,14 +78,14 @@ LidarConfig mid40() {
   LidarConfig c = livox("livox-mid-40", LidarPattern::rosette, 25);
   c.elevation_min_deg = -19.2;
   c.elevation_max_deg = 19.2;
-  return with_range(c, 1.0, 260.0);
+  return with_reach(with_range(c, 1.0, 260.0), 90.0);
 }
 
 LidarConfig avia() {
   LidarConfig c = livox("livox-avia", LidarPattern::rosette, 60);
   c.elevation_min_deg = -36.0;
   c.elevation_max_deg = 36.0;
-  return with_range(c, 1.0, 320.0);
+  return with_reach(with_range(c, 1.0, 320.0), 190.0);
 }
 
 LidarConfig mid360() {
@@ -81,7 +94,7 @@ LidarConfig mid360() {
   c.elevation_max_deg = 52.0;
   c.first_rpm = 1813.0;
   c.second_rpm = 11057.0;
-  return with_range(c, 0.1, 70.0);
+  return with_reach(with_range(c, 0.1, 70.0), 40.0);
 }
 
 // Fields of view, ranges, range noise and divergence after the makers' data sheets.
@@ -92,7 +105,7 @@ std::vector<LidarConfig> presets() {
           with_columns(ouster("os2-32", 32, 11.25), 512),
           os1("os1-64", 64),
           os1("os1-128", 128),
-          with_divergence(with_noise(with_range(ouster("os0-128", 128, 45.0), 0.3, 50.0), 0.008, 0.04), 0.35),
+          os0(),
           vlp16(),
           os1_64_front(),
           mid40(),

@@ -43,6 +43,8 @@ Fields fields_of(LidarErrorConfig& c) {
       {"range_bias", &c.range_bias, "m", 0, 1, "added to every range, constant per robot (sigma, as below)"},
       {"ring_bias", &c.ring_bias, "m", 0, 1, "added to every range of one ring"},
       {"incidence_walk", &c.incidence_walk, "m", 0, 1, "added where a surface is met at 80 degrees"},
+      {"intensity_walk", &c.intensity_walk, "m", 0, 1,
+       "added to the weakest returns, less to stronger ones; see surfaces"},
       {"warm_up_drift", &c.warm_up_drift, "m", 0, 1, "added once the sensor is warm"},
       {"warm_up_s", &c.warm_up_s, "s", 1, 1e5, "time in which the drift has come to 63 %"},
       {"ring_azimuth_deg", &c.ring_azimuth_deg, "deg", 0, 5, "a ring looks to the side of what it reports"},
@@ -63,6 +65,7 @@ LidarErrorConfig field_lidar_errors() {
   c.range_bias = 0.015;
   c.ring_bias = 0.008;
   c.incidence_walk = 0.015;
+  c.intensity_walk = 0.015;
   c.warm_up_drift = 0.0025;
   c.ring_azimuth_deg = 0.01;
   c.ring_elevation_deg = 0.01;
@@ -104,6 +107,7 @@ LidarUnit draw_lidar_unit(const LidarErrorConfig& c, std::size_t rings, std::siz
   unit.ring_range = by_ring(rings, c.ring_bias, rng);
   unit.ring_azimuth = by_ring(rings, c.ring_azimuth_deg * kDegree, rng);
   unit.ring_elevation = by_ring(rings, c.ring_elevation_deg * kDegree, rng);
+  unit.intensity_walk = one(c.intensity_walk);  // last: a draw that is new leaves the others as they were
   return unit;
 }
 

@@ -27,6 +27,7 @@ struct LidarErrorConfig {
   double range_bias = 0.0;         ///< Added to every range.
   double ring_bias = 0.0;          ///< Added to every range of one ring.
   double incidence_walk = 0.0;     ///< Added where a surface is met at 80 degrees; less where more head-on.
+  double intensity_walk = 0.0;     ///< Added to the weakest return, half of it to one 100 times as strong.
   double warm_up_drift = 0.0;      ///< Added once the sensor is warm.
   double warm_up_s = 600.0;        ///< Time in which the drift has come to 63 %.
   double ring_azimuth_deg = 0.0;   ///< A ring looks elsewhere than it reports.
@@ -50,6 +51,7 @@ struct LidarUnit {
   double divergence_factor = 0.0;
   double range_bias = 0.0;
   double incidence_walk = 0.0;
+  double intensity_walk = 0.0;
   double warm_up_drift = 0.0;
   double warm_up_s = 1.0;
   std::vector<double> ring_range;      ///< Metres by beam, from the highest down; empty: none.

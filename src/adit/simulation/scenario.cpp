@@ -10,13 +10,28 @@
 #include "adit/core/parallel.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/core/rng.hpp"
+#include "adit/simulation/changed_walls.hpp"
 
 namespace adit {
 namespace {
 
+// What drives and drifts around all robots.
+struct Surroundings {
+  VisitConfig visits;
+  AirConfig air;
+  bool robots_see_robots = false;
+  std::uint64_t seed = 0;
+  Surfaces surfaces;
+  std::vector<Trajectory> truths;
+  std::vector<DrivingVehicle> vehicles;
+  std::vector<std::vector<DustCloud>> clouds;  // by robot
+};
+
 // All that casting the scans of one robot needs. Copies of its recording share it.
 struct Robot {
   std::string name;
+  std::size_t number = 0;
+  std::shared_ptr<const Surroundings> around;
   Raycaster raycaster;
   LidarConfig lidar;
   LidarUnit unit;
@@ -25,7 +40,6 @@ struct Robot {
   std::vector<Stamp> sweep_ends;
   std::vector<Stamp> scan_stamps;  ///< As reported.
   bool sways = false;              ///< So that a sweep is not steady.
-  VisitConfig visits;
 
   [[nodiscard]] Pose T_base_sensor() const { return T_base_lidar(lidar) * unit.T_nominal_true; }
 
@@ -37,6 +51,14 @@ struct Robot {
     for (int k = 1; sways && k < kPieces; ++k)
       poses.push_back(*pose_at(truth, end - sweep + sweep * k / kPieces) * T_base_sensor());
     return poses;
+  }
+
+  [[nodiscard]] TriangleMesh movers(Stamp stamp) const {
+    TriangleMesh mesh = people_around(truth, stamp, around->visits.people);
+    if (around->robots_see_robots)
+      append(mesh, robots_around(number, stamp, lidar.range_max, around->truths));
+    append(mesh, vehicles_around(number, stamp, around->truths, around->vehicles));
+    return mesh;
   }
 
   [[nodiscard]] Result<Scan> scan(std::size_t i) const {
@@ -53,12 +75,15 @@ struct Robot {
                 end,
                 mix64(seed, i),
                 poses_between(end),
-                visits.dust};
-    if (visits.people > 0) {
-      Result<Raycaster> people = Raycaster::build(people_around(truth, end, visits.people));
-      if (!people) return fail(name, people.error());
-      sweep.movers = *std::move(people);
+                around->visits.dust};
+    if (const TriangleMesh moving = movers(end); !moving.empty()) {
+      Result<Raycaster> caster = Raycaster::build(moving);
+      if (!caster) return fail(name, caster.error());
+      sweep.movers = *std::move(caster);
     }
+    sweep.surfaces = around->surfaces;
+    sweep.air =
+        air_at(end, sweep.T_world_lidar_end.translation(), around->air, around->clouds[number], around->seed);
     Scan scan = cast_scan(raycaster, lidar, sweep, unit);
     scan.stamp = scan_stamps[i];
     return scan;
@@ -77,11 +102,11 @@ std::vector<Stamp> sweep_ends(const Trajectory& truth, const LidarConfig& lidar)
 
 // As reported: in order, and within the time that the truth covers.
 std::vector<Stamp> with_jitter(std::vector<Stamp> stamps, Stamp last, double sigma_s, std::uint64_t seed) {
-  constexpr double kMostSigmas = 2.0;
+  constexpr double kMostJitter = 2.0;
   if (sigma_s == 0.0) return stamps;
   Rng rng(seed);
   for (Stamp& stamp : stamps) {
-    const double off = sigma_s * std::clamp(rng.normal(), -kMostSigmas, kMostSigmas);
+    const double off = sigma_s * std::clamp(rng.normal(), -kMostJitter, kMostJitter);
     stamp = std::min(stamp + from_seconds(off), last);
   }
   return stamps;
@@ -118,6 +143,10 @@ constexpr std::uint64_t kImuStream = 0x696d75;
 constexpr std::uint64_t kUnitStream = 0x756e6974;
 constexpr std::uint64_t kJitterStream = 0x6a69747465;
 constexpr std::uint64_t kVisitStream = 0x7669736974;
+constexpr std::uint64_t kSurroundingsStream = 0x776f726c64;
+constexpr std::uint64_t kDriveStream = 0x6472697665;
+constexpr std::uint64_t kWallStream = 0x77616c6c;
+constexpr std::uint64_t kAirStream = 0x616972;
 
 void add_wheels(Recording& recording, const Robot& robot, WheelConfig wheels) {
   if (!wheels.on) return;
@@ -166,14 +195,14 @@ struct Drives {
 
 // Uses a watertight raycaster, so that no wheel falls between two triangles. Scans use the fast one:
 // watertight edges would move one point in some 1e5, and with it the bytes of every recording.
-Result<Drives> drive_all(const World& world, const DriveConfig& config) {
+Result<Drives> drive_all(const World& world, const DriveConfig& config, std::uint64_t seed) {
   const Phase phase("driving the routes", world.routes.size() + 1);
   const Result<Raycaster> floor = Raycaster::build(world.mesh, EdgeRule::watertight);
   if (!floor) return fail(world.name, floor.error());
   phase.advance();
   std::vector<Result<Trajectory>> driven(world.routes.size());
   parallel_for_each(world.routes.size(), [&](std::size_t i) {
-    driven[i] = drive(*floor, world.routes[i], config, Stamp{});
+    driven[i] = drive(*floor, world.routes[i], config, Stamp{}, mix64(mix64(seed, i), kDriveStream));
     phase.advance();
   });
   Drives drives{*floor, {}};
@@ -189,19 +218,38 @@ Result<std::vector<Raycaster>> raycasters_of(const World& world, const Drives& d
                                              const ScenarioConfig& config) {
   const Result<Raycaster> empty = Raycaster::build(world.mesh);
   if (!empty) return fail(world.name, empty.error());
+  const std::vector<TriangleMesh> things =
+      parked_things(drives.floor, drives.truths, config.visits, mix64(config.seed, kVisitStream));
   std::vector<Raycaster> raycasters;
-  for (const TriangleMesh& things :
-       parked_things(drives.floor, drives.truths, config.visits, mix64(config.seed, kVisitStream))) {
+  for (std::size_t robot = 0; robot < things.size(); ++robot) {
     Result<Raycaster> met = *empty;
-    if (!things.empty()) {
-      TriangleMesh mesh = world.mesh;
-      append(mesh, things);
+    if (!things[robot].empty() || config.visits.walls_per_km > 0.0) {
+      TriangleMesh mesh = with_changed_walls(world.mesh, drives.truths[robot],
+                                             {config.visits.walls_per_km, config.visits.wall_change},
+                                             mix64(mix64(config.seed, kWallStream), robot));
+      append(mesh, things[robot]);
       met = Raycaster::build(mesh);
       if (!met) return fail(world.name, met.error());
     }
     raycasters.push_back(*std::move(met));
   }
   return raycasters;
+}
+
+std::shared_ptr<const Surroundings> surroundings_of(const Drives& drives, const ScenarioConfig& config) {
+  const std::uint64_t seed = mix64(config.seed, kSurroundingsStream);
+  Surroundings around{config.visits,
+                      config.air,
+                      config.traffic.robots,
+                      seed,
+                      Surfaces(config.surfaces, seed),
+                      drives.truths,
+                      draw_vehicles(drives.floor, drives.truths, config.traffic, seed),
+                      {}};
+  for (std::size_t robot = 0; robot < drives.truths.size(); ++robot)
+    around.clouds.push_back(
+        draw_clouds(drives.truths[robot], config.air, mix64(mix64(config.seed, kAirStream), robot)));
+  return std::make_shared<const Surroundings>(std::move(around));
 }
 
 }  // namespace
@@ -228,15 +276,22 @@ Result<std::vector<LidarConfig>> lidars_of(const ScenarioConfig& config) {
 void set_conditions(Conditions conditions, ScenarioConfig& config) {
   const bool field = conditions == Conditions::field;
   config.lidar_errors = field ? field_lidar_errors() : LidarErrorConfig();
+  config.surfaces = field ? field_surfaces() : SurfaceConfig();
+  config.air = field ? field_air() : AirConfig();
   config.visits = field ? field_visits() : VisitConfig();
+  config.traffic = field ? field_traffic() : TrafficConfig();
+  config.drive = field ? field_drive(config.drive) : ideal_drive(config.drive);
+  if (field) config.wheels = field_wheels(config.wheels);
+  if (!field) config.wheels.burst_rate = 0.0;
 }
 
 Result<std::vector<Recording>> simulate(const World& world, const ScenarioConfig& config) {
   if (const Result<> checked = check(world, config); !checked) return tl::unexpected(checked.error());
-  const Result<Drives> drives = drive_all(world, config.drive);
+  const Result<Drives> drives = drive_all(world, config.drive, config.seed);
   if (!drives) return tl::unexpected(drives.error());
   const Result<std::vector<Raycaster>> raycasters = raycasters_of(world, *drives, config);
   if (!raycasters) return tl::unexpected(raycasters.error());
+  const std::shared_ptr<const Surroundings> around = surroundings_of(*drives, config);
   const std::vector<LidarConfig> lidars = *lidars_of(config);
   std::vector<Recording> recordings;
   for (std::size_t i = 0; i < world.routes.size(); ++i) {
@@ -244,6 +299,8 @@ Result<std::vector<Recording>> simulate(const World& world, const ScenarioConfig
     const std::uint64_t seed = mix64(config.seed, i);
     recordings.push_back(
         recording_of({world.routes[i].name,
+                      i,
+                      around,
                       (*raycasters)[i],
                       lidar,
                       draw_lidar_unit(config.lidar_errors, num_rings(lidar), i, mix64(seed, kUnitStream)),
@@ -251,8 +308,7 @@ Result<std::vector<Recording>> simulate(const World& world, const ScenarioConfig
                       drives->truths[i],
                       {},
                       {},
-                      config.drive.sway_hz > 0.0,
-                      config.visits},
+                      is_unsteady(config.drive)},
                      config));
   }
   return recordings;

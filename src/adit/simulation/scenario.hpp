@@ -10,8 +10,11 @@
 
 #include "adit/core/config.hpp"
 #include "adit/core/records.hpp"
+#include "adit/simulation/air.hpp"
+#include "adit/simulation/fleet_traffic.hpp"
 #include "adit/simulation/imu_model.hpp"
 #include "adit/simulation/lidar_model.hpp"
+#include "adit/simulation/surface_signal.hpp"
 #include "adit/simulation/trajectory.hpp"
 #include "adit/simulation/visit.hpp"
 #include "adit/simulation/wheel_model.hpp"
@@ -25,7 +28,10 @@ struct ScenarioConfig {
   /// mounted as `lidar` is. Empty: all have `lidar`.
   std::string lidars;
   LidarErrorConfig lidar_errors;
+  SurfaceConfig surfaces;
+  AirConfig air;
   VisitConfig visits;
+  TrafficConfig traffic;
   WheelConfig wheels;
   ImuConfig imu;
   DriveConfig drive;
@@ -38,7 +44,10 @@ inline Fields fields_of(ScenarioConfig& c) {
                     "LiDARs of the robots in turn, as in 'os1-64,vlp-16'; empty: all have the one below"});
   append(fields, "lidar", fields_of(c.lidar));
   append(fields, "lidar_errors", fields_of(c.lidar_errors));
+  append(fields, "surfaces", fields_of(c.surfaces));
+  append(fields, "air", fields_of(c.air));
   append(fields, "visits", fields_of(c.visits));
+  append(fields, "traffic", fields_of(c.traffic));
   append(fields, "wheels", fields_of(c.wheels));
   append(fields, "imu", fields_of(c.imu));
   append(fields, "drive", fields_of(c.drive));
@@ -48,7 +57,9 @@ inline Fields fields_of(ScenarioConfig& c) {
 /// Which errors sensors have, how robots move, and what changes around them.
 enum class Conditions {
   ideal,  ///< Noise alone, and every unit of a sensor is the same.
-  field,  ///< As in practice: field_lidar_errors(), a body on its suspension, uneven floors.
+  /// As in practice: field_lidar_errors(), field_surfaces(), field_air(), field_visits(), field_traffic(),
+  /// set_field_motion() and bursts of slip of the wheels.
+  field,
 };
 inline constexpr std::array kConditions{Conditions::ideal, Conditions::field};
 [[nodiscard]] std::string_view to_string(Conditions conditions);

@@ -241,5 +241,78 @@ TEST(Scenario, refuses_configurations_out_of_range) {
   EXPECT_NE(error_of(hall(), config).find("range"), std::string::npos);
 }
 
+TEST(Scenario, field_conditions_turn_on_every_kind_of_trouble_and_ideal_ones_none) {
+  ScenarioConfig config;
+  set_conditions(Conditions::field, config);
+  EXPECT_TRUE(check_fields(fields_of(config)).has_value());
+  for (const double amplitude : {config.lidar_errors.range_bias,
+                                 config.lidar_errors.intensity_walk,
+                                 config.surfaces.contrast,
+                                 config.surfaces.signs,
+                                 config.surfaces.wet,
+                                 config.air.fog,
+                                 config.air.clouds_per_km,
+                                 config.air.drips,
+                                 config.visits.doors,
+                                 config.visits.blocked_ends,
+                                 config.visits.walls_per_km,
+                                 config.visits.pipes,
+                                 config.visits.vehicles_per_km,
+                                 config.visits.dust,
+                                 config.traffic.vehicles_per_hour,
+                                 config.drive.sway_hz,
+                                 config.drive.bump_height,
+                                 config.drive.manoeuvres.stops_per_km,
+                                 config.drive.manoeuvres.reversals_per_km,
+                                 config.drive.manoeuvres.turns_per_km,
+                                 config.wheels.burst_rate})
+    EXPECT_GT(amplitude, 0.0);
+  EXPECT_TRUE(config.traffic.robots);
+  set_conditions(Conditions::ideal, config);
+  EXPECT_EQ(config.wheels.burst_rate, 0.0);
+  EXPECT_EQ(config.drive.manoeuvres.turns_per_km, 0.0);
+  EXPECT_EQ(config.surfaces.contrast, 0.0);
+  EXPECT_FALSE(config.traffic.robots);
+}
+
+TEST(Scenario, field_conditions_are_the_same_on_any_number_of_threads) {
+  ScenarioConfig config = quick();
+  set_conditions(Conditions::field, config);
+  const int threads_before = num_threads();
+  std::vector<PointCloud> clouds;
+  for (const int threads : {1, 4}) {
+    set_num_threads(threads);
+    clouds.push_back(simulated(hall(), config)[1].read_scan(40).value().cloud);
+  }
+  set_num_threads(threads_before);
+  EXPECT_EQ(clouds[0].points, clouds[1].points);
+  EXPECT_EQ(clouds[0].intensities, clouds[1].intensities);
+  EXPECT_FALSE(clouds[0].intensities.empty());
+  clouds[0].check();
+}
+
+TEST(Scenario, robots_see_one_another_where_told) {
+  ScenarioConfig config = quick();
+  config.lidar.noise_near = config.lidar.noise_far = 0.0;
+  const auto away_from_walls = [&](const Recording& r) {
+    std::size_t num = 0;
+    for (std::size_t scan = 0; scan < r.num_scans(); scan += 10) {
+      const Scan seen = r.read_scan(scan).value();
+      const Pose T_world_lidar = pose_at(r.truth, seen.stamp).value() * r.T_base_lidar;
+      for (const Eigen::Vector3f& point : seen.cloud.points) {
+        const Vector3 p = T_world_lidar * point.cast<double>();
+        num += std::min((p - kHallLow).cwiseAbs().minCoeff(), (p - kHallHigh).cwiseAbs().minCoeff()) > 0.4 &&
+                       p.z() < 1.2
+                   ? 1U
+                   : 0U;
+      }
+    }
+    return num;
+  };
+  EXPECT_EQ(away_from_walls(simulated(hall(), config)[0]), 0U);
+  config.traffic.robots = true;
+  EXPECT_GT(away_from_walls(simulated(hall(), config)[0]), 10U);
+}
+
 }  // namespace
 }  // namespace adit

@@ -10,6 +10,7 @@
 #include "adit/core/angles.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
+#include "adit/core/rng.hpp"
 #include "adit/simulation/floor_line.hpp"
 
 namespace adit {
@@ -118,6 +119,25 @@ Result<> unwrap_yaw(Path& path, const std::string& robot) {
   return {};
 }
 
+// Height of the bumps at a place, standard deviation 1: smooth between random numbers at the corners of
+// cells.
+double bump_at(double x, double y) {
+  constexpr double kCell = 0.7;                                 // metres: longer than a wheel's footprint
+  constexpr double kToUnit = 2.0 * std::numbers::sqrt3 * 1.35;  // of numbers in [0, 1), smoothed
+  const auto corner = [](double i, double j) {
+    const auto number = [](double k) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(k)); };
+    return static_cast<double>(mix64(number(i), number(j)) >> 11U) * 0x1.0p-53 - 0.5;
+  };
+  const auto smooth = [](double t) { return t * t * (3.0 - 2.0 * t); };
+  const double i = std::floor(x / kCell);
+  const double j = std::floor(y / kCell);
+  const double u = smooth(x / kCell - i);
+  const double v = smooth(y / kCell - j);
+  const double near = std::lerp(corner(i, j), corner(i + 1.0, j), u);
+  const double far = std::lerp(corner(i, j + 1.0), corner(i + 1.0, j + 1.0), u);
+  return kToUnit * std::lerp(near, far, v);
+}
+
 // The heights under the four wheels give the plane that the robot stands on.
 void stand_on_floor(const Raycaster& raycaster, const DriveConfig& config, PathPoint& point) {
   point.position.z() = floor_height(raycaster, point.position).value_or(point.position.z());
@@ -129,7 +149,8 @@ void stand_on_floor(const Raycaster& raycaster, const DriveConfig& config, PathP
     Vector3 wheel = point.position;
     wheel.head<2>() += along * ahead + across * left;
     const double z = floor_height(raycaster, wheel).value_or(wheel.z());
-    return std::abs(z - wheel.z()) <= kHighestStep ? z : wheel.z();
+    const double floor = std::abs(z - wheel.z()) <= kHighestStep ? z : wheel.z();
+    return config.bump_height == 0.0 ? floor : floor + config.bump_height * bump_at(wheel.x(), wheel.y());
   };
   const double front_left = height(1.0, 1.0);
   const double front_right = height(1.0, -1.0);
@@ -180,7 +201,8 @@ void follow_floor(const Raycaster& raycaster, const DriveConfig& config, Path& p
 
 // The fastest drive within the limits (forward and backward pass over v^2 = v0^2 + 2 a s), then all speeds
 // times one factor, which keeps the shape and makes the mean exact.
-void set_speeds(const DriveConfig& config, double mean_speed, Path& path) {
+void set_speeds(const DriveConfig& config, double mean_speed, const std::vector<std::size_t>& halts,
+                Path& path) {
   const double two_a = 2.0 * config.acceleration;
   const auto limit = [&](PathPoint& point, const PathPoint& neighbour) {
     const double gap = std::abs(point.distance - neighbour.distance);
@@ -191,6 +213,7 @@ void set_speeds(const DriveConfig& config, double mean_speed, Path& path) {
         mean_speed, std::sqrt(config.lateral_acceleration / std::max(std::abs(point.curvature), 1e-9)));
   }
   path.front().speed = path.back().speed = 0.0;
+  for (const std::size_t halt : halts) path[halt].speed = 0.0;
   for (std::size_t i = 1; i < path.size(); ++i) limit(path[i], path[i - 1]);
   for (std::size_t i = path.size() - 1; i-- > 0;) limit(path[i], path[i + 1]);
   for (std::size_t i = 1; i < path.size(); ++i) {
@@ -251,28 +274,67 @@ Trajectory with_sway(Trajectory trajectory, const DriveConfig& config, double fu
   return trajectory;
 }
 
-Trajectory sampled(const Path& path, const DriveConfig& config, Stamp start) {
+Trajectory sampled(const Path& path, const DriveConfig& config, const DriveClock& clock, Stamp start) {
   Trajectory trajectory;
-  const double duration = config.stand_time + path.back().time;
+  const double duration = config.stand_time + path.back().time + clock.lost_time();
   const auto last = static_cast<std::int64_t>(std::ceil(duration * config.sample_rate_hz));
   for (std::int64_t i = 0; i <= last; ++i) {
     const double time = static_cast<double>(i) / config.sample_rate_hz;
-    trajectory.push_back({start + from_seconds(time), pose_after(path, time - config.stand_time)});
+    const DriveClock::Reading now = clock.at(time - config.stand_time);
+    Pose T_world_robot = pose_after(path, now.driving_time);
+    if (now.turned != 0.0) T_world_robot = T_world_robot * Pose::planar(0.0, 0.0, now.turned);
+    trajectory.push_back({start + from_seconds(time), T_world_robot});
   }
   return trajectory;
+}
+
+// The points of the path at which manoeuvres halt it.
+std::vector<std::size_t> halts_on(const Path& path, const std::vector<Manoeuvre>& manoeuvres) {
+  std::vector<std::size_t> halts;
+  for (const Manoeuvre& m : manoeuvres) {
+    const auto found =
+        std::ranges::lower_bound(path, m.share * path.back().distance, {}, &PathPoint::distance);
+    halts.push_back(
+        static_cast<std::size_t>(std::clamp(found - path.begin(), std::ptrdiff_t{1}, std::ssize(path) - 2)));
+  }
+  return halts;
 }
 
 }  // namespace
 
 Result<Trajectory> drive(const Raycaster& raycaster, const Route& route, const DriveConfig& config,
-                         Stamp start) {
+                         Stamp start, std::uint64_t seed) {
   const Result<std::vector<Vector3>> line = floor_line(raycaster, route);
   if (!line) return tl::unexpected(line.error());
   Path path = smoothed(*line, config.corner_length);
   if (const Result<> turns = unwrap_yaw(path, route.name); !turns) return tl::unexpected(turns.error());
   follow_floor(raycaster, config, path);
-  set_speeds(config, route.speed_mps, path);
-  return with_sway(sampled(path, config, start), config, route.speed_mps);
+  const std::vector<Manoeuvre> manoeuvres = draw_manoeuvres(config.manoeuvres, path.back().distance, seed);
+  const std::vector<std::size_t> halts = halts_on(path, manoeuvres);
+  set_speeds(config, route.speed_mps, halts, path);
+  std::vector<double> halt_times;
+  for (const std::size_t halt : halts) halt_times.push_back(path[halt].time);
+  const DriveClock clock(manoeuvres, halt_times);
+  return with_sway(sampled(path, config, clock, start), config, route.speed_mps);
 }
+
+DriveConfig field_drive(DriveConfig config) {
+  config.sway_hz = 1.3;
+  config.sway_roll_deg = 0.5;
+  config.sway_pitch_deg = 0.3;
+  config.sway_height = 0.005;
+  config.bump_height = 0.01;
+  config.manoeuvres = field_manoeuvres();
+  return config;
+}
+
+DriveConfig ideal_drive(DriveConfig config) {
+  config.sway_hz = 0.0;
+  config.bump_height = 0.0;
+  config.manoeuvres = {};
+  return config;
+}
+
+bool is_unsteady(const DriveConfig& config) { return config.sway_hz > 0.0 || config.bump_height > 0.0; }
 
 }  // namespace adit

@@ -8,6 +8,7 @@
 
 #include "adit/core/config.hpp"
 #include "adit/core/records.hpp"
+#include "adit/simulation/manoeuvres.hpp"
 #include "adit/simulation/raycaster.hpp"
 #include "adit/simulation/route.hpp"
 
@@ -25,10 +26,12 @@ struct DriveConfig {
   double sway_roll_deg = 2.0;   ///< To both sides, once per period.
   double sway_pitch_deg = 1.0;  ///< Twice per period, as the height.
   double sway_height = 0.02;
+  double bump_height = 0.0;  ///< Standard deviation of an uneven floor that scans do not show.
+  ManoeuvreConfig manoeuvres;
 };
 
 inline Fields fields_of(DriveConfig& c) {
-  return {
+  Fields fields{
       {"sample_rate_hz", &c.sample_rate_hz, "Hz", 10, 1000, "ground-truth poses per second"},
       {"stand_time", &c.stand_time, "s", 0, 60, "time that the robot stands before it drives off"},
       {"acceleration", &c.acceleration, "m/s^2", 0.05, 10, "nominal acceleration and braking"},
@@ -41,19 +44,33 @@ inline Fields fields_of(DriveConfig& c) {
       {"sway_hz", &c.sway_hz, "Hz", 0, 5, "strides per second of a robot that walks and sways; 0: it drives"},
       {"sway_roll_deg", &c.sway_roll_deg, "deg", 0, 30, "roll to both sides at full speed, once per stride"},
       {"sway_pitch_deg", &c.sway_pitch_deg, "deg", 0, 30, "pitch to both sides, twice per stride"},
-      {"sway_height", &c.sway_height, "m", 0, 0.5, "rise above the floor, twice per stride"}};
+      {"sway_height", &c.sway_height, "m", 0, 0.5, "rise above the floor, twice per stride"},
+      {"bump_height", &c.bump_height, "m", 0, 0.1, "bumps under the wheels, metre by metre (sigma)"}};
+  append(fields, "manoeuvres", fields_of(c.manoeuvres));
+  return fields;
 }
+
+/// The configuration with motion as in practice: a body on its suspension, which rolls by half a degree
+/// at 1.3 Hz (bodies of cars swing at 1 to 1.5 Hz: T. Gillespie, "Fundamentals of Vehicle Dynamics", 1992,
+/// chapter 5), bumps of 1 cm under the wheels (class D of ISO 8608, a poor gravel road, has as much in waves
+/// of up to 10 m; these are shorter), field_manoeuvres().
+[[nodiscard]] DriveConfig field_drive(DriveConfig config);
+/// The configuration without any of these.
+[[nodiscard]] DriveConfig ideal_drive(DriveConfig config);
+
+/// Whether the body moves otherwise than steadily within a tenth of a second.
+[[nodiscard]] bool is_unsteady(const DriveConfig& config);
 
 /// Drives `route` over the floor of the mesh (world frame, metres): the robot stands for a while, then
 /// follows the smoothed line with the route's mean speed (over the time it moves), slower in curves, speeding
-/// up at the start and braking at the end. Poses are T_world_base at `sample_rate_hz` from `start` on, ending
-/// with the robot at rest. With `sway_hz` the body rolls, pitches and rises while it moves, in proportion to
-/// its speed.
+/// up at the start and braking at the end; `seed` draws where it halts. Poses are T_world_base at
+/// `sample_rate_hz` from `start` on, ending with the robot at rest. With `sway_hz` the body rolls, pitches
+/// and rises while it moves, in proportion to its speed.
 ///
 /// Fails, naming robot, waypoint and position, when there are fewer than two distinct waypoints, a number is
 /// not finite, no floor lies between 1.5 m above and 3 m below a waypoint, or a wall stands between two
 /// waypoints (0.5 m above the floor).
 [[nodiscard]] Result<Trajectory> drive(const Raycaster& raycaster, const Route& route,
-                                       const DriveConfig& config, Stamp start);
+                                       const DriveConfig& config, Stamp start, std::uint64_t seed = 0);
 
 }  // namespace adit

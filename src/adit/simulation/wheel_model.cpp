@@ -168,6 +168,14 @@ std::string_view to_string(WheelSign sign) {
   return "unknown";
 }
 
+WheelConfig field_wheels(WheelConfig config) {
+  config.burst_rate = 0.5;
+  config.burst_time = 1.0;
+  config.burst_min = 0.05;
+  config.burst_max = 0.3;
+  return config;
+}
+
 Result<> check_wheels(WheelConfig config) {
   if (Result<> fields = check_fields(fields_of(config)); !fields) return fail("wheels", fields.error());
   const auto faults = parse_faults(config.faults, "wheels", kWheelFaults, Stamp{});

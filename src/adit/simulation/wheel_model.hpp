@@ -79,6 +79,11 @@ inline Fields fields_of(WheelConfig& c) {
        "(m/s too fast), lift, freeze, jump (metres), silent"}};
 }
 
+/// The configuration with a burst of slip every two minutes, of 5 to 30 % for a second: loose ground and
+/// puddles (wheels pull best at 15 to 20 % of slip and lose their grip beyond: J. Wong, "Theory of Ground
+/// Vehicles", 2008, chapter 1; how often is chosen).
+[[nodiscard]] WheelConfig field_wheels(WheelConfig config);
+
 /// Ranges of the fields, and the text of the faults.
 Result<> check_wheels(WheelConfig config);
 
