@@ -70,19 +70,21 @@ std::vector<GroupAndPolicy> groups_of(const std::vector<MergeRun>& runs) {
 }
 
 Table summary_table(const std::vector<MergeRun>& runs) {
-  Table table{"Merging, in short",
-              "Mergeable pairs share at least 25 m and a place that is distinctive in the scans of both. "
-              "Bent: merged in the correct place, but with an ATE of 1 % of the path or more. Indistinct: "
-              "merged correctly, of the pairs that share 25 m but no such place. Kept apart: of the pairs "
-              "that share less. Joint: all robots of a world at once; merged: mergeable pairs that end in "
-              "one correct map; whole: worlds where all robots that mergeable pairs connect share a map. "
-              "CPU: time of all threads for merging alone, from the robots' "
-              "maps to the joint solution.",
-              {},
-              {"Worlds", "Keyframes", "Number", "Merged well", "Bent", "Refused", "Indistinct", "Kept apart",
-               "Wrong merges", "Wrong loops", "Joint: merged", "Joint: whole", "Joint: wrong",
-               "Joint: wrong loops", "Registrations", "CPU (s)"},
-              {}};
+  Table table{
+      "Merging, in short",
+      "Mergeable pairs share at least 25 m of path, and on it a stretch of 20 m whose surface differs from "
+      "that of every other stretch that a robot passed by more than sensors may err. "
+      "Bent: merged in the correct place, but with an ATE of 1 % of the path or more. Indistinct: "
+      "merged correctly, of the pairs that share 25 m but no such stretch. Kept apart: of the pairs "
+      "that share less. Joint: all robots of a world at once; merged: mergeable pairs that end in "
+      "one correct map; whole: worlds where all robots that mergeable pairs connect share a map. "
+      "CPU: time of all threads for merging alone, from the robots' "
+      "maps to the joint solution.",
+      {},
+      {"Worlds", "Keyframes", "Number", "Merged well", "Bent", "Refused", "Indistinct", "Kept apart",
+       "Wrong merges", "Wrong loops", "Joint: merged", "Joint: whole", "Joint: wrong", "Joint: wrong loops",
+       "Registrations", "CPU (s)"},
+      {}};
   for (const GroupAndPolicy& key : groups_of(runs)) {
     MergeCounts counts;
     for (const MergeRun& run : runs)
@@ -142,15 +144,15 @@ Table worlds_table(const std::vector<MergeRun>& runs) {
 Table refusals_table(const std::vector<MergeRun>& runs) {
   Table table{
       "Pairs that share 25 m and were refused",
-      "With the number of distinctive places on the shared stretch, and the reason given by the decision.",
+      "With the metres of the shared stretch that are distinctive, and the reason given by the decision.",
       {},
-      {"World", "Keyframes", "Robots", "Shared (m)", "Distinctive places", "Reason"},
+      {"World", "Keyframes", "Robots", "Shared (m)", "Distinctive (m)", "Reason"},
       {}};
   for (const MergeRun& run : runs)
     for (const MergePair& pair : run.pairs)
       if (!is_variant(run) && pair.shares_enough() && pair.outcome == MergeOutcome::refused)
         table.rows.push_back({run.world, run.keyframes, maps_text({{pair.robots[0], pair.robots[1]}}),
-                              format("{:.0f}", pair.shared_m), format("{}", pair.distinctive_places),
+                              format("{:.0f}", pair.shared_m), format("{:.0f}", pair.distinctive_m),
                               pair.refused_reason});
   return table;
 }

@@ -13,10 +13,10 @@
 
 namespace adit {
 
-/// A pair counts as mergeable from this length of shared stretch (metres) and number of distinctive places
-/// on.
+/// A pair counts as mergeable from this length of shared stretch on, metres, and this much of it within
+/// stretches whose surface differs from that of every other.
 inline constexpr double kMergeableStretch = 25.0;
-inline constexpr int kMergeablePlaces = 1;
+inline constexpr double kDistinctiveStretch = 20.0;
 
 enum class MergeOutcome {
   success,  ///< Merged, and the largest ATE of every robot is below 1 % of its path (the paper's rule).
@@ -53,7 +53,7 @@ struct MergeEvidence {
 struct MergePair {
   std::array<std::string, 2> robots;
   double shared_m = 0.0;
-  int distinctive_places = 0;  ///< On the shared stretch, in the scans of both.
+  double distinctive_m = 0.0;  ///< Of the shared stretch, by geometry alone.
   MergeOutcome outcome = MergeOutcome::refused;
   std::string refused_reason;  ///< One sentence where it was refused.
   int registrations = 0;
@@ -63,7 +63,7 @@ struct MergePair {
   std::array<double, 2> ate_max_over_path_pct{};
 
   [[nodiscard]] bool shares_enough() const { return shared_m >= kMergeableStretch; }
-  [[nodiscard]] bool mergeable() const { return shares_enough() && distinctive_places >= kMergeablePlaces; }
+  [[nodiscard]] bool mergeable() const { return shares_enough() && distinctive_m >= kDistinctiveStretch; }
 };
 
 /// All robots of a world at once. Maps are lists of robot names.
@@ -92,7 +92,7 @@ struct MergeCounts {
   int worlds = 0;
   int mergeable = 0, success = 0, bent = 0,
       refused = 0;                            ///< Mergeable pairs and their outcomes.
-  int indistinct = 0, indistinct_merged = 0;  ///< Pairs that share enough, but no distinctive place.
+  int indistinct = 0, indistinct_merged = 0;  ///< Pairs that share enough, but no distinctive stretch.
   int others = 0, kept_apart = 0;             ///< Pairs that share less.
   int wrong = 0;                              ///< Of all pairs.
   int wrong_loops = 0, joint_wrong_loops = 0, joint_wrong = 0, joint_whole = 0;

@@ -35,11 +35,11 @@ TEST(JudgeMerge, OutcomesHaveNames) {
   EXPECT_THROW((void)merge_outcome("perhaps"), ContractViolation);
 }
 
-MergePair pair_of(double shared_m, MergeOutcome outcome, int distinctive_places = 3) {
+MergePair pair_of(double shared_m, MergeOutcome outcome, double distinctive_m = 30.0) {
   MergePair pair;
   pair.robots = {"robot_0", "robot_1"};
   pair.shared_m = shared_m;
-  pair.distinctive_places = distinctive_places;
+  pair.distinctive_m = distinctive_m;
   pair.outcome = outcome;
   pair.refused_reason = outcome == MergeOutcome::refused ? "the tunnel was too smooth" : "";
   return pair;

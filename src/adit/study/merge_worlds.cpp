@@ -72,10 +72,6 @@ std::string key_of(ListedWorld world, std::uint32_t files, ScenarioConfig simula
   return format("{:08x}", crc32(std::string(version()) + to_toml(fields), files));
 }
 
-Result<World> world_of(const ListedWorld& world) {
-  return world.routes_file.empty() ? make_world(world.generated) : load_world({}, world.routes_file);
-}
-
 std::filesystem::path map_file(const std::filesystem::path& folder, std::size_t robot) {
   return folder / format("{}.map", robot);
 }
@@ -171,6 +167,10 @@ Result<std::vector<ListedWorld>> read_world_list(const std::filesystem::path& li
     if (!world.routes_file.empty())
       world.routes_file = (list.parent_path() / world.routes_file).lexically_normal().string();
   return std::vector<ListedWorld>(worlds.begin(), worlds.end());
+}
+
+Result<World> world_of(const ListedWorld& world) {
+  return world.routes_file.empty() ? make_world(world.generated) : load_world({}, world.routes_file);
 }
 
 bool is_available(const ListedWorld& world) {

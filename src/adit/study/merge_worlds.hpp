@@ -29,6 +29,9 @@ Result<std::vector<ListedWorld>> read_world_list(const std::filesystem::path& li
 /// Whether the files that the world needs are there; generated ones need none.
 [[nodiscard]] bool is_available(const ListedWorld& world);
 
+/// Its mesh and routes: generated, or read from its files.
+Result<World> world_of(const ListedWorld& world);
+
 /// The robots' maps, by the odometries that those policies are studied under, and their ground truth. They
 /// come from `cache`, a folder that exists, if the world was driven before with the same routes, mesh and
 /// configuration of simulation and robots; otherwise they are simulated, stored there and read back. The key

@@ -21,7 +21,7 @@ constexpr int kMergeRunsVersion = 2;  // of results.json
 Json json_of(const MergePair& pair) {
   return {{"robots", pair.robots},
           {"shared_m", pair.shared_m},
-          {"distinctive_places", pair.distinctive_places},
+          {"distinctive_m", pair.distinctive_m},
           {"outcome", to_string(pair.outcome)},
           {"refused_reason", pair.refused_reason},
           {"registrations", pair.registrations},
@@ -97,7 +97,7 @@ MergePair pair_of(const Json& json) {
   MergePair pair;
   get(json, "robots", pair.robots);
   get(json, "shared_m", pair.shared_m);
-  get(json, "distinctive_places", pair.distinctive_places);
+  get(json, "distinctive_m", pair.distinctive_m);
   pair.outcome = merge_outcome(json.at("outcome").get<std::string>());
   get(json, "refused_reason", pair.refused_reason);
   get(json, "registrations", pair.registrations);
@@ -171,7 +171,7 @@ Result<> write_merge_runs(const std::filesystem::path& file, const std::vector<M
 
 Result<> write_merge_csv(const std::filesystem::path& file, const std::vector<MergeRun>& runs) {
   std::string text =
-      csv_row({"world", "group", "keyframes", "robot_a", "robot_b", "shared_m", "distinctive_places",
+      csv_row({"world", "group", "keyframes", "robot_a", "robot_b", "shared_m", "distinctive_m",
                "outcome", "registrations", "loops_in_use", "wrong_loops_in_use", "ate_max_a_m", "ate_max_b_m",
                "ate_max_a_pct", "ate_max_b_pct", "refused_reason"});
   const auto number = [](auto value) { return format("{}", value); };
@@ -180,7 +180,7 @@ Result<> write_merge_csv(const std::filesystem::path& file, const std::vector<Me
     for (const MergePair& pair : run.pairs)
       text +=
           csv_row({run.world, run.group, run.keyframes, pair.robots[0], pair.robots[1],
-                   format("{:.1f}", pair.shared_m), number(pair.distinctive_places),
+                   format("{:.1f}", pair.shared_m), format("{:.1f}", pair.distinctive_m),
                    std::string(to_string(pair.outcome)), number(pair.registrations),
                    number(pair.loops_in_use), number(pair.wrong_loops_in_use), thousandths(pair.ate_max_m[0]),
                    thousandths(pair.ate_max_m[1]), thousandths(pair.ate_max_over_path_pct[0]),
