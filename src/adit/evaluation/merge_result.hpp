@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "adit/evaluation/refusal_kind.hpp"
 #include "adit/evaluation/tables.hpp"
 
 namespace adit {
@@ -79,8 +80,10 @@ struct MergeJoint {
 /// One world under one keyframe policy.
 struct MergeRun {
   std::string world;
-  std::string group;  ///< "tuning", "check" or "limit".
+  std::string group;  ///< "tuning", "check", "field" or "limit".
   std::string keyframes;
+  std::string sensors;     ///< Names of the LiDARs that robots have in turn.
+  std::string conditions;  ///< Under which they were simulated: "ideal", "field", or else "other".
   std::vector<MergePair> pairs;
   MergeJoint joint;
   int registrations = 0;  ///< Candidates registered between all robots.
@@ -96,16 +99,20 @@ struct MergeCounts {
   int others = 0, kept_apart = 0;             ///< Pairs that share less.
   int wrong = 0;                              ///< Of all pairs.
   int wrong_loops = 0, joint_wrong_loops = 0, joint_wrong = 0, joint_whole = 0;
-  int joint_merged = 0;  ///< Mergeable pairs in one correct map after all robots of the world met.
+  int joint_merged = 0;       ///< Mergeable pairs in one correct map after all robots of the world met.
+  int pairs = 0, merged = 0;  ///< All pairs; those that were merged, well or not.
+  int joint_pairs = 0;        ///< All pairs that end in one map after all robots met.
+  std::array<int, kRefusalKinds.size()> refusals{};  ///< Of mergeable pairs, by what kept them apart.
   int registrations = 0;
   double time_s = 0.0;
 
   void add(const MergeRun& run);
 };
 
-/// Summary of each group and policy; each world; the wrong merges; the pairs that share enough and were
-/// refused, with the reason. The last two only where there are any. Variants, which have a second word after
-/// the policy's name, appear in the summary and among the wrong merges only.
+/// Summary of each group, policy, sensor and condition; each world; the wrong merges; what kept mergeable
+/// pairs apart; the pairs that share enough and were refused, with the reason. The last three only where
+/// there are any. Variants, which have a second word after the policy's name, appear in the summary and among
+/// the wrong merges only.
 [[nodiscard]] std::vector<Table> merge_tables(const std::vector<MergeRun>& runs);
 
 }  // namespace adit

@@ -156,7 +156,8 @@ Result<MergeRun> run_merges(const std::vector<RobotRun>& runs, const MergeTruth&
 
 void put_run(std::vector<MergeRun>& runs, MergeRun run) {
   const auto old = std::ranges::find_if(runs, [&](const MergeRun& other) {
-    return other.world == run.world && other.keyframes == run.keyframes;
+    return other.world == run.world && other.keyframes == run.keyframes && other.sensors == run.sensors &&
+           other.conditions == run.conditions;
   });
   if (old == runs.end())
     runs.push_back(std::move(run));

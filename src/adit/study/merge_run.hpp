@@ -32,7 +32,7 @@ Result<std::vector<MergeRun>> read_merge_runs(const std::filesystem::path& file)
 Result<> write_merge_runs(const std::filesystem::path& file, const std::vector<MergeRun>& runs);
 /// One line per pair, for spreadsheets.
 Result<> write_merge_csv(const std::filesystem::path& file, const std::vector<MergeRun>& runs);
-/// Replaces the run of the same world and policy, or appends.
+/// Replaces the run of the same world, policy, sensors and conditions, or appends.
 void put_run(std::vector<MergeRun>& runs, MergeRun run);
 
 }  // namespace adit

@@ -27,6 +27,8 @@ MergeRun empty_run(const std::string& world, const std::string& keyframes, int r
 MergeRun made_up_run(const std::string& world, const std::string& keyframes) {
   MergeRun run = empty_run(world, keyframes, 99);
   run.group = "check";
+  run.sensors = "os2-32, vlp-16";
+  run.conditions = "field";
   for (const MergeOutcome outcome :
        {MergeOutcome::success, MergeOutcome::bent, MergeOutcome::refused, MergeOutcome::wrong})
     run.pairs.push_back({.robots = {"ada", "bo"},
@@ -66,6 +68,8 @@ void expect_equal(const MergeRun& a, const MergeRun& b) {
   EXPECT_EQ(a.world, b.world);
   EXPECT_EQ(a.group, b.group);
   EXPECT_EQ(a.keyframes, b.keyframes);
+  EXPECT_EQ(a.sensors, b.sensors);
+  EXPECT_EQ(a.conditions, b.conditions);
   EXPECT_EQ(a.registrations, b.registrations);
   EXPECT_EQ(a.time_s, b.time_s);
   ASSERT_EQ(a.pairs.size(), b.pairs.size());
@@ -110,7 +114,7 @@ TEST(MergeResults, OtherFilesAreRefusedWithTheRemedy) {
        {std::string(), std::string("{}"), good.substr(0, good.size() / 2), replaced("\"bent\"", "\"so-so\""),
         replaced("\"shared_m\"", "\"shared\""),
         replaced("\"registrations\": 12", "\"registrations\": \"12\""),
-        replaced("\"version\": 2", "\"version\": 1"), replaced("\"version\": 2,", "")}) {
+        replaced("\"version\": 3", "\"version\": 1"), replaced("\"version\": 3,", "")}) {
     put_file(folder / "results.json", text);
     EXPECT_ERROR(read_merge_runs(folder / "results.json"),
                  "results.json: not results of this version; remove the file");
@@ -127,9 +131,21 @@ TEST(MergeResults, SpreadsheetsHaveOneLinePerPair) {
   EXPECT_EQ(rows->front().cells.front(), "world");
   EXPECT_EQ(rows->front().cells.back(), "refused_reason");
   EXPECT_EQ(rows->at(2).cells,
-            (std::vector<std::string>{"zab", "check", "all", "ada", "bo", "33.3", "45.0", "bent", "12", "7",
-                                      "2", "0.100", "0.200", "0.143", "2.500", "one \"loop\", no more"}));
+            (std::vector<std::string>{"zab", "check", "all", "os2-32, vlp-16", "field", "ada", "bo", "33.3",
+                                      "45.0", "bent", "12", "7", "2", "0.100", "0.200", "0.143", "2.500", "",
+                                      "one \"loop\", no more"}));
   EXPECT_EQ(rows->at(5).cells.front(), "a");
+}
+
+TEST(PutRun, OtherSensorsAndConditionsStandBesideIt) {
+  std::vector<MergeRun> runs = {empty_run("a", "all")};
+  MergeRun other = empty_run("a", "all");
+  other.conditions = "field";
+  put_run(runs, other);
+  other.sensors = "vlp-16";
+  put_run(runs, other);
+  put_run(runs, other);
+  EXPECT_EQ(runs.size(), 3U);
 }
 
 TEST(PutRun, TakesThePlaceOfTheSameWorldAndPolicy) {

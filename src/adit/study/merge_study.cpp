@@ -51,6 +51,7 @@ Result<> run_world(const MergeStudy& study, const ListedWorld& world, std::vecto
   const Result<std::vector<RobotRun>> robots =
       driven_robots(world, study.config, study.policies, study.folder / "maps");
   if (!robots) return tl::unexpected(robots.error());
+  const ScenarioConfig scenario = scenario_of(world, study.config.simulation);
   const Result<DistinctiveMetres> distinctive = distinctive_of(world, *robots);
   if (!distinctive) return tl::unexpected(distinctive.error());
   for (const KeyframeSelection policy : study.policies) {
@@ -61,6 +62,8 @@ Result<> run_world(const MergeStudy& study, const ListedWorld& world, std::vecto
     if (!run) return fail(world.name, run.error());
     run->world = world.name;
     run->group = world.group;
+    run->sensors = sensors_text(scenario);
+    run->conditions = conditions_text(scenario);
     if (!study.variant.empty()) run->keyframes += " " + study.variant;
     if (study.on_run) study.on_run(*run);
     put_run(runs, std::move(*run));
@@ -81,11 +84,12 @@ std::string summary_line(const MergeRun& run) {
   MergeCounts counts;
   counts.add(run);
   return format(
-      "{:28} {:18} {} mergeable: {} well, {} bent, {} refused; {} of {} others kept apart; {} WRONG, {} "
+      "{:28} {:18} {}, {}: {} mergeable: {} well, {} bent, {} refused; {} of {} others kept apart; {} WRONG, "
+      "{} "
       "wrong loops; joint {} wrong loops, {}; {} registrations, {:.1f} s",
-      run.world, run.keyframes, counts.mergeable, counts.success, counts.bent, counts.refused,
-      counts.kept_apart, counts.others, counts.wrong, counts.wrong_loops, counts.joint_wrong_loops,
-      joint_outcome(counts), run.registrations, run.time_s);
+      run.world, run.keyframes, run.sensors, run.conditions, counts.mergeable, counts.success, counts.bent,
+      counts.refused, counts.kept_apart, counts.others, counts.wrong, counts.wrong_loops,
+      counts.joint_wrong_loops, joint_outcome(counts), run.registrations, run.time_s);
 }
 
 }  // namespace adit

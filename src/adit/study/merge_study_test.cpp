@@ -111,8 +111,10 @@ TEST(RunWorld, EachPolicyTakesItsPlaceAndReachesTheDisk) {
   MergeStudy study = study_in(folder, {KeyframeSelection::tunnel_filter_keep, KeyframeSelection::all});
   std::vector<std::string> reported;
   study.on_run = [&](const MergeRun& run) { reported.push_back(run.world + " " + run.keyframes); };
-  // An earlier run.
+  // An earlier run under the same conditions.
   std::vector<MergeRun> runs = {run_of("other", "all"), run_of("hall", "all")};
+  runs[1].sensors = "vlp-16";
+  runs[1].conditions = "ideal";
   const Result<> done = run_world(study, world, runs);
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(reported, (std::vector<std::string>{"hall tunnel_filter_keep", "hall all"}));
@@ -122,6 +124,8 @@ TEST(RunWorld, EachPolicyTakesItsPlaceAndReachesTheDisk) {
   EXPECT_EQ(runs[2].keyframes, "tunnel_filter_keep");
   for (const std::size_t r : {1U, 2U}) {
     EXPECT_EQ(runs[r].group, "check");
+    EXPECT_EQ(runs[r].sensors, "vlp-16");
+    EXPECT_EQ(runs[r].conditions, "ideal");
     ASSERT_EQ(runs[r].pairs.size(), 1U);
     EXPECT_EQ(runs[r].pairs[0].robots, (std::array<std::string, 2>{"ahead", "behind"}));
     EXPECT_EQ(runs[r].pairs[0].distinctive_m, 0.0) << "five metres are too short";
