@@ -8,6 +8,7 @@
 #include "adit/io/csv.hpp"
 #include "adit/study/incremental_study.hpp"
 #include "adit/study/loop_study.hpp"
+#include "adit/study/merge_calibration.hpp"
 #include "adit/study/merge_run.hpp"
 #include "adit/study/uncertainty_study.hpp"
 
@@ -213,6 +214,18 @@ std::string json_of(const std::vector<IncrementalRun>& runs) {
   Json all = Json::array();
   for (const IncrementalRun& run : runs) all.push_back(json_of(run));
   return all.dump(2) + "\n";
+}
+
+std::string calibration_json(const std::vector<JudgedHypothesis>& hypotheses) {
+  constexpr std::array kTruths{"right", "near", "wrong"};
+  Json all = Json::array();
+  for (const JudgedHypothesis& h : hypotheses)
+    all.push_back({{"truth", kTruths[static_cast<std::size_t>(h.truth)]},
+                   {"refuted", h.refuted},
+                   {"accepted", h.accepted},
+                   {"evidence", h.evidence},
+                   {"needed", h.needed}});
+  return Json{{"version", 1}, {"hypotheses", all}}.dump(1) + "\n";
 }
 
 }  // namespace adit
