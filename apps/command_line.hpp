@@ -116,6 +116,7 @@ void add_odometry(Program& program);
 void add_slam(Program& program);
 void add_study(Program& program);
 void add_merge_study(Program& program);
+void add_merge_calibration(Program& program);
 void add_loop_study(Program& program);
 void add_uncertainty_study(Program& program);
 void add_evaluate(Program& program);

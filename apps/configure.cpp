@@ -13,11 +13,13 @@ void add_simulation_options(const Command& command, SimulationOptions& options) 
       "--lidar", options.lidar,
       "Simulated LiDAR, or several for the robots in turn, separated by commas (default: os2-128)");
   if (!options.lidar.empty()) lidar.default_shown();
-  command
-      .add_option("--conditions", options.conditions,
-                  "Simulated conditions: ideal, where every unit of a sensor is the same and nothing "
-                  "changes, or field")
-      .one_of({"ideal", "field"});
+  const Option conditions =
+      command
+          .add_option("--conditions", options.conditions,
+                      "Simulated conditions: ideal, where every unit of a sensor is the same and nothing "
+                      "changes, or field")
+          .one_of({"ideal", "field"});
+  if (!options.conditions.empty()) conditions.default_shown();
 }
 
 Result<RunConfig> configured(const Common& common, const SimulationOptions& simulation) {

@@ -21,7 +21,7 @@ struct MergeStudyOptions {
   std::string worlds;
   std::string out;
   std::string page;
-  SimulationOptions simulation{.lidar = "os2-32"};
+  SimulationOptions simulation{.lidar = "os2-32", .conditions = "field"};
   std::vector<std::string> keyframes = {"all", "tunnel_filter", "adaptive"};
   WorldChoice choice{{"tuning", "check"}, {}};
   std::string variant;
@@ -87,9 +87,10 @@ void add_merge_study(Program& program) {
                   "Keyframe policies, separated by commas; all but adaptive run on `paper_odometry`")
       .separated_by_commas()
       .default_shown();
-  command.add_option("--groups", options->choice.groups, "Worlds of these groups: tuning, check, limit")
+  command
+      .add_option("--groups", options->choice.groups, "Worlds of these groups: tuning, check, field, limit")
       .separated_by_commas()
-      .one_of({"tuning", "check", "limit"})
+      .one_of({"tuning", "check", "field", "limit"})
       .default_shown();
   command.add_option("--only", options->choice.only, "Only the worlds with these names, whatever their group")
       .separated_by_commas();

@@ -23,7 +23,7 @@ struct UncertaintyOptions {
   std::string out;
   std::vector<std::string> lidars = {"os2-32"};
   std::vector<std::string> imus = {"icm-20948"};
-  std::string conditions;
+  std::string conditions = "field";
   std::string page;
   WorldChoice choice{{"tuning", "check"}, {}};
 };
@@ -46,7 +46,7 @@ Result<std::vector<MeasuredUncertainty>> measure_all(const UncertaintyOptions& o
   for (const std::string& lidar : options.lidars) {
     for (const std::string& imu : options.imus) {
       const std::string sensors =
-          imu == "none" ? format("{}, no IMU", lidar) : format("{}, IMU {}", lidar, imu);
+          format("{}, {}, {}", lidar, imu == "none" ? "no IMU" : "IMU " + imu, options.conditions);
       const Result<MeasuredUncertainty> measured =
           measure(options.out, configured(common, {lidar, imu, options.conditions}), sensors, worlds);
       if (!measured) return tl::unexpected(measured.error());
@@ -101,9 +101,10 @@ void add_uncertainty_study(Program& program) {
       .add_option("--out", options->out,
                   "Folder that keeps the robots' maps and takes uncertainty.json and .svg")
       .required();
-  command.add_option("--groups", options->choice.groups, "Worlds of these groups: tuning, check, limit")
+  command
+      .add_option("--groups", options->choice.groups, "Worlds of these groups: tuning, check, field, limit")
       .separated_by_commas()
-      .one_of({"tuning", "check", "limit"})
+      .one_of({"tuning", "check", "field", "limit"})
       .default_shown();
   command.add_option("--only", options->choice.only, "Only the worlds with these names, whatever their group")
       .separated_by_commas();
@@ -113,7 +114,9 @@ void add_uncertainty_study(Program& program) {
   command.add_option("--imu", options->imus, "Simulated IMUs; none: without")
       .separated_by_commas()
       .default_shown();
-  command.add_option("--conditions", options->conditions, "Simulated conditions").one_of({"ideal", "field"});
+  command.add_option("--conditions", options->conditions, "Simulated conditions")
+      .one_of({"ideal", "field"})
+      .default_shown();
   command.add_option("--page", options->page,
                      "Markdown file whose section between 'uncertainty' marks takes the table");
 }

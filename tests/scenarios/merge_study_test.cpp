@@ -48,12 +48,12 @@ TEST(MergeStudy, KeepsTheMapsAndTheResultsOfEarlierRuns) {
   EXPECT_EQ(std::filesystem::last_write_time(only_map_folder(folder) / "0.map"), recorded);
   const std::string csv = get_file(folder / "out/results.csv");
   EXPECT_EQ(std::ranges::count(csv, '\n'), 3) << csv;  // The header, and one pair per policy.
-  EXPECT_NE(csv.find("short,check,all,ahead,behind,"), std::string::npos) << csv;
-  EXPECT_NE(csv.find("short,check,tunnel_filter_keep,ahead,behind,"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("short,check,all,os2-32,field,ahead,behind,"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("short,check,tunnel_filter_keep,os2-32,field,ahead,behind,"), std::string::npos) << csv;
   const std::string page = get_file(folder / "page.md");
   EXPECT_TRUE(page.starts_with("# Page\n<!-- merging begin -->\n"));
   EXPECT_TRUE(page.ends_with("<!-- merging end -->\nThe end.\n"));
-  EXPECT_NE(page.find("| short | all | 1 |"), std::string::npos) << page;
+  EXPECT_NE(page.find("| short | all | os2-32 | field | 1 |"), std::string::npos) << page;
 
   // Another configuration of the robots is another drive, and has a place of its own where it is named.
   expect_done(study_of(folder, "--keyframes all --variant coarse --set robot.keyframes.distance_m=1"));

@@ -7,6 +7,7 @@
 
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
+#include "adit/evaluation/statistics.hpp"
 
 namespace adit {
 namespace {
@@ -43,6 +44,21 @@ std::string share_text(int part, int total) {
   return total == 0 ? "-" : format("{} of {} ({:.0f} %)", part, total, 100.0 * part / total);
 }
 
+/// With the limits between which the share lies, at a confidence of 95 %.
+std::string limits_text(int part, int total) {
+  if (total == 0) return "-";
+  const ShareLimits limits = share_limits(static_cast<std::size_t>(part), static_cast<std::size_t>(total));
+  return format("{} of {} ({:.0f} %; {:.0f} to {:.0f})", part, total, 100.0 * part / total,
+                100.0 * limits.lower, 100.0 * limits.upper);
+}
+
+/// Of what should not happen: with the upper limit of its share.
+std::string at_most_text(int part, int total) {
+  if (total == 0) return format("{}", part);
+  return format("{} of {} (< {:.1f} %)", part, total,
+                100.0 * share_upper_limit(static_cast<std::size_t>(part), static_cast<std::size_t>(total)));
+}
+
 /// "0+1 2 3": robots that share a map are joined by a plus.
 std::string maps_text(const std::vector<std::vector<std::string>>& maps) {
   const std::string prefix = "robot_";
@@ -57,45 +73,69 @@ std::string maps_text(const std::vector<std::vector<std::string>>& maps) {
   return text;
 }
 
-using GroupAndPolicy = std::pair<std::string, std::string>;
+/// What runs have in common that one row sums up: group, keyframe policy, sensors and conditions.
+using Setting = std::array<std::string, 4>;
 
-/// Groups and policies in the order in which they first appear.
-std::vector<GroupAndPolicy> groups_of(const std::vector<MergeRun>& runs) {
-  std::vector<GroupAndPolicy> groups;
+Setting setting_of(const MergeRun& run) { return {run.group, run.keyframes, run.sensors, run.conditions}; }
+
+/// In the order in which they first appear, with their sums.
+std::vector<std::pair<Setting, MergeCounts>> sums_of(const std::vector<MergeRun>& runs) {
+  std::vector<std::pair<Setting, MergeCounts>> sums;
   for (const MergeRun& run : runs) {
-    const GroupAndPolicy key{run.group, run.keyframes};
-    if (std::ranges::find(groups, key) == groups.end()) groups.push_back(key);
+    auto sum = std::ranges::find(sums, setting_of(run), &std::pair<Setting, MergeCounts>::first);
+    if (sum == sums.end()) sum = sums.insert(sums.end(), {setting_of(run), {}});
+    sum->second.add(run);
   }
-  return groups;
+  return sums;
+}
+
+std::vector<std::string> row_of(const Setting& setting, std::vector<std::string> cells) {
+  cells.insert(cells.begin(), setting.begin(), setting.end());
+  return cells;
 }
 
 Table summary_table(const std::vector<MergeRun>& runs) {
-  Table table{"Merging, in short",
-              "Mergeable pairs share at least 25 m and a place that is distinctive in the scans of both. "
-              "Bent: merged in the correct place, but with an ATE of 1 % of the path or more. Indistinct: "
-              "merged correctly, of the pairs that share 25 m but no such place. Kept apart: of the pairs "
-              "that share less. Joint: all robots of a world at once; merged: mergeable pairs that end in "
-              "one correct map; whole: worlds where all robots that mergeable pairs connect share a map. "
-              "CPU: time of all threads for merging alone, from the robots' "
-              "maps to the joint solution.",
+  Table table{
+      "Merging, in short",
+      "Mergeable pairs share at least 25 m of path, and on it a stretch of 20 m whose surface differs from "
+      "that of every other stretch that a robot passed by more than sensors may err. Bent: merged in the "
+      "correct place, but with an ATE of 1 % of the path or more. Indistinct: merged correctly, of the "
+      "pairs that share 25 m but no such stretch. Kept apart: of the pairs that share less. Wrong merges: "
+      "of all pairs. Joint: all robots of a world at once; merged: mergeable pairs that end in one correct "
+      "map; pairs in one map: of any kind; whole: worlds where all robots that mergeable pairs connect "
+      "share a map; wrong: of all worlds. In brackets: the share, the limits between which it lies, and "
+      "after < the upper limit alone, all with a confidence of 95 %, as if pairs were independent. CPU: "
+      "time of all threads for merging alone, from the robots' maps to the joint solution.",
+      {},
+      {"Worlds", "Keyframes", "Sensors", "Conditions", "Number", "Merged well", "Bent", "Refused",
+       "Indistinct", "Kept apart", "Wrong merges", "Wrong loops", "Joint: merged", "Joint: pairs in one map",
+       "Joint: whole", "Joint: wrong", "Joint: wrong loops", "Registrations", "CPU (s)"},
+      {}};
+  for (const auto& [setting, counts] : sums_of(runs))
+    table.rows.push_back(row_of(
+        setting, {format("{}", counts.worlds), limits_text(counts.success, counts.mergeable),
+                  format("{}", counts.bent), format("{}", counts.refused),
+                  share_text(counts.indistinct_merged, counts.indistinct),
+                  share_text(counts.kept_apart, counts.others), at_most_text(counts.wrong, counts.pairs),
+                  format("{}", counts.wrong_loops), limits_text(counts.joint_merged, counts.mergeable),
+                  format("{}", counts.joint_pairs), share_text(counts.joint_whole, counts.worlds),
+                  at_most_text(counts.joint_wrong, counts.worlds), format("{}", counts.joint_wrong_loops),
+                  format("{}", counts.registrations), format("{:.1f}", counts.time_s)}));
+  return table;
+}
+
+Table kinds_table(const std::vector<MergeRun>& runs) {
+  Table table{"What kept mergeable pairs apart",
+              "Pairs that were tried by themselves, by the reason that the decision gave.",
               {},
-              {"Worlds", "Keyframes", "Number", "Merged well", "Bent", "Refused", "Indistinct", "Kept apart",
-               "Wrong merges", "Wrong loops", "Joint: merged", "Joint: whole", "Joint: wrong",
-               "Joint: wrong loops", "Registrations", "CPU (s)"},
+              {"Worlds", "Keyframes", "Sensors", "Conditions", "Refused"},
               {}};
-  for (const GroupAndPolicy& key : groups_of(runs)) {
-    MergeCounts counts;
-    for (const MergeRun& run : runs)
-      if (key == GroupAndPolicy{run.group, run.keyframes}) counts.add(run);
-    table.rows.push_back({key.first, key.second, format("{}", counts.worlds),
-                          share_text(counts.success, counts.mergeable), format("{}", counts.bent),
-                          format("{}", counts.refused),
-                          share_text(counts.indistinct_merged, counts.indistinct),
-                          share_text(counts.kept_apart, counts.others), format("{}", counts.wrong),
-                          format("{}", counts.wrong_loops), share_text(counts.joint_merged, counts.mergeable),
-                          share_text(counts.joint_whole, counts.worlds), format("{}", counts.joint_wrong),
-                          format("{}", counts.joint_wrong_loops), format("{}", counts.registrations),
-                          format("{:.1f}", counts.time_s)});
+  for (const RefusalKind kind : kRefusalKinds) table.header.emplace_back(to_string(kind));
+  for (const auto& [setting, counts] : sums_of(runs)) {
+    if (counts.refused == 0) continue;
+    std::vector<std::string> cells = {format("{}", counts.refused)};
+    for (const int number : counts.refusals) cells.push_back(format("{}", number));
+    table.rows.push_back(row_of(setting, std::move(cells)));
   }
   return table;
 }
@@ -118,8 +158,9 @@ Table worlds_table(const std::vector<MergeRun>& runs) {
       "Maps: robots that share one are joined by a plus; in brackets the maps that mergeable pairs would "
       "allow, where that is more. ATE: of the worst robot, in per cent of its path.",
       {},
-      {"World", "Keyframes", "Mergeable", "Well", "Bent", "Refused", "Indistinct", "Wrong", "Wrong loops",
-       "Max ATE (%)", "Maps of all robots", "Joint max ATE (%)", "Registrations", "CPU (s)"},
+      {"World", "Keyframes", "Sensors", "Conditions", "Mergeable", "Well", "Bent", "Refused", "Indistinct",
+       "Wrong", "Wrong loops", "Max ATE (%)", "Maps of all robots", "Joint max ATE (%)", "Registrations",
+       "CPU (s)"},
       {}};
   for (const MergeRun& run : runs) {
     if (is_variant(run)) continue;
@@ -128,9 +169,9 @@ Table worlds_table(const std::vector<MergeRun>& runs) {
     std::string maps = maps_text(run.joint.maps);
     if (!are_within(run.joint.possible_maps, run.joint.maps))
       maps += format(" ({})", maps_text(run.joint.possible_maps));
-    table.rows.push_back({run.world, run.keyframes, format("{}", counts.mergeable),
-                          format("{}", counts.success), format("{}", counts.bent),
-                          format("{}", counts.refused),
+    table.rows.push_back({run.world, run.keyframes, run.sensors, run.conditions,
+                          format("{}", counts.mergeable), format("{}", counts.success),
+                          format("{}", counts.bent), format("{}", counts.refused),
                           share_text(counts.indistinct_merged, counts.indistinct), format("{}", counts.wrong),
                           format("{}", counts.wrong_loops), format("{:.2f}", worst_ate_pct(run)), maps,
                           format("{:.2f}", run.joint.ate_max_over_path_pct), format("{}", run.registrations),
@@ -142,16 +183,16 @@ Table worlds_table(const std::vector<MergeRun>& runs) {
 Table refusals_table(const std::vector<MergeRun>& runs) {
   Table table{
       "Pairs that share 25 m and were refused",
-      "With the number of distinctive places on the shared stretch, and the reason given by the decision.",
+      "With the metres of the shared stretch that are distinctive, and the reason given by the decision.",
       {},
-      {"World", "Keyframes", "Robots", "Shared (m)", "Distinctive places", "Reason"},
+      {"World", "Keyframes", "Sensors", "Conditions", "Robots", "Shared (m)", "Distinctive (m)", "Reason"},
       {}};
   for (const MergeRun& run : runs)
     for (const MergePair& pair : run.pairs)
       if (!is_variant(run) && pair.shares_enough() && pair.outcome == MergeOutcome::refused)
-        table.rows.push_back({run.world, run.keyframes, maps_text({{pair.robots[0], pair.robots[1]}}),
-                              format("{:.0f}", pair.shared_m), format("{}", pair.distinctive_places),
-                              pair.refused_reason});
+        table.rows.push_back({run.world, run.keyframes, run.sensors, run.conditions,
+                              maps_text({{pair.robots[0], pair.robots[1]}}), format("{:.0f}", pair.shared_m),
+                              format("{:.0f}", pair.distinctive_m), pair.refused_reason});
   return table;
 }
 
@@ -159,7 +200,7 @@ Table wrong_table(const std::vector<MergeRun>& runs) {
   Table table{"Wrong merges",
               "Each pair with the stretch that it shares and the largest ATE after the merge.",
               {},
-              {"World", "Keyframes", "Pairs merged in a wrong place"},
+              {"World", "Keyframes", "Sensors", "Conditions", "Pairs merged in a wrong place"},
               {}};
   for (const MergeRun& run : runs) {
     std::string pairs;
@@ -168,7 +209,7 @@ Table wrong_table(const std::vector<MergeRun>& runs) {
         pairs += format("{}{} ({:.0f} m shared, {:.0f} m off)", pairs.empty() ? "" : ", ",
                         maps_text({{pair.robots[0], pair.robots[1]}}), pair.shared_m,
                         std::max(pair.ate_max_m[0], pair.ate_max_m[1]));
-    if (!pairs.empty()) table.rows.push_back({run.world, run.keyframes, pairs});
+    if (!pairs.empty()) table.rows.push_back({run.world, run.keyframes, run.sensors, run.conditions, pairs});
   }
   return table;
 }
@@ -206,15 +247,20 @@ void MergeCounts::add(const MergeRun& run) {
   ++worlds;
   for (const MergePair& pair : run.pairs) {
     const auto is = [&](MergeOutcome outcome) { return pair.outcome == outcome ? 1 : 0; };
+    const bool in_one_map = are_within({{pair.robots[0], pair.robots[1]}}, run.joint.maps);
+    ++pairs;
+    merged += 1 - is(MergeOutcome::refused);
+    joint_pairs += in_one_map ? 1 : 0;
     wrong += is(MergeOutcome::wrong);
     wrong_loops += pair.wrong_loops_in_use;
     if (pair.mergeable()) {
       ++mergeable;
-      joint_merged +=
-          !run.joint.wrong && are_within({{pair.robots[0], pair.robots[1]}}, run.joint.maps) ? 1 : 0;
+      joint_merged += !run.joint.wrong && in_one_map ? 1 : 0;
       success += is(MergeOutcome::success);
       bent += is(MergeOutcome::bent);
       refused += is(MergeOutcome::refused);
+      if (pair.outcome == MergeOutcome::refused)
+        ++refusals[static_cast<std::size_t>(refusal_kind(pair.refused_reason))];
     } else if (pair.shares_enough()) {
       ++indistinct;
       indistinct_merged += is(MergeOutcome::success) + is(MergeOutcome::bent);
@@ -232,7 +278,7 @@ void MergeCounts::add(const MergeRun& run) {
 
 std::vector<Table> merge_tables(const std::vector<MergeRun>& runs) {
   std::vector<Table> tables{summary_table(runs), worlds_table(runs)};
-  for (Table table : {wrong_table(runs), refusals_table(runs)})
+  for (Table table : {wrong_table(runs), kinds_table(runs), refusals_table(runs)})
     if (!table.rows.empty()) tables.push_back(std::move(table));
   return tables;
 }

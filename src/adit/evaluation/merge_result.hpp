@@ -9,14 +9,15 @@
 #include <string_view>
 #include <vector>
 
+#include "adit/evaluation/refusal_kind.hpp"
 #include "adit/evaluation/tables.hpp"
 
 namespace adit {
 
-/// A pair counts as mergeable from this length of shared stretch (metres) and number of distinctive places
-/// on.
+/// A pair counts as mergeable from this length of shared stretch on, metres, and this much of it within
+/// stretches whose surface differs from that of every other.
 inline constexpr double kMergeableStretch = 25.0;
-inline constexpr int kMergeablePlaces = 1;
+inline constexpr double kDistinctiveStretch = 20.0;
 
 enum class MergeOutcome {
   success,  ///< Merged, and the largest ATE of every robot is below 1 % of its path (the paper's rule).
@@ -53,7 +54,7 @@ struct MergeEvidence {
 struct MergePair {
   std::array<std::string, 2> robots;
   double shared_m = 0.0;
-  int distinctive_places = 0;  ///< On the shared stretch, in the scans of both.
+  double distinctive_m = 0.0;  ///< Of the shared stretch, by geometry alone.
   MergeOutcome outcome = MergeOutcome::refused;
   std::string refused_reason;  ///< One sentence where it was refused.
   int registrations = 0;
@@ -63,7 +64,7 @@ struct MergePair {
   std::array<double, 2> ate_max_over_path_pct{};
 
   [[nodiscard]] bool shares_enough() const { return shared_m >= kMergeableStretch; }
-  [[nodiscard]] bool mergeable() const { return shares_enough() && distinctive_places >= kMergeablePlaces; }
+  [[nodiscard]] bool mergeable() const { return shares_enough() && distinctive_m >= kDistinctiveStretch; }
 };
 
 /// All robots of a world at once. Maps are lists of robot names.
@@ -79,8 +80,10 @@ struct MergeJoint {
 /// One world under one keyframe policy.
 struct MergeRun {
   std::string world;
-  std::string group;  ///< "tuning", "check" or "limit".
+  std::string group;  ///< "tuning", "check", "field" or "limit".
   std::string keyframes;
+  std::string sensors;     ///< Names of the LiDARs that robots have in turn.
+  std::string conditions;  ///< Under which they were simulated: "ideal", "field", or else "other".
   std::vector<MergePair> pairs;
   MergeJoint joint;
   int registrations = 0;  ///< Candidates registered between all robots.
@@ -92,20 +95,24 @@ struct MergeCounts {
   int worlds = 0;
   int mergeable = 0, success = 0, bent = 0,
       refused = 0;                            ///< Mergeable pairs and their outcomes.
-  int indistinct = 0, indistinct_merged = 0;  ///< Pairs that share enough, but no distinctive place.
+  int indistinct = 0, indistinct_merged = 0;  ///< Pairs that share enough, but no distinctive stretch.
   int others = 0, kept_apart = 0;             ///< Pairs that share less.
   int wrong = 0;                              ///< Of all pairs.
   int wrong_loops = 0, joint_wrong_loops = 0, joint_wrong = 0, joint_whole = 0;
-  int joint_merged = 0;  ///< Mergeable pairs in one correct map after all robots of the world met.
+  int joint_merged = 0;       ///< Mergeable pairs in one correct map after all robots of the world met.
+  int pairs = 0, merged = 0;  ///< All pairs; those that were merged, well or not.
+  int joint_pairs = 0;        ///< All pairs that end in one map after all robots met.
+  std::array<int, kRefusalKinds.size()> refusals{};  ///< Of mergeable pairs, by what kept them apart.
   int registrations = 0;
   double time_s = 0.0;
 
   void add(const MergeRun& run);
 };
 
-/// Summary of each group and policy; each world; the wrong merges; the pairs that share enough and were
-/// refused, with the reason. The last two only where there are any. Variants, which have a second word after
-/// the policy's name, appear in the summary and among the wrong merges only.
+/// Summary of each group, policy, sensor and condition; each world; the wrong merges; what kept mergeable
+/// pairs apart; the pairs that share enough and were refused, with the reason. The last three only where
+/// there are any. Variants, which have a second word after the policy's name, appear in the summary and among
+/// the wrong merges only.
 [[nodiscard]] std::vector<Table> merge_tables(const std::vector<MergeRun>& runs);
 
 }  // namespace adit

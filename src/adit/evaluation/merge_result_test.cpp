@@ -35,11 +35,11 @@ TEST(JudgeMerge, OutcomesHaveNames) {
   EXPECT_THROW((void)merge_outcome("perhaps"), ContractViolation);
 }
 
-MergePair pair_of(double shared_m, MergeOutcome outcome, int distinctive_places = 3) {
+MergePair pair_of(double shared_m, MergeOutcome outcome, double distinctive_m = 30.0) {
   MergePair pair;
   pair.robots = {"robot_0", "robot_1"};
   pair.shared_m = shared_m;
-  pair.distinctive_places = distinctive_places;
+  pair.distinctive_m = distinctive_m;
   pair.outcome = outcome;
   pair.refused_reason = outcome == MergeOutcome::refused ? "the tunnel was too smooth" : "";
   return pair;
@@ -75,21 +75,28 @@ TEST(MergeCounts, PairsAreCountedByWhatTheyShare) {
   EXPECT_EQ(counts.wrong, 4);
   EXPECT_EQ(counts.joint_whole, 0);
   EXPECT_EQ(counts.joint_merged, 6);  // all of them between robots 0 and 1
+  EXPECT_EQ(counts.pairs, 14);
+  EXPECT_EQ(counts.merged, 8);
+  EXPECT_EQ(counts.joint_pairs, 14);
+  EXPECT_EQ(counts.refusals[static_cast<std::size_t>(RefusalKind::unknown)], 2);
   EXPECT_EQ(counts.registrations, 1000);
 }
 
 TEST(MergeTables, NameEveryRefusalAndEveryWrongMerge) {
   const std::vector<Table> tables = merge_tables({made_up_run("a", "tuning"), made_up_run("b", "check")});
-  ASSERT_EQ(tables.size(), 4U);
+  ASSERT_EQ(tables.size(), 5U);
   for (const Table& table : tables)
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size()) << table.title;
   EXPECT_EQ(tables[0].rows.size(), 2U);  // One per group.
   EXPECT_EQ(tables[1].rows.size(), 2U);
-  EXPECT_EQ(tables[1].rows[0][10], "0+1 2 (0+1+2)");
+  EXPECT_EQ(tables[1].rows[0][12], "0+1 2 (0+1+2)");
   EXPECT_EQ(tables[2].rows.size(), 2U);
   EXPECT_EQ(tables[2].rows[0].back(), "0+1 (30 m shared, 0 m off), 0+1 (12 m shared, 0 m off)");
-  EXPECT_EQ(tables[3].rows.size(), 4U);
-  EXPECT_EQ(tables[3].rows[0].back(), "the tunnel was too smooth");
+  EXPECT_EQ(tables[3].rows.size(), 2U);  // What kept them apart, of the mergeable ones.
+  EXPECT_EQ(tables[3].rows[0][4], "1");
+  EXPECT_EQ(tables[3].rows[0].back(), "1") << "of a kind that is unknown";
+  EXPECT_EQ(tables[4].rows.size(), 4U);
+  EXPECT_EQ(tables[4].rows[0].back(), "the tunnel was too smooth");
 }
 
 TEST(MergeCounts, AMapThatHoldsMoreThanMergeablePairsWouldJoinIsWhole) {
@@ -116,7 +123,20 @@ TEST(MergeTables, ShowOnlyTheSumsAndTheWrongMergesOfVariants) {
   EXPECT_EQ(tables[0].rows.size(), 2U);
   EXPECT_EQ(tables[1].rows.size(), 1U);
   EXPECT_EQ(tables[2].rows.size(), 2U);
-  EXPECT_EQ(tables[3].rows.size(), 2U);
+  EXPECT_EQ(tables[4].rows.size(), 2U);
+}
+
+TEST(MergeTables, SumUpSensorsAndConditionsApartWithTheirLimits) {
+  MergeRun field = made_up_run("a", "tuning");
+  field.sensors = "os2-32, os1-64";
+  field.conditions = "field";
+  const std::vector<Table> tables = merge_tables({made_up_run("a", "tuning"), field, field});
+  ASSERT_EQ(tables[0].rows.size(), 2U);
+  EXPECT_EQ(tables[0].rows[1][2], "os2-32, os1-64");
+  EXPECT_EQ(tables[0].rows[1][3], "field");
+  EXPECT_EQ(tables[0].rows[1][4], "2");
+  EXPECT_EQ(tables[0].rows[1][5], "2 of 6 (33 %; 4 to 78)");
+  EXPECT_EQ(tables[0].rows[1][10], "4 of 14 (< 54.0 %)");
 }
 
 TEST(MergeTables, LeaveOutWhatDidNotHappen) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "adit/core/check.hpp"
+#include "adit/core/log_gamma.hpp"
 
 namespace adit {
 namespace {
@@ -26,7 +27,48 @@ double percentile_of_sorted(std::span<const double> ascending, double p) {
   return std::lerp(ascending[below], ascending[above], position - static_cast<double>(below));
 }
 
+/// P(at most k of n events), each with probability p between 0 and 1, both excluded.
+double binomial_at_most(std::size_t k, std::size_t n, double p) {
+  const auto trials = static_cast<double>(n);
+  double sum = 0.0;
+  for (std::size_t i = 0; i <= k; ++i) {
+    const auto events = static_cast<double>(i);
+    const double log_ways =
+        log_gamma(trials + 1.0) - log_gamma(events + 1.0) - log_gamma(trials - events + 1.0);
+    sum += std::exp(log_ways + events * std::log(p) + (trials - events) * std::log1p(-p));
+  }
+  return std::min(sum, 1.0);
+}
+
+/// The p at which P(at most k of n) is `probability`; it falls with p.
+double share_where(std::size_t k, std::size_t n, double probability) {
+  constexpr int kHalvings = 60;
+  double below = 0.0;
+  double above = 1.0;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (below + above);
+    (binomial_at_most(k, n, middle) > probability ? below : above) = middle;
+  }
+  return 0.5 * (below + above);
+}
+
+void check_share(std::size_t k, std::size_t n, double confidence) {
+  ADIT_CHECK(k <= n, "more events than trials");
+  ADIT_CHECK(confidence > 0.0 && confidence < 1.0, "a confidence lies between 0 and 1");
+}
+
 }  // namespace
+
+ShareLimits share_limits(std::size_t k, std::size_t n, double confidence) {
+  check_share(k, n, confidence);
+  const double tail = 0.5 * (1.0 - confidence);
+  return {k == 0 ? 0.0 : share_where(k - 1, n, 1.0 - tail), k == n ? 1.0 : share_where(k, n, tail)};
+}
+
+double share_upper_limit(std::size_t k, std::size_t n, double confidence) {
+  check_share(k, n, confidence);
+  return k == n ? 1.0 : share_where(k, n, 1.0 - confidence);
+}
 
 double percentile(std::span<const double> values, double p) {
   ADIT_CHECK(p >= 0.0 && p <= 100.0, "a percentile lies between 0 and 100");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,18 @@ namespace adit {
 [[nodiscard]] double mean(std::span<const double> values);
 /// sqrt(mean(x^2)).
 [[nodiscard]] double root_mean_square(std::span<const double> values);
+
+/// The probability of an event of which `k` in `n` trials were seen lies between these, with the stated
+/// confidence at least: exact limits (C. Clopper, E. Pearson, "The use of confidence or fiducial limits
+/// illustrated in the case of the binomial", 1934). Without a trial nothing is known: 0 and 1.
+struct ShareLimits {
+  double lower = 0.0;
+  double upper = 1.0;
+};
+/// Both limits at once. `k` is at most `n`, `confidence` between 0 and 1, else ContractViolation.
+[[nodiscard]] ShareLimits share_limits(std::size_t k, std::size_t n, double confidence = 0.95);
+/// The upper limit alone, for what should not happen: for 0 of n about 3 / n at 95 %.
+[[nodiscard]] double share_upper_limit(std::size_t k, std::size_t n, double confidence = 0.95);
 
 /// What a standard (Tukey) boxplot shows: the whiskers end at the furthest values within 1.5 interquartile
 /// ranges of the box, values beyond are outliers, ascending.

@@ -81,5 +81,32 @@ TEST(Statistics, NothingAndNaNAreContractViolations) {
   EXPECT_THROW((void)percentile(std::vector<double>{1.0}, 101.0), ContractViolation);
 }
 
+TEST(ShareLimits, AreThoseOfTheBinomialDistribution) {
+  // 0 of n: (1 - p)^n = 5 %.
+  for (const std::size_t n : {1U, 10U, 300U})
+    EXPECT_NEAR(share_upper_limit(0, n), 1.0 - std::pow(0.05, 1.0 / static_cast<double>(n)), 1e-9) << n;
+  // Known values, two-sided 95 %: 5 of 10 (Clopper and Pearson, 1934) and 64 of 76.
+  EXPECT_NEAR(share_limits(5, 10).lower, 0.1871, 1e-4);
+  EXPECT_NEAR(share_limits(5, 10).upper, 0.8129, 1e-4);
+  for (const auto& [k, n] : {std::pair<std::size_t, std::size_t>(64, 76), {1, 7}, {250, 300}}) {
+    const ShareLimits limits = share_limits(k, n);
+    const ShareLimits mirrored = share_limits(n - k, n);
+    EXPECT_NEAR(limits.lower, 1.0 - mirrored.upper, 1e-9);
+    EXPECT_LT(limits.lower, static_cast<double>(k) / static_cast<double>(n));
+    EXPECT_GT(limits.upper, share_upper_limit(k, n)) << "one side is less to promise";
+    EXPECT_GT(share_limits(k, n, 0.99).upper, limits.upper);
+  }
+}
+
+TEST(ShareLimits, OfNothingOrAllAreTheEnds) {
+  EXPECT_EQ(share_limits(0, 0).lower, 0.0);
+  EXPECT_EQ(share_limits(0, 0).upper, 1.0);
+  EXPECT_EQ(share_upper_limit(0, 0), 1.0);
+  EXPECT_EQ(share_limits(0, 5).lower, 0.0);
+  EXPECT_EQ(share_limits(5, 5).upper, 1.0);
+  EXPECT_THROW((void)share_limits(3, 2), ContractViolation);
+  EXPECT_THROW((void)share_upper_limit(0, 2, 1.0), ContractViolation);
+}
+
 }  // namespace
 }  // namespace adit

@@ -50,7 +50,7 @@ Result<MergePair> run_pair(const std::vector<RobotRun>& runs, const Meeting& mee
   MergePair pair;
   pair.robots = {result.robots[0].name, result.robots[1].name};
   pair.shared_m = truth.shared_m[a][b];
-  pair.distinctive_places = truth.distinctive_places[a][b];
+  pair.distinctive_m = truth.distinctive_m[a][b];
   pair.refused_reason = result.refused_reason;
   pair.registrations = static_cast<int>(known.loops.size());
   pair.loops_in_use = loops_in_use(judged->solution);
@@ -88,12 +88,12 @@ bool is_wrong(const MergeTruth& truth, const JointResult& result, int num_loops_
   return judge_merge(evidence) == MergeOutcome::wrong;
 }
 
-/// Metres of shared stretch of each pair; 0 where no place on it is distinctive.
-std::vector<std::vector<double>> distinctive_m(const MergeTruth& truth) {
+/// Metres of shared stretch of each pair; 0 where no stretch of it is distinctive.
+std::vector<std::vector<double>> mergeable_m(const MergeTruth& truth) {
   std::vector<std::vector<double>> shared_m = truth.shared_m;
   for (std::size_t a = 0; a < shared_m.size(); ++a)
     for (std::size_t b = 0; b < shared_m.size(); ++b)
-      if (truth.distinctive_places[a][b] < kMergeablePlaces) shared_m[a][b] = 0.0;
+      if (truth.distinctive_m[a][b] < kDistinctiveStretch) shared_m[a][b] = 0.0;
   return shared_m;
 }
 
@@ -102,7 +102,7 @@ MergeJoint joint_of(const std::vector<RobotRun>& runs, const MergeTruth& truth, 
   constexpr double kAnything = 1e-3;
   MergeJoint joint;
   joint.maps = result.components;
-  joint.possible_maps = named(runs, groups_sharing(distinctive_m(truth), kMergeableStretch));
+  joint.possible_maps = named(runs, groups_sharing(mergeable_m(truth), kMergeableStretch));
   joint.wrong = is_wrong(truth, result, num_loops_in_use) ||
                 !are_within(joint.maps, named(runs, groups_sharing(truth.shared_m, kAnything)));
   joint.wrong_loops_in_use = result.wrong_loops_in_solution;
@@ -116,9 +116,9 @@ MergeJoint joint_of(const std::vector<RobotRun>& runs, const MergeTruth& truth, 
 }  // namespace
 
 Result<MergeTruth> merge_truth(const std::vector<RobotRun>& runs, KeyframeSelection selection,
-                               DistinctivePlaces distinctive_places) {
+                               DistinctiveMetres distinctive_m) {
   MergeTruth truth;
-  truth.distinctive_places = std::move(distinctive_places);
+  truth.distinctive_m = std::move(distinctive_m);
   for (const RobotRun& a : runs) {
     const Result<double> drift = largest_drift_m(a.map_for(selection)->odometry, a.truth);
     if (!drift) return fail(a.result.name, drift.error());
@@ -156,7 +156,8 @@ Result<MergeRun> run_merges(const std::vector<RobotRun>& runs, const MergeTruth&
 
 void put_run(std::vector<MergeRun>& runs, MergeRun run) {
   const auto old = std::ranges::find_if(runs, [&](const MergeRun& other) {
-    return other.world == run.world && other.keyframes == run.keyframes;
+    return other.world == run.world && other.keyframes == run.keyframes && other.sensors == run.sensors &&
+           other.conditions == run.conditions;
   });
   if (old == runs.end())
     runs.push_back(std::move(run));

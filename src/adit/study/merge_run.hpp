@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "adit/evaluation/merge_result.hpp"
-#include "adit/study/distinctive_places.hpp"
+#include "adit/study/distinctive_stretch.hpp"
 #include "adit/study/judging.hpp"
 
 namespace adit {
@@ -15,12 +15,12 @@ namespace adit {
 /// What the ground truth says about the robots of one world.
 struct MergeTruth {
   std::vector<std::vector<double>> shared_m;  ///< [a][b]: length of the shared stretch, metres.
-  DistinctivePlaces distinctive_places;
-  std::vector<double> drift_m;  ///< Of each robot's odometry (largest_drift_m).
+  DistinctiveMetres distinctive_m;            ///< As distinctive_stretches.
+  std::vector<double> drift_m;                ///< Of each robot's odometry (largest_drift_m).
 };
 /// Drift is that of the maps that the policy `selection` works on. Fails where a trajectory has no truth.
 Result<MergeTruth> merge_truth(const std::vector<RobotRun>& runs, KeyframeSelection selection,
-                               DistinctivePlaces distinctive_places);
+                               DistinctiveMetres distinctive_m);
 
 /// All robots meet once under the policy of `config`; then every pair is solved by itself on the loops that
 /// it found, and all jointly. Ground truth only judges the result.
@@ -32,7 +32,7 @@ Result<std::vector<MergeRun>> read_merge_runs(const std::filesystem::path& file)
 Result<> write_merge_runs(const std::filesystem::path& file, const std::vector<MergeRun>& runs);
 /// One line per pair, for spreadsheets.
 Result<> write_merge_csv(const std::filesystem::path& file, const std::vector<MergeRun>& runs);
-/// Replaces the run of the same world and policy, or appends.
+/// Replaces the run of the same world, policy, sensors and conditions, or appends.
 void put_run(std::vector<MergeRun>& runs, MergeRun run);
 
 }  // namespace adit

@@ -27,11 +27,13 @@ MergeRun empty_run(const std::string& world, const std::string& keyframes, int r
 MergeRun made_up_run(const std::string& world, const std::string& keyframes) {
   MergeRun run = empty_run(world, keyframes, 99);
   run.group = "check";
+  run.sensors = "os2-32, vlp-16";
+  run.conditions = "field";
   for (const MergeOutcome outcome :
        {MergeOutcome::success, MergeOutcome::bent, MergeOutcome::refused, MergeOutcome::wrong})
     run.pairs.push_back({.robots = {"ada", "bo"},
                          .shared_m = 100.0 / 3.0,
-                         .distinctive_places = 4,
+                         .distinctive_m = 45.0,
                          .outcome = outcome,
                          .refused_reason = "one \"loop\", no more",
                          .registrations = 12,
@@ -52,7 +54,7 @@ MergeRun made_up_run(const std::string& world, const std::string& keyframes) {
 void expect_equal(const MergePair& a, const MergePair& b) {
   EXPECT_EQ(a.robots, b.robots);
   EXPECT_EQ(a.shared_m, b.shared_m);
-  EXPECT_EQ(a.distinctive_places, b.distinctive_places);
+  EXPECT_EQ(a.distinctive_m, b.distinctive_m);
   EXPECT_EQ(a.outcome, b.outcome);
   EXPECT_EQ(a.refused_reason, b.refused_reason);
   EXPECT_EQ(a.registrations, b.registrations);
@@ -66,6 +68,8 @@ void expect_equal(const MergeRun& a, const MergeRun& b) {
   EXPECT_EQ(a.world, b.world);
   EXPECT_EQ(a.group, b.group);
   EXPECT_EQ(a.keyframes, b.keyframes);
+  EXPECT_EQ(a.sensors, b.sensors);
+  EXPECT_EQ(a.conditions, b.conditions);
   EXPECT_EQ(a.registrations, b.registrations);
   EXPECT_EQ(a.time_s, b.time_s);
   ASSERT_EQ(a.pairs.size(), b.pairs.size());
@@ -110,7 +114,7 @@ TEST(MergeResults, OtherFilesAreRefusedWithTheRemedy) {
        {std::string(), std::string("{}"), good.substr(0, good.size() / 2), replaced("\"bent\"", "\"so-so\""),
         replaced("\"shared_m\"", "\"shared\""),
         replaced("\"registrations\": 12", "\"registrations\": \"12\""),
-        replaced("\"version\": 2", "\"version\": 1"), replaced("\"version\": 2,", "")}) {
+        replaced("\"version\": 3", "\"version\": 1"), replaced("\"version\": 3,", "")}) {
     put_file(folder / "results.json", text);
     EXPECT_ERROR(read_merge_runs(folder / "results.json"),
                  "results.json: not results of this version; remove the file");
@@ -127,9 +131,21 @@ TEST(MergeResults, SpreadsheetsHaveOneLinePerPair) {
   EXPECT_EQ(rows->front().cells.front(), "world");
   EXPECT_EQ(rows->front().cells.back(), "refused_reason");
   EXPECT_EQ(rows->at(2).cells,
-            (std::vector<std::string>{"zab", "check", "all", "ada", "bo", "33.3", "4", "bent", "12", "7", "2",
-                                      "0.100", "0.200", "0.143", "2.500", "one \"loop\", no more"}));
+            (std::vector<std::string>{"zab", "check", "all", "os2-32, vlp-16", "field", "ada", "bo", "33.3",
+                                      "45.0", "bent", "12", "7", "2", "0.100", "0.200", "0.143", "2.500", "",
+                                      "one \"loop\", no more"}));
   EXPECT_EQ(rows->at(5).cells.front(), "a");
+}
+
+TEST(PutRun, OtherSensorsAndConditionsStandBesideIt) {
+  std::vector<MergeRun> runs = {empty_run("a", "all")};
+  MergeRun other = empty_run("a", "all");
+  other.conditions = "field";
+  put_run(runs, other);
+  other.sensors = "vlp-16";
+  put_run(runs, other);
+  put_run(runs, other);
+  EXPECT_EQ(runs.size(), 3U);
 }
 
 TEST(PutRun, TakesThePlaceOfTheSameWorldAndPolicy) {
@@ -173,28 +189,28 @@ SlamConfig street_config() {
   return config;
 }
 
-const DistinctivePlaces kOnePlace = {{0, 1}, {1, 0}};
+const DistinctiveMetres kOneStretch = {{0.0, 20.0}, {20.0, 0.0}};
 
 TEST(MergeTruth, IsTheSharedStretchAndTheDriftOfEach) {
   std::vector<RobotRun> runs = street_runs();
-  const Result<MergeTruth> truth = merge_truth(runs, KeyframeSelection::all, kOnePlace);
+  const Result<MergeTruth> truth = merge_truth(runs, KeyframeSelection::all, kOneStretch);
   ASSERT_TRUE(truth) << truth.error().message;
   EXPECT_EQ(truth->shared_m[0][0], 0.0) << "nobody merges with itself";
   EXPECT_EQ(truth->shared_m[0][1], truth->shared_m[1][0]);
   EXPECT_NEAR(truth->shared_m[0][1], 26.0, 4.0);  // from x = 14 to 40, and within reach of the ends
-  EXPECT_EQ(truth->distinctive_places, kOnePlace);
+  EXPECT_EQ(truth->distinctive_m, kOneStretch);
   for (const double drift : truth->drift_m) {
     EXPECT_GT(drift, 0.001);
     EXPECT_LT(drift, 0.2);
   }
   for (StampedPose& pose : runs[1].truth) pose.stamp.ns += 1'000'000'000'000;
-  EXPECT_ERROR(merge_truth(runs, KeyframeSelection::all, kOnePlace), "robot_1: ");
+  EXPECT_ERROR(merge_truth(runs, KeyframeSelection::all, kOneStretch), "robot_1: ");
 }
 
 /// What `runs` come to with `config`, judged by their truth.
-MergeRun merges_of(const std::vector<RobotRun>& runs, const DistinctivePlaces& places,
+MergeRun merges_of(const std::vector<RobotRun>& runs, const DistinctiveMetres& distinctive,
                    const SlamConfig& config) {
-  const Result<MergeTruth> truth = merge_truth(runs, config.keyframes, places);
+  const Result<MergeTruth> truth = merge_truth(runs, config.keyframes, distinctive);
   EXPECT_TRUE(truth) << truth.error().message;
   const Result<MergeRun> run = run_merges(runs, *truth, config);
   EXPECT_TRUE(run) << run.error().message;
@@ -203,7 +219,7 @@ MergeRun merges_of(const std::vector<RobotRun>& runs, const DistinctivePlaces& p
 
 TEST(RunMerges, TheTruthAloneDecidesWhetherAMergeIsRight) {
   std::vector<RobotRun> runs = street_runs();
-  const MergeRun right = merges_of(runs, kOnePlace, street_config());
+  const MergeRun right = merges_of(runs, kOneStretch, street_config());
   ASSERT_EQ(right.pairs.size(), 1U);
   const MergePair& pair = right.pairs[0];
   EXPECT_EQ(pair.robots, (std::array<std::string, 2>{"robot_0", "robot_1"}));
@@ -243,7 +259,7 @@ TEST(RunMerges, ARefusedPairHasAReasonAndNothingWrong) {
   EXPECT_GT(run.pairs[0].registrations, 0);
   EXPECT_EQ(run.pairs[0].loops_in_use, 0);
   EXPECT_EQ(run.joint.maps, (std::vector<std::vector<std::string>>{{"robot_0"}, {"robot_1"}}));
-  EXPECT_EQ(run.joint.possible_maps, run.joint.maps) << "they share metres, but no distinctive place";
+  EXPECT_EQ(run.joint.possible_maps, run.joint.maps) << "they share metres, but no distinctive stretch";
   EXPECT_FALSE(run.joint.wrong);
 }
 

@@ -10,18 +10,15 @@
 namespace adit {
 namespace {
 
-/// As an earlier run measured them, else measured now, which takes longer than a run of one policy.
-Result<DistinctivePlaces> places_of(const ListedWorld& world, const std::vector<RobotRun>& robots,
-                                    const RunConfig& config, const std::vector<MergeRun>& runs) {
-  const auto earlier = std::ranges::find(runs, world.name, &MergeRun::world);
-  if (earlier == runs.end())
-    return distinctive_places(robots, with_policy(KeyframeSelection::adaptive, config).slam);
-  DistinctivePlaces places(robots.size(), std::vector<int>(robots.size(), 0));
-  auto pair = earlier->pairs.begin();
-  for (std::size_t a = 0; a < robots.size(); ++a)
-    for (std::size_t b = a + 1; b < robots.size() && pair != earlier->pairs.end(); ++b, ++pair)
-      places[a][b] = places[b][a] = pair->distinctive_places;
-  return places;
+/// Metres of distinctive stretches that each pair shares.
+Result<DistinctiveMetres> distinctive_of(const ListedWorld& listed, const std::vector<RobotRun>& robots) {
+  const Result<World> world = world_of(listed);
+  if (!world) return tl::unexpected(world.error());
+  const Result<Raycaster> surfaces = Raycaster::build(world->mesh, EdgeRule::watertight);
+  if (!surfaces) return fail(listed.name, surfaces.error());
+  std::vector<Trajectory> truths;
+  for (const RobotRun& robot : robots) truths.push_back(robot.truth);
+  return distinctive_stretches(*surfaces, truths);
 }
 
 const char* joint_outcome(const MergeCounts& counts) {
@@ -54,16 +51,19 @@ Result<> run_world(const MergeStudy& study, const ListedWorld& world, std::vecto
   const Result<std::vector<RobotRun>> robots =
       driven_robots(world, study.config, study.policies, study.folder / "maps");
   if (!robots) return tl::unexpected(robots.error());
-  const Result<DistinctivePlaces> places = places_of(world, *robots, study.config, runs);
-  if (!places) return fail(world.name, places.error());
+  const ScenarioConfig scenario = scenario_of(world, study.config.simulation);
+  const Result<DistinctiveMetres> distinctive = distinctive_of(world, *robots);
+  if (!distinctive) return tl::unexpected(distinctive.error());
   for (const KeyframeSelection policy : study.policies) {
     throw_if_cancelled();
-    const Result<MergeTruth> truth = merge_truth(*robots, policy, *places);
+    const Result<MergeTruth> truth = merge_truth(*robots, policy, *distinctive);
     if (!truth) return fail(world.name, truth.error());
     Result<MergeRun> run = run_merges(*robots, *truth, with_policy(policy, study.config).slam);
     if (!run) return fail(world.name, run.error());
     run->world = world.name;
     run->group = world.group;
+    run->sensors = sensors_text(scenario);
+    run->conditions = conditions_text(scenario);
     if (!study.variant.empty()) run->keyframes += " " + study.variant;
     if (study.on_run) study.on_run(*run);
     put_run(runs, std::move(*run));
@@ -84,11 +84,12 @@ std::string summary_line(const MergeRun& run) {
   MergeCounts counts;
   counts.add(run);
   return format(
-      "{:28} {:18} {} mergeable: {} well, {} bent, {} refused; {} of {} others kept apart; {} WRONG, {} "
+      "{:28} {:18} {}, {}: {} mergeable: {} well, {} bent, {} refused; {} of {} others kept apart; {} WRONG, "
+      "{} "
       "wrong loops; joint {} wrong loops, {}; {} registrations, {:.1f} s",
-      run.world, run.keyframes, counts.mergeable, counts.success, counts.bent, counts.refused,
-      counts.kept_apart, counts.others, counts.wrong, counts.wrong_loops, counts.joint_wrong_loops,
-      joint_outcome(counts), run.registrations, run.time_s);
+      run.world, run.keyframes, run.sensors, run.conditions, counts.mergeable, counts.success, counts.bent,
+      counts.refused, counts.kept_apart, counts.others, counts.wrong, counts.wrong_loops,
+      counts.joint_wrong_loops, joint_outcome(counts), run.registrations, run.time_s);
 }
 
 }  // namespace adit

@@ -63,11 +63,11 @@ TEST(SortByList, KeepsPoliciesInTheirOrderAndDropsWorldsThatAreGone) {
   EXPECT_EQ(order, (std::vector<std::string>{"d all", "a tunnel_filter", "a all", "e all", "e adaptive"}));
 }
 
-/// A pair that shares 30 m with a place to tell it by, or without both.
+/// A pair that shares 30 m 25 of them distinctive, or without both.
 MergePair pair_of(bool is_mergeable, MergeOutcome outcome) {
   MergePair pair;
   pair.shared_m = is_mergeable ? 30.0 : 0.0;
-  pair.distinctive_places = is_mergeable ? 1 : 0;
+  pair.distinctive_m = is_mergeable ? 25.0 : 0.0;
   pair.outcome = outcome;
   return pair;
 }
@@ -111,9 +111,10 @@ TEST(RunWorld, EachPolicyTakesItsPlaceAndReachesTheDisk) {
   MergeStudy study = study_in(folder, {KeyframeSelection::tunnel_filter_keep, KeyframeSelection::all});
   std::vector<std::string> reported;
   study.on_run = [&](const MergeRun& run) { reported.push_back(run.world + " " + run.keyframes); };
-  // An earlier run, whose count of distinctive places is taken over: measuring them takes long.
+  // An earlier run under the same conditions.
   std::vector<MergeRun> runs = {run_of("other", "all"), run_of("hall", "all")};
-  runs[1].pairs.emplace_back().distinctive_places = 7;
+  runs[1].sensors = "vlp-16";
+  runs[1].conditions = "ideal";
   const Result<> done = run_world(study, world, runs);
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_EQ(reported, (std::vector<std::string>{"hall tunnel_filter_keep", "hall all"}));
@@ -123,9 +124,11 @@ TEST(RunWorld, EachPolicyTakesItsPlaceAndReachesTheDisk) {
   EXPECT_EQ(runs[2].keyframes, "tunnel_filter_keep");
   for (const std::size_t r : {1U, 2U}) {
     EXPECT_EQ(runs[r].group, "check");
+    EXPECT_EQ(runs[r].sensors, "vlp-16");
+    EXPECT_EQ(runs[r].conditions, "ideal");
     ASSERT_EQ(runs[r].pairs.size(), 1U);
     EXPECT_EQ(runs[r].pairs[0].robots, (std::array<std::string, 2>{"ahead", "behind"}));
-    EXPECT_EQ(runs[r].pairs[0].distinctive_places, 7);
+    EXPECT_EQ(runs[r].pairs[0].distinctive_m, 0.0) << "five metres are too short";
     // Five metres each, of which the first three of `ahead` lie before it and within reach: all is shared.
     EXPECT_NEAR(runs[r].pairs[0].shared_m, test::kShortDriveMetres, 1.0);
   }
@@ -145,7 +148,6 @@ TEST(RunWorld, AVariantStandsBesideTheUsualResults) {
   ASSERT_EQ(runs.size(), 2U);
   EXPECT_EQ(runs[0].keyframes, "all");
   EXPECT_EQ(runs[1].keyframes, "all coarse");
-  EXPECT_EQ(runs[1].pairs[0].distinctive_places, runs[0].pairs[0].distinctive_places);
 }
 
 TEST(RunWorld, AWorldThatCannotBeDrivenChangesNoResults) {

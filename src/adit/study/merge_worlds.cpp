@@ -24,16 +24,26 @@ namespace adit {
 namespace {
 
 Fields fields_of(ListedWorld& c) {
-  Fields fields = {{"name", &c.name, "", 0, 0, "what tables and caches call the world"},
-                   {"group",
-                    &c.group,
-                    "",
-                    0,
-                    0,
-                    "tuned on, kept for the check, or beyond what measurement can decide",
-                    {"tuning", "check", "limit"}},
-                   {"noise_seed", &c.noise_seed, "", 0, 1e15, "seed of all noise of sensors and wheels"},
-                   {"routes_file", &c.routes_file, "", 0, 0, "routes.yaml of a mesh on disk"}};
+  Fields fields = {
+      {"name", &c.name, "", 0, 0, "what tables and caches call the world"},
+      {"group",
+       &c.group,
+       "",
+       0,
+       0,
+       "tuned on, kept for the check, drawn after the policy was frozen, or beyond what measurement "
+       "can decide",
+       {"tuning", "check", "field", "limit"}},
+      {"noise_seed", &c.noise_seed, "", 0, 1e15, "seed of all noise of sensors and wheels"},
+      {"lidars", &c.lidars, "", 0, 0, "LiDARs of the robots in turn; empty: as the study has them"},
+      {"conditions",
+       &c.conditions,
+       "",
+       0,
+       0,
+       "conditions of the simulation; empty: as the study has them",
+       {"", "ideal", "field"}},
+      {"routes_file", &c.routes_file, "", 0, 0, "routes.yaml of a mesh on disk"}};
   append(fields, "world", adit::fields_of(c.generated));
   return fields;
 }
@@ -44,6 +54,8 @@ Result<> check(const std::deque<ListedWorld>& worlds) {
     if (world.name.empty()) return fail("an entry has no name; add name = \"...\"");
     if (!names.insert(world.name).second)
       return fail("two worlds are called '" + world.name + "'; rename one");
+    if (const auto lidars = lidars_of(scenario_of(world, {})); !lidars)
+      return fail("world '" + world.name + "'", lidars.error());
   }
   return {};
 }
@@ -70,10 +82,6 @@ std::string key_of(ListedWorld world, std::uint32_t files, ScenarioConfig simula
   append(fields, "simulation", adit::fields_of(simulation));
   append(fields, "robot", adit::fields_of(robot));
   return format("{:08x}", crc32(std::string(version()) + to_toml(fields), files));
-}
-
-Result<World> world_of(const ListedWorld& world) {
-  return world.routes_file.empty() ? make_world(world.generated) : load_world({}, world.routes_file);
 }
 
 std::filesystem::path map_file(const std::filesystem::path& folder, std::size_t robot) {
@@ -173,6 +181,36 @@ Result<std::vector<ListedWorld>> read_world_list(const std::filesystem::path& li
   return std::vector<ListedWorld>(worlds.begin(), worlds.end());
 }
 
+ScenarioConfig scenario_of(const ListedWorld& world, ScenarioConfig simulation) {
+  simulation.seed = world.noise_seed;
+  if (!world.lidars.empty()) simulation.lidars = world.lidars;
+  for (const Conditions conditions : kConditions)
+    if (world.conditions == to_string(conditions)) set_conditions(conditions, simulation);
+  return simulation;
+}
+
+std::string sensors_text(const ScenarioConfig& simulation) {
+  if (simulation.lidars.empty()) return simulation.lidar.name;
+  std::string text;
+  for (const char c : simulation.lidars)
+    if (c != ' ') text += c == ',' ? ", " : std::string(1, c);
+  return text;
+}
+
+std::string conditions_text(const ScenarioConfig& simulation) {
+  const auto text_of = [](ScenarioConfig config) { return to_toml(adit::fields_of(config)); };
+  for (const Conditions conditions : kConditions) {
+    ScenarioConfig preset = simulation;
+    set_conditions(conditions, preset);
+    if (text_of(preset) == text_of(simulation)) return std::string(to_string(conditions));
+  }
+  return "other";
+}
+
+Result<World> world_of(const ListedWorld& world) {
+  return world.routes_file.empty() ? make_world(world.generated) : load_world({}, world.routes_file);
+}
+
 bool is_available(const ListedWorld& world) {
   return world.routes_file.empty() || std::filesystem::exists(world.routes_file);
 }
@@ -180,7 +218,7 @@ bool is_available(const ListedWorld& world) {
 Result<std::vector<RobotRun>> driven_robots(const ListedWorld& world, RunConfig config,
                                             const std::vector<KeyframeSelection>& selections,
                                             const std::filesystem::path& cache) {
-  config.simulation.seed = world.noise_seed;
+  config.simulation = scenario_of(world, config.simulation);
   const Result<std::uint32_t> files = checksum_of_files(world);
   if (!files) return tl::unexpected(files.error());
   std::vector<Drives> drives;

@@ -18,16 +18,29 @@ struct ListedWorld {
   std::string name;
   std::string group = "tuning";
   std::uint64_t noise_seed = 1;
+  std::string lidars;       ///< Of its robots in turn, separated by commas; "": as the study has them.
+  std::string conditions;   ///< "ideal" or "field"; "": as the study has them.
   std::string routes_file;  ///< Relative to the list; "": the world is generated from `generated`.
   WorldConfig generated;
 };
 
-/// In the order of the file, paths made relative to the working directory. Fails on an entry without a name
-/// and on two of one name.
+/// In the order of the file, paths made relative to the working directory. Fails on an entry without a name,
+/// on two of one name and on an unknown LiDAR.
 Result<std::vector<ListedWorld>> read_world_list(const std::filesystem::path& list);
 
 /// Whether the files that the world needs are there; generated ones need none.
 [[nodiscard]] bool is_available(const ListedWorld& world);
+
+/// How the robots of that world are simulated where a study has `simulation`: with the world's own seed, and
+/// with its sensors and conditions where it states them.
+[[nodiscard]] ScenarioConfig scenario_of(const ListedWorld& world, ScenarioConfig simulation);
+/// The LiDARs that robots have in turn, for tables: "os2-32, os1-64".
+[[nodiscard]] std::string sensors_text(const ScenarioConfig& simulation);
+/// "ideal" or "field" where the fields that conditions set are theirs, else "other".
+[[nodiscard]] std::string conditions_text(const ScenarioConfig& simulation);
+
+/// Its mesh and routes: generated, or read from its files.
+Result<World> world_of(const ListedWorld& world);
 
 /// The robots' maps, by the odometries that those policies are studied under, and their ground truth. They
 /// come from `cache`, a folder that exists, if the world was driven before with the same routes, mesh and

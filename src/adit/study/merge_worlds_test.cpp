@@ -61,8 +61,10 @@ TEST(WorldList, ErrorsNameTheFileAndTheRemedy) {
                "list.toml: an entry has no name; add name");
   EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\n[[world]]\nname = 'a'\n"),
                "list.toml: two worlds are called 'a'; rename one");
-  EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\ngroup = 'most'\n"), "tuning, check, limit");
+  EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\ngroup = 'most'\n"), "tuning, check, field, limit");
   EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\nnoise_sed = 1\n"), "noise_seed");
+  EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\nlidars = 'os2-32,os3'\n"), "world 'a': ");
+  EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\nconditions = 'wet'\n"), "ideal, field");
   EXPECT_ERROR(worlds_of(folder, "[[graph]]\nname = 'a'\n"), "list.toml: line 1");
   EXPECT_ERROR(read_world_list(folder / "away.toml"), "away.toml");
 }
@@ -75,6 +77,25 @@ TEST(WorldList, AWorldIsAvailableWhereItsRoutesAreOrWhereItIsGenerated) {
   EXPECT_FALSE(is_available(world));
   put_file(world.routes_file, "");
   EXPECT_TRUE(is_available(world));
+}
+
+TEST(WorldList, AWorldMayHaveSensorsAndConditionsOfItsOwn) {
+  const test::TemporaryFolder folder;
+  const auto worlds = worlds_of(folder,
+                                "[[world]]\nname = 'a'\ngroup = 'field'\nlidars = 'os2-32, os1-64'\n"
+                                "conditions = 'field'\nnoise_seed = 7\n[[world]]\nname = 'b'\n");
+  ASSERT_TRUE(worlds) << worlds.error().message;
+  const ScenarioConfig study = quick_config().simulation;
+  const ScenarioConfig a = scenario_of(worlds->at(0), study);
+  EXPECT_EQ(a.seed, 7U);
+  EXPECT_EQ(sensors_text(a), "os2-32, os1-64");
+  EXPECT_EQ(conditions_text(a), "field");
+  const ScenarioConfig b = scenario_of(worlds->at(1), study);
+  EXPECT_EQ(sensors_text(b), "vlp-16");
+  EXPECT_EQ(conditions_text(b), "ideal");
+  ScenarioConfig biased = a;
+  biased.lidar_errors.range_bias += 0.001;
+  EXPECT_EQ(conditions_text(biased), "other");
 }
 
 /// The names of the folders of maps.

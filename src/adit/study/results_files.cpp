@@ -8,6 +8,7 @@
 #include "adit/io/csv.hpp"
 #include "adit/study/incremental_study.hpp"
 #include "adit/study/loop_study.hpp"
+#include "adit/study/merge_calibration.hpp"
 #include "adit/study/merge_run.hpp"
 #include "adit/study/uncertainty_study.hpp"
 
@@ -16,12 +17,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kMergeRunsVersion = 2;  // of results.json
+constexpr int kMergeRunsVersion = 3;  // of results.json
 
 Json json_of(const MergePair& pair) {
   return {{"robots", pair.robots},
           {"shared_m", pair.shared_m},
-          {"distinctive_places", pair.distinctive_places},
+          {"distinctive_m", pair.distinctive_m},
           {"outcome", to_string(pair.outcome)},
           {"refused_reason", pair.refused_reason},
           {"registrations", pair.registrations},
@@ -40,9 +41,10 @@ Json json_of(const MergeJoint& joint) {
 Json json_of(const MergeRun& run) {
   Json pairs = Json::array();
   for (const MergePair& pair : run.pairs) pairs.push_back(json_of(pair));
-  return {{"world", run.world},         {"group", run.group},
-          {"keyframes", run.keyframes}, {"registrations", run.registrations},
-          {"time_s", run.time_s},       {"pairs", pairs},
+  return {{"world", run.world},           {"group", run.group},
+          {"keyframes", run.keyframes},   {"sensors", run.sensors},
+          {"conditions", run.conditions}, {"registrations", run.registrations},
+          {"time_s", run.time_s},         {"pairs", pairs},
           {"joint", json_of(run.joint)}};
 }
 
@@ -97,7 +99,7 @@ MergePair pair_of(const Json& json) {
   MergePair pair;
   get(json, "robots", pair.robots);
   get(json, "shared_m", pair.shared_m);
-  get(json, "distinctive_places", pair.distinctive_places);
+  get(json, "distinctive_m", pair.distinctive_m);
   pair.outcome = merge_outcome(json.at("outcome").get<std::string>());
   get(json, "refused_reason", pair.refused_reason);
   get(json, "registrations", pair.registrations);
@@ -124,6 +126,8 @@ MergeRun run_of(const Json& json) {
   get(json, "world", run.world);
   get(json, "group", run.group);
   get(json, "keyframes", run.keyframes);
+  get(json, "sensors", run.sensors);
+  get(json, "conditions", run.conditions);
   get(json, "registrations", run.registrations);
   get(json, "time_s", run.time_s);
   for (const Json& pair : json.at("pairs")) run.pairs.push_back(pair_of(pair));
@@ -170,21 +174,23 @@ Result<> write_merge_runs(const std::filesystem::path& file, const std::vector<M
 }
 
 Result<> write_merge_csv(const std::filesystem::path& file, const std::vector<MergeRun>& runs) {
-  std::string text =
-      csv_row({"world", "group", "keyframes", "robot_a", "robot_b", "shared_m", "distinctive_places",
-               "outcome", "registrations", "loops_in_use", "wrong_loops_in_use", "ate_max_a_m", "ate_max_b_m",
-               "ate_max_a_pct", "ate_max_b_pct", "refused_reason"});
+  std::string text = csv_row({"world", "group", "keyframes", "sensors", "conditions", "robot_a", "robot_b",
+                              "shared_m", "distinctive_m", "outcome", "registrations", "loops_in_use",
+                              "wrong_loops_in_use", "ate_max_a_m", "ate_max_b_m", "ate_max_a_pct",
+                              "ate_max_b_pct", "refused_kind", "refused_reason"});
   const auto number = [](auto value) { return format("{}", value); };
   const auto thousandths = [](double value) { return format("{:.3f}", value); };
   for (const MergeRun& run : runs)
     for (const MergePair& pair : run.pairs)
-      text +=
-          csv_row({run.world, run.group, run.keyframes, pair.robots[0], pair.robots[1],
-                   format("{:.1f}", pair.shared_m), number(pair.distinctive_places),
-                   std::string(to_string(pair.outcome)), number(pair.registrations),
-                   number(pair.loops_in_use), number(pair.wrong_loops_in_use), thousandths(pair.ate_max_m[0]),
-                   thousandths(pair.ate_max_m[1]), thousandths(pair.ate_max_over_path_pct[0]),
-                   thousandths(pair.ate_max_over_path_pct[1]), pair.refused_reason});
+      text += csv_row(
+          {run.world, run.group, run.keyframes, run.sensors, run.conditions, pair.robots[0], pair.robots[1],
+           format("{:.1f}", pair.shared_m), format("{:.1f}", pair.distinctive_m),
+           std::string(to_string(pair.outcome)), number(pair.registrations), number(pair.loops_in_use),
+           number(pair.wrong_loops_in_use), thousandths(pair.ate_max_m[0]), thousandths(pair.ate_max_m[1]),
+           thousandths(pair.ate_max_over_path_pct[0]), thousandths(pair.ate_max_over_path_pct[1]),
+           pair.outcome == MergeOutcome::refused ? std::string(to_string(refusal_kind(pair.refused_reason)))
+                                                 : "",
+           pair.refused_reason});
   return write_bytes(file, text);
 }
 
@@ -208,6 +214,18 @@ std::string json_of(const std::vector<IncrementalRun>& runs) {
   Json all = Json::array();
   for (const IncrementalRun& run : runs) all.push_back(json_of(run));
   return all.dump(2) + "\n";
+}
+
+std::string calibration_json(const std::vector<JudgedHypothesis>& hypotheses) {
+  constexpr std::array kTruths{"right", "near", "wrong"};
+  Json all = Json::array();
+  for (const JudgedHypothesis& h : hypotheses)
+    all.push_back({{"truth", kTruths[static_cast<std::size_t>(h.truth)]},
+                   {"refuted", h.refuted},
+                   {"accepted", h.accepted},
+                   {"evidence", h.evidence},
+                   {"needed", h.needed}});
+  return Json{{"version", 1}, {"hypotheses", all}}.dump(1) + "\n";
 }
 
 }  // namespace adit
