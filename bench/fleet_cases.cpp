@@ -159,6 +159,7 @@ RobotMap drive(const Mine& mine, RobotId id) {
     map.places.push_back(describe(*cloud, map.scan_context));
     map.tunnel.push_back({});
     map.searchable.push_back(true);
+    map.unconfirmed.push_back(0.0F);
     map.step_covariances.push_back(covariance);
     map.odometry.push_back({stamp, T_odom_base});
     map.keyframes.push_back({{id, k}, stamp, T_odom_base, std::move(cloud)});

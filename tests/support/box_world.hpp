@@ -86,6 +86,7 @@ inline RobotMap drive(const BoxWorld& world, RobotId id, const std::vector<Pose>
     map.places.push_back(describe(*cloud, map.scan_context));
     map.tunnel.push_back({});
     map.searchable.push_back(true);
+    map.unconfirmed.push_back(0.0F);
     map.step_covariances.push_back(covariance);
     map.pose_noise.push_back(Matrix6::Zero());
     map.odometry.push_back({stamp, T_odom_base});

@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers stand in the file as they do in memory");
 
 /// Its last digit counts the layouts that there have been.
-constexpr std::string_view kMagic = "adit map 5\n";
+constexpr std::string_view kMagic = "adit map 6\n";
 
 /// Appends what `transfer` names.
 class Writer {
@@ -179,13 +179,14 @@ void transfer(Archive& archive, Map& map) {
       archive.number(verdict.tunnel_like);
     }
   bits(archive, map.searchable);
+  plain_vector(archive, map.unconfirmed);
   archive.raw(map.viewpoint.data(), 3 * sizeof(double));
 }
 
 bool is_consistent(const RobotMap& map) {
   const std::size_t n = map.keyframes.size();
   return map.step_covariances.size() == n && map.pose_noise.size() == n && map.places.size() == n &&
-         map.tunnel.size() == n && map.searchable.size() == n;
+         map.tunnel.size() == n && map.searchable.size() == n && map.unconfirmed.size() == n;
 }
 
 }  // namespace

@@ -44,6 +44,7 @@ RobotMap random_map() {
     map.places.push_back(describe(cloud, {}));
     map.tunnel.push_back({Vector3(3.0, 2.0, rng.uniform()), k % 2 == 0});
     map.searchable.push_back(k % 3 == 0);
+    map.unconfirmed.push_back(0.01F * static_cast<float>(k));
   }
   return map;
 }

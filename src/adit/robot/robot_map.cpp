@@ -26,6 +26,7 @@ void append_keyframe(RobotMap& to, const RobotMap& from, std::size_t k, const Ma
   to.places.push_back(from.places[k]);
   to.tunnel.push_back(from.tunnel[k]);
   to.searchable.push_back(true);
+  to.unconfirmed.push_back(from.unconfirmed[k]);
 }
 
 RobotMap without_tunnel_keyframes(const RobotMap& map) {

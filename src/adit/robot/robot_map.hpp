@@ -35,7 +35,9 @@ struct RobotMap {
   std::vector<ScanContext> places;
   std::vector<TunnelVerdict> tunnel;
   std::vector<bool> searchable;  ///< Takes part in loop search.
-  Trajectory odometry;           ///< T_odom_base of every scan.
+  /// Share of the scan's returns that nothing confirmed (dust, drops, what moves); they are not in the cloud.
+  std::vector<float> unconfirmed;
+  Trajectory odometry;  ///< T_odom_base of every scan.
   std::vector<SlipStretch> slips;
   /// Of every scan that was registered and whose motion had been predicted with a covariance: the innovation
   /// squared, normalised, over its dimension; 1 on average where that covariance is true.

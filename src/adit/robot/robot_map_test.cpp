@@ -44,6 +44,7 @@ RobotMap winding_drive(const std::vector<std::uint32_t>& tunnel) {
     map.places.push_back(from_heights(2, 3, std::vector<float>(6, static_cast<float>(k) + 1.0F)));
     map.tunnel.push_back({Vector3::Constant(k), std::ranges::find(tunnel, k) != tunnel.end()});
     map.searchable.push_back(true);
+    map.unconfirmed.push_back(0.0F);
     map.odometry.push_back({stamp, T_odom_base});
   }
   return map;

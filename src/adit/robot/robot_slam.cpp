@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "adit/robot/robot_slam.hpp"
 
+#include <algorithm>
 #include <memory>
 
 #include "adit/core/format.hpp"
+#include "adit/core/parallel.hpp"
 #include "adit/geometry/voxel_grid.hpp"
 
 namespace adit {
@@ -23,6 +25,7 @@ Fields fields_of(RobotSlamConfig& c) {
       {"cloud_voxel", &c.cloud_voxel, "m", 0.01, 2.0, "keyframe clouds keep one point per voxel"}};
   append(fields, "odometry", fields_of(c.odometry));
   append(fields, "keyframes", fields_of(c.keyframes));
+  append(fields, "confirm", fields_of(c.confirm));
   append(fields, "tunnel_filter", fields_of(c.tunnel_filter));
   append(fields, "scan_context", fields_of(c.scan_context));
   append(fields, "noise", fields_of(c.noise));
@@ -71,26 +74,66 @@ void RobotSlam::note_slip(const OdometryStep& step) {
 }
 
 void RobotSlam::add_keyframe(const OdometryStep& step) {
-  const PointCloud& full = odometry_->cloud_of_last_scan();
+  Look look = look_of(step);
+  if (last_look_) {
+    remove_seen_through(look, *last_look_);
+    const bool changed = remove_seen_through(*last_look_, look) > 0;
+    if (changed) describe_keyframe(map_.keyframes.size() - 1, *last_look_);
+  }
+  const std::size_t k = map_.keyframes.size();
   Keyframe keyframe;
-  keyframe.id = {map_.id, static_cast<std::uint32_t>(map_.keyframes.size())};
+  keyframe.id = {map_.id, static_cast<std::uint32_t>(k)};
   keyframe.stamp = step.stamp;
   keyframe.T_odom_base = step.T_odom_base;
-  PointCloud thinned = voxel_downsample(full, config_.cloud_voxel);
-  thinned.time_offsets_ns.clear();  // the cloud is deskewed
-  keyframe.cloud = std::make_shared<const PointCloud>(std::move(thinned));
-  // Places are described with z upwards, however the robot stands, where it feels what is up.
-  map_.places.push_back(
-      describe(step.up ? transformed(levelled(*step.up), full) : full, config_.scan_context));
-  // A cloud with too few points for a bounding box does not describe the place: it takes no part in the loop
-  // search.
-  map_.tunnel.push_back(
-      tunnel_filter(*keyframe.cloud, config_.tunnel_filter).value_or(TunnelVerdict{Vector3::Zero(), true}));
   map_.searchable.push_back(true);
   map_.step_covariances.push_back(map_.keyframes.empty() ? Matrix6(Matrix6::Zero()) : uncertainty_.drift());
   map_.pose_noise.push_back(uncertainty_.pose_noise());
   uncertainty_.begin_edge();
   map_.keyframes.push_back(std::move(keyframe));
+  map_.places.emplace_back();
+  map_.tunnel.emplace_back();
+  map_.unconfirmed.emplace_back();
+  describe_keyframe(k, look);
+  last_look_ = std::move(look);
+}
+
+RobotSlam::Look RobotSlam::look_of(const OdometryStep& step) const {
+  const PointCloud& full = odometry_->cloud_of_last_scan();
+  ScanView view(full.points, map_.viewpoint, config_.confirm);
+  const std::vector<std::uint8_t> confirmed = view.confirmed_by_neighbours();
+  view.keep(confirmed);
+  return {only(full, confirmed), std::move(view), step.T_odom_base, step.up, full.size()};
+}
+
+// How many returns it removes.
+std::size_t RobotSlam::remove_seen_through(Look& look, const Look& other) {
+  constexpr std::size_t kGrain = 2048;
+  const Pose T_other_look = other.T_odom_base.inverse() * look.T_odom_base;
+  const Eigen::Matrix3f R = T_other_look.rotation_matrix().cast<float>();
+  const Eigen::Vector3f t = T_other_look.translation().cast<float>();
+  std::vector<std::uint8_t> stays(look.cloud.size());
+  parallel_for_each(
+      stays.size(),
+      [&](std::size_t i) { stays[i] = other.view.looks_through(R * look.cloud.points[i] + t) ? 0 : 1; },
+      kGrain);
+  const auto removed = static_cast<std::size_t>(std::ranges::count(stays, 0));
+  if (removed > 0) look.cloud = only(look.cloud, stays);
+  return removed;
+}
+
+void RobotSlam::describe_keyframe(std::size_t k, const Look& look) {
+  PointCloud thinned = voxel_downsample(look.cloud, config_.cloud_voxel);
+  thinned.time_offsets_ns.clear();  // the cloud is deskewed
+  // Places are described with z upwards, however the robot stands, where it feels what is up.
+  map_.places[k] =
+      describe(look.up ? transformed(levelled(*look.up), look.cloud) : look.cloud, config_.scan_context);
+  // A cloud with too few points for a bounding box does not describe the place: it takes no part in the loop
+  // search.
+  map_.tunnel[k] =
+      tunnel_filter(thinned, config_.tunnel_filter).value_or(TunnelVerdict{Vector3::Zero(), true});
+  const double num = static_cast<double>(std::max<std::size_t>(look.num_returns, 1));
+  map_.unconfirmed[k] = static_cast<float>(1.0 - static_cast<double>(look.cloud.size()) / num);
+  map_.keyframes[k].cloud = std::make_shared<const PointCloud>(std::move(thinned));
 }
 
 Result<> check_wheels(const Recording& recording, const OdometryConfig& config,

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "adit/keyframes/keyframe_policy.hpp"
+#include "adit/keyframes/scan_view.hpp"
 #include "adit/odometry/methods.hpp"
 #include "adit/odometry/path_uncertainty.hpp"
 #include "adit/robot/robot_map.hpp"
@@ -18,6 +19,7 @@ namespace adit {
 struct RobotSlamConfig {
   OdometryConfig odometry;
   KeyframePolicyConfig keyframes;
+  ConfirmConfig confirm;
   TunnelFilterConfig tunnel_filter;
   ScanContextConfig scan_context;
   PathNoise noise;
@@ -32,6 +34,10 @@ struct RobotStep {
 
 /// SLAM of one robot on its own: scan -> odometry -> keyframe with its descriptor. Loops with other robots
 /// are found by fleet/.
+///
+/// A keyframe has the returns that others confirm: their neighbours in the scan, and the scans of the
+/// keyframes before and after it, which would look through the place of what moves. The newest keyframe
+/// therefore still loses returns when the next one comes.
 class RobotSlam {
  public:
   /// Throws ContractViolation when `config` is out of its documented ranges.
@@ -46,13 +52,26 @@ class RobotSlam {
   [[nodiscard]] const RobotMap& map() const { return map_; }
 
  private:
+  /// The scan of a keyframe at full density, base frame.
+  struct Look {
+    PointCloud cloud;
+    ScanView view;
+    Pose T_odom_base;
+    std::optional<Vector3> up;
+    std::size_t num_returns = 0;  ///< Before those left that nothing confirms.
+  };
+  static std::size_t remove_seen_through(Look& look, const Look& other);
+
   void note_slip(const OdometryStep& step);
   void add_keyframe(const OdometryStep& step);
+  [[nodiscard]] Look look_of(const OdometryStep& step) const;
+  void describe_keyframe(std::size_t k, const Look& look);
 
   RobotSlamConfig config_;
   std::unique_ptr<Odometry> odometry_;
   KeyframePolicy keyframe_policy_;
   PathUncertainty uncertainty_;
+  std::optional<Look> last_look_;  ///< Of the newest keyframe.
   RobotMap map_;
 };
 

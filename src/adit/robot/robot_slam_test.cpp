@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "adit/core/decompositions.hpp"
+#include "adit/core/rng.hpp"
 #include "support/synthetic_scan.hpp"
 
 namespace adit {
@@ -88,6 +91,48 @@ TEST(RobotSlam, MapsARoomWithEachOdometry) {
     SCOPED_TRACE(to_string(method));
     expect_sound(*map, recording);
     EXPECT_EQ(map->num_refused, 0);
+  }
+}
+
+std::size_t num_near(const RobotMap& map) {
+  std::size_t num = 0;
+  for (const Keyframe& keyframe : map.keyframes)
+    for (const Eigen::Vector3f& p : keyframe.cloud->points)
+      num += (p.cast<double>() - map.viewpoint).norm() < 1.5 ? 1 : 0;
+  return num;
+}
+
+TEST(RobotSlam, DustAndWhoWalksAheadLeaveTheMap) {
+  const Recording clean = room_recording(false);
+  Recording recording = clean;
+  recording.read_scan = [](std::size_t i) {
+    const test::Drive drive = straight_drive();
+    test::Scene scene = test::furnished_room();
+    const Vector3 person = drive.at(0.1 * static_cast<double>(i)).translation() + Vector3(3.0, 1.0, 0.0);
+    scene.boxes.push_back({person + Vector3(-0.2, -0.2, 0.3), person + Vector3(0.2, 0.2, 2.0)});
+    Scan scan = test::scan_of(scene, dense_lidar(), kBaseLidar, drive, static_cast<int>(i));
+    Rng rng(i);
+    for (Eigen::Vector3f& p : scan.cloud.points) {
+      const auto range = static_cast<float>(rng.uniform(0.5, 1.4));
+      if (rng.uniform() < 0.05) p *= range / p.norm();
+    }
+    return scan;
+  };
+  const Result<RobotMap> before = map_recording(clean, {7}, config_of(OdometryMethod::kiss_icp));
+  const Result<RobotMap> map = map_recording(recording, {7}, config_of(OdometryMethod::kiss_icp));
+  ASSERT_TRUE(before.has_value() && map.has_value());
+  ASSERT_GE(map->keyframes.size(), 5U);
+  ASSERT_EQ(map->unconfirmed.size(), map->keyframes.size());
+  for (const float share : before->unconfirmed) EXPECT_LT(share, 0.01F);
+  for (const float share : map->unconfirmed) EXPECT_NEAR(share, 0.055F, 0.015F);
+  // Some 60 of 32 000 returns of each scan are dust that lies as if on a surface.
+  EXPECT_LT(num_near(*map), num_near(*before) + 100 * map->keyframes.size());
+  for (std::size_t k = 2; k + 1 < map->keyframes.size(); ++k) {
+    const auto& points = map->keyframes[k].cloud->points;
+    const auto of_person = std::ranges::count_if(points, [](const Eigen::Vector3f& p) {
+      return std::abs(p.x() - 3.0F) < 0.3F && std::abs(p.y() - 1.0F) < 0.3F && p.z() > 0.5F && p.z() < 2.0F;
+    });
+    EXPECT_LT(of_person, 10) << k;
   }
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "adit/slam/mapping.hpp"
 
+#include <algorithm>
 #include <exception>
 
 #include "adit/core/format.hpp"
@@ -36,6 +37,21 @@ RobotSlamConfig config_for(const Recording& recording, RobotSlamConfig config,
                          recording.name, to_string(config.odometry.method)));
   config.odometry.method = OdometryMethod::kiss_icp;
   return config;
+}
+
+/// Clean scans of simulated mines lose up to 1 % of their returns (decision 0038).
+constexpr double kNotableShare = 0.03;
+
+/// A note where a robot's scans are not as good as they should be.
+void note_quality(const RobotMap& map, std::vector<std::string>& notes) {
+  double sum = 0.0;
+  for (const float share : map.unconfirmed) sum += share;
+  const double mean = sum / static_cast<double>(std::max<std::size_t>(map.unconfirmed.size(), 1));
+  if (mean < kNotableShare) return;
+  notes.push_back(
+      format("{}: {:.0f} % of the LiDAR's returns were confirmed by no other and are left out of the map, as "
+             "dust, rain and moving things are",
+             map.name, 100.0 * mean));
 }
 
 /// Turns whatever goes wrong into an error of this robot, so that the others go on.
@@ -79,6 +95,7 @@ Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig
       mapping.failed.push_back({recordings[i].name, maps[i].error().message});
       continue;
     }
+    note_quality(*maps[i], mapping.notes);
     mapping.robots.push_back({std::make_shared<const RobotMap>(select_keyframes(*maps[i], config.keyframes)),
                               std::string(to_string(configs[i].odometry.method)), recordings[i].lidar});
   }
