@@ -6,6 +6,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -13,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/rng.hpp"
 #include "adit/geometry/voxel_grid.hpp"
