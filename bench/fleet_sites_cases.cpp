@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -140,9 +141,13 @@ Work sites(double num_robots) {
 const Growth growth("fleet/sites",
                     "A pair of a fleet under the default policy, four robots a site, 130 m each, one thread",
                     "robots that all meet", {2, 4, 8, 16}, sites, num_pairs);
-// Minutes to an hour: run by name, `make bench BENCH=fleet/many_sites`.
+/// 64 robots take the better part of an hour.
+Work many_sites(double num_robots) {
+  if (std::getenv("ADIT_BENCH_LARGE") == nullptr) throw Skipped{"only with ADIT_BENCH_LARGE=1"};
+  return sites(num_robots);
+}
 const Growth large("fleet/many_sites", "A pair of a large fleet, four robots a site, 130 m each, one thread",
-                   "robots that all meet", {32, 64}, sites, num_pairs);
+                   "robots that all meet", {32, 64}, many_sites, num_pairs);
 
 }  // namespace
 }  // namespace adit::bench
