@@ -171,15 +171,17 @@ CaseResult compare(const CaseInfo& info, const CompareConfig& config) {
 
 GrowthResult grow(const GrowthInfo& info, const CompareConfig& config) {
   constexpr int kRuns = 3;
-  constexpr double kLongRun = 5.0;  // seconds; once is enough then
+  constexpr double kLongRun = 5.0;  // seconds of the whole run; once is enough then
   GrowthResult result{{}, info.name, info.title, info.size_label, {}};
   for (const double size : info.sizes) {
     Launch launch = launched({config.program, "serve", info.name, std::to_string(size)}, {}, 1);
     launch.num_processors = 0;  // `adit study` runs on all, as users run it
     Runner runner = started({"adit", launch, {}, {}});
+    const double shares = info.shares ? info.shares(size) : 1.0;
     for (int i = 0;
-         i < kRuns && runner.result.skipped.empty() && (i == 0 || runner.seconds.back() < kLongRun); ++i)
-      run_once(runner, info.shares ? info.shares(size) : 1.0, true);
+         i < kRuns && runner.result.skipped.empty() && (i == 0 || runner.seconds.back() * shares < kLongRun);
+         ++i)
+      run_once(runner, shares, true);
     runner.result.seconds = spread_of(runner.seconds);
     result.points.push_back({size, std::move(runner.result)});
   }

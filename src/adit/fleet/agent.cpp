@@ -274,6 +274,15 @@ void Agent::find_revisits() {
   ledger_.add_own(check.verdict(map_->id, map_->id));
 }
 
+std::size_t Agent::num_cached_bytes() const {
+  return features_->num_bytes() + (discernment_ ? discernment_->surfaces().num_bytes() : 0);
+}
+
+void Agent::forget_cached() {
+  features_->forget_all();
+  if (discernment_) discernment_->surfaces().forget_all();
+}
+
 // ---- what the steps share --------------------------------------------------------------------------------
 
 Hello Agent::hello() const {

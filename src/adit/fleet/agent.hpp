@@ -86,6 +86,11 @@ class Agent {
   }
   [[nodiscard]] const FleetEstimate& estimate() const { return estimate_; }
 
+  /// Bytes of features and surfaces of its own keyframes, which it can compute again.
+  [[nodiscard]] std::size_t num_cached_bytes() const;
+  /// Forgets them, where many agents live in one process and this one searches no more for now.
+  void forget_cached();
+
  private:
   using Replies = std::vector<MessageBody>;
   [[nodiscard]] bool is_adaptive() const { return config_.policy == MergePolicy::adaptive; }

@@ -196,6 +196,29 @@ TEST(AdaptiveAgent, ASearchWaitsForAGraphThatWasLost) {
   EXPECT_TRUE(fleet.agents[0].known().checks.begin()->second.accepted);
 }
 
+TEST(AdaptiveAgent, WhatItForgetsOfItsOwnKeyframesChangesNoResult) {
+  TwoRobots keeps(3, adaptive());
+  keeps.meet();
+  EXPECT_GT(keeps.agents[0].num_cached_bytes(), 0U);
+  TwoRobots forgets(3, adaptive());
+  std::deque<Message> queue;
+  for (const Message& message : forgets.agents[0].meet({1})) queue.push_back(message);
+  for (int budget = 10000; !queue.empty() && budget > 0; --budget) {
+    const Message message = queue.front();
+    queue.pop_front();
+    for (const Message& reply : forgets.agents[message.to.value].on(message)) queue.push_back(reply);
+    forgets.agents[0].forget_cached();
+    ASSERT_EQ(forgets.agents[0].num_cached_bytes(), 0U);
+  }
+  const FleetGraph& one = keeps.agents[0].known();
+  const FleetGraph& other = forgets.agents[0].known();
+  ASSERT_EQ(one.loops.size(), other.loops.size());
+  for (const auto& [ends, loop] : one.loops)
+    EXPECT_EQ(loop.T_from_to.matrix(), other.loops.at(ends).T_from_to.matrix());
+  EXPECT_EQ(one.checks.begin()->second.evidence, other.checks.begin()->second.evidence);
+  EXPECT_EQ(one.checks.begin()->second.reason, other.checks.begin()->second.reason);
+}
+
 TEST(AdaptiveAgent, DecisionsOfOthersThatMakeNoSenseAreLeftOut) {
   TwoRobots fleet(3, adaptive());
   fleet.meet();

@@ -11,6 +11,21 @@ namespace {
 /// first.
 constexpr std::size_t kRounds = 2;
 
+/// All agents together keep at most so many bytes of features and surfaces, beside those of the one at work.
+constexpr std::size_t kMaxCachedBytes = 512'000'000;
+
+/// The first agents search next, so that the last ones forget first.
+void limit_cached(std::vector<Agent>& agents, std::size_t at_work) {
+  std::size_t num_bytes = 0;
+  for (std::size_t a = 0; a < agents.size(); ++a) {
+    if (a == at_work) continue;
+    num_bytes += agents[a].num_cached_bytes();
+    if (num_bytes <= kMaxCachedBytes) continue;
+    num_bytes -= agents[a].num_cached_bytes();
+    agents[a].forget_cached();
+  }
+}
+
 Result<> all_meet(std::vector<Agent>& agents, const BackEndConfig& back_end, LoopbackBus& bus,
                   const Phase& phase) {
   for (std::size_t a = 0; a < agents.size(); ++a) {
@@ -19,6 +34,7 @@ Result<> all_meet(std::vector<Agent>& agents, const BackEndConfig& back_end, Loo
       if (a == 0) agents[a].update_estimate(back_end);
       phase.advance();
     }
+    agents[a].forget_cached();  // it has searched all that it searches
   }
   return {};
 }
@@ -36,6 +52,7 @@ Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps, 
   for (const auto& map : meeting.maps) {
     meeting.agents.emplace_back(map, agent_config);
     meeting.agents.back().find_revisits();
+    limit_cached(meeting.agents, meeting.agents.size() - 1);
     bus.join(meeting.agents.back());
     phase.advance();
   }

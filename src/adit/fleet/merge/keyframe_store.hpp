@@ -54,6 +54,11 @@ class KeyframeStore {
     return *entries_[index].value;
   }
   [[nodiscard]] std::size_t num_bytes() const { return num_bytes_; }
+  /// What is needed later is computed again.
+  void forget_all() {
+    for (Entry& entry : entries_) entry.value.reset();
+    num_bytes_ = 0;
+  }
 
  private:
   struct Entry {
