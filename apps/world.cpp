@@ -91,7 +91,7 @@ Result<> run(const WorldOptions& options, const Common& common) {
 void add_world(Program& program) {
   const auto options = std::make_shared<WorldOptions>();
   const Command command =
-      program.add_command("world", "Make a procedural tunnel network with the routes of four robots",
+      program.add_command("world", "Make a procedural tunnel network with the routes of several robots",
                           [options](const Common& common) { return run(*options, common); });
   command.add_option("--preset", options->preset,
                      format("{} (default zab)", fmt::join(world_presets(), ", ")));
@@ -102,7 +102,8 @@ void add_world(Program& program) {
                      "the other's mirror image), copies (the same tunnels with other furniture), twins");
   command.add_option(
       "--routes", options->routes,
-      "meeting (default: every pair shares a stretch) or apart (robots keep to their tunnels)");
+      "meeting (default: every pair shares a stretch; network: some do) or apart (robots keep to their "
+      "tunnels)");
   command.add_option("--out", options->out, "Folder for world.ply and routes.yaml").required();
 }
 

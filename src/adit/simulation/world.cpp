@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "adit/core/check.hpp"
+#include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/simulation/world_plan.hpp"
 #include "adit/simulation/world_surface.hpp"
@@ -19,7 +22,7 @@ struct Preset {
   WorldPlan (*plan)(const WorldConfig&);
 };
 constexpr std::array kPresets{Preset{"zab", plan_zab}, Preset{"mine", plan_mine}, Preset{"metro", plan_metro},
-                              Preset{"tiles", plan_tiles}};
+                              Preset{"tiles", plan_tiles}, Preset{"network", plan_network}};
 
 WorldPlan plan_of(const WorldConfig& config) {
   const auto preset = std::ranges::find_if(
@@ -28,11 +31,51 @@ WorldPlan plan_of(const WorldConfig& config) {
   return preset->plan(config);
 }
 
+TriangleMesh mesh_of(std::span<const Solid> spaces, std::span<const Solid> obstacles,
+                     const Surfacing& surfacing) {
+  TriangleMesh mesh = surface_mesh(boundary_of_union(spaces), surfacing);
+  for (const Solid& obstacle : obstacles) append(mesh, surface_mesh(obstacle.faces, surfacing));
+  return mesh;
+}
+
+/// Storeys meet in corners that are the same to the last bit; each becomes one vertex.
+void join_equal_vertices(TriangleMesh& mesh) {
+  const std::vector<Eigen::Vector3f> all = std::move(mesh.vertices);
+  const auto key = [&](int i) {
+    const Eigen::Vector3f& v = all[static_cast<std::size_t>(i)];
+    return std::array{v.x(), v.y(), v.z()};
+  };
+  std::vector<int> sorted(all.size());
+  std::iota(sorted.begin(), sorted.end(), 0);
+  std::ranges::stable_sort(sorted, {}, key);
+  std::vector<int> first_of(all.size());
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const bool repeats = i > 0 && key(sorted[i]) == key(sorted[i - 1]);
+    first_of[static_cast<std::size_t>(sorted[i])] =
+        repeats ? first_of[static_cast<std::size_t>(sorted[i - 1])] : sorted[i];
+  }
+  std::vector<int> index(all.size());
+  mesh.vertices.clear();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto first = static_cast<std::size_t>(first_of[i]);
+    index[i] = first == i ? static_cast<int>(mesh.vertices.size()) : index[first];
+    if (first == i) mesh.vertices.push_back(all[i]);
+  }
+  for (Eigen::Vector3i& corners : mesh.triangles)
+    for (int k = 0; k < 3; ++k) corners[k] = index[static_cast<std::size_t>(corners[k])];
+}
+
 TriangleMesh mesh_of(const WorldPlan& plan) {
-  const Surfacing surfacing{plan.max_edge, plan.flat_floor,
-                            [&](const Vector3& p) { return displaced(plan.relief, p); }};
-  TriangleMesh mesh = surface_mesh(boundary_of_union(plan.spaces), surfacing);
-  for (const Solid& obstacle : plan.obstacles) append(mesh, surface_mesh(obstacle.faces, surfacing));
+  const Surfacing level{plan.max_edge, plan.flat_floor,
+                        [&](const Vector3& p) { return displaced(plan.relief, p); }};
+  TriangleMesh mesh = mesh_of(plan.spaces, plan.obstacles, level);
+  for (const Storey& storey : plan.storeys) {
+    const Surfacing lifted{plan.max_edge, plan.flat_floor, [&](const Vector3& p) {
+                             return displaced(plan.relief, p, storey.floors.height(p));
+                           }};
+    append(mesh, mesh_of(storey.spaces, storey.obstacles, lifted));
+  }
+  if (plan.storeys.size() > 1) join_equal_vertices(mesh);
   return mesh;
 }
 
@@ -44,6 +87,7 @@ World network_of(const WorldConfig& config) {
     for (Vector3& waypoint : route.waypoints) waypoint = on_floor(plan.relief, waypoint);
     world.routes.push_back(std::move(route));
   }
+  world.routes.insert(world.routes.end(), plan.routes.begin(), plan.routes.end());
   return world;
 }
 
@@ -103,6 +147,11 @@ std::vector<std::string> world_presets() {
 Result<World> make_world(const WorldConfig& config) {
   WorldConfig checked = config;
   if (const Result<> ok = check_fields(fields_of(checked)); !ok) return fail("world", ok.error());
+  if (config.preset == "network" && config.arrangement != "single")
+    return fail(
+        format("world: preset network has no arrangement '{}', as it repeats and mirrors parts of "
+               "itself; use arrangement single, or another preset",
+               config.arrangement));
   const Phase phase("building the world");
   World network = network_of(config);
   if (config.arrangement == "single") return network;

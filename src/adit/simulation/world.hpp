@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Procedural tunnel networks: a mesh for ray casting and the routes of four robots through it (section 2.1
+/// Procedural tunnel networks: a mesh for ray casting and the routes of robots through it (section 2.1
 /// of the paper, whose robots drive through Zentrum am Berg). The same configuration gives the same bytes.
 #pragma once
 
@@ -19,7 +19,7 @@ namespace adit {
 struct World {
   std::string name;
   TriangleMesh mesh;
-  std::vector<Route> routes;   ///< Four; those of one network start apart.
+  std::vector<Route> routes;   ///< Four, of "network" three to six; those of one network start apart.
   double tunnel_length = 0.0;  ///< Sum over the centre lines of all tunnels, metres.
 };
 
@@ -44,7 +44,9 @@ struct WorldConfig {
 
 /// "zab": two road and two rail tubes with irregular cross passages, after Zentrum am Berg. "mine": rough
 /// drifts with ramps and loops. "metro": two running tubes with identical stations and cross passages.
-/// "tiles": a grid of identical tiles whose blocks are all of different length.
+/// "tiles": a grid of identical tiles whose blocks are all of different length. "network": every seed has
+/// another topology (a tree, loops, rooms and pillars, parallel tubes, levels joined by ramps, a spiral),
+/// other sections, lining and furniture; a third of them repeat and mirror parts of themselves.
 [[nodiscard]] std::vector<std::string> world_presets();
 
 inline Fields fields_of(WorldConfig& c) {
@@ -71,14 +73,16 @@ inline Fields fields_of(WorldConfig& c) {
        "",
        0,
        0,
-       "every pair of robots shares a stretch, or robots keep to parallel tunnels",
+       "every pair of robots shares a stretch (network: some do), or robots keep to parallel tunnels",
        {"meeting", "apart"}},
       {"furniture_seed", &c.furniture_seed, "", 0, 9e15,
        "other furniture and rock in the same tunnels; 0: those of the seed"},
   };
 }
 
-/// Fails on a field out of range (the message lists the presets when the preset is unknown).
+/// Fails on a field out of range (the message lists the presets when the preset is unknown), and on "network"
+/// in any arrangement but "single". With "network", routes "meeting" have a pair or more that share a stretch
+/// and as a rule others that share nothing; with "apart" no two share anything.
 Result<World> make_world(const WorldConfig& config);
 
 }  // namespace adit

@@ -72,23 +72,6 @@ void append_turn(Polyline& line, const Vector3& from, const Vector3& corner, con
   }
 }
 
-Polyline rounded(const std::vector<Polyline>& parts, double corner) {
-  Polyline line;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const double length = length_of(parts[i]);
-    const double reach = std::min(corner, 0.49 * length);
-    const double begin = i == 0 ? 0.0 : reach;
-    const double end = i + 1 == parts.size() ? length : length - reach;
-    const Polyline straight = part_of(parts[i], begin, end);
-    if (i > 0) {
-      const Vector3 from = line.back();
-      append_turn(line, from, parts[i].front(), straight.front());
-    }
-    line.insert(line.end(), straight.begin(), straight.end());
-  }
-  return line;
-}
-
 }  // namespace
 
 double length_of(std::span<const Vector3> line) {
@@ -140,6 +123,23 @@ Polyline part_of(std::span<const Vector3> line, double begin, double end) {
   }
   part.push_back(point_at(line, end).position);
   return part;
+}
+
+Polyline rounded(const std::vector<Polyline>& parts, double corner) {
+  Polyline line;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const double length = length_of(parts[i]);
+    const double reach = std::min(corner, 0.49 * length);
+    const double begin = i == 0 ? 0.0 : reach;
+    const double end = i + 1 == parts.size() ? length : length - reach;
+    const Polyline straight = part_of(parts[i], begin, end);
+    if (i > 0) {
+      const Vector3 from = line.back();
+      append_turn(line, from, parts[i].front(), straight.front());
+    }
+    line.insert(line.end(), straight.begin(), straight.end());
+  }
+  return line;
 }
 
 Route route_of(const Drive& drive) {

@@ -27,6 +27,10 @@ struct LinePoint {
 /// From `begin` to `end` along the line, both clamped to it; begin < end.
 [[nodiscard]] Polyline part_of(std::span<const Vector3> line, double begin, double end);
 
+/// One line from lines that follow one another: the robot turns over `corner` metres before and after each
+/// place where two meet.
+[[nodiscard]] Polyline rounded(const std::vector<Polyline>& parts, double corner);
+
 /// The drive of one robot: `legs` are lines that cross (or touch) one after another, each followed from its
 /// crossing with the one before to that with the one after; the last one to where `length` is used up, or to
 /// its end where that comes a little earlier.

@@ -8,10 +8,20 @@
 #include "adit/core/rng.hpp"
 #include "adit/simulation/world.hpp"
 #include "adit/simulation/world_drive.hpp"
+#include "adit/simulation/world_floors.hpp"
 #include "adit/simulation/world_relief.hpp"
 #include "adit/simulation/world_solids.hpp"
 
 namespace adit {
+
+/// Tunnels of which no two cross in plan. They are built level, at z = 0, and then sheared upwards to where
+/// their floors lie: walls stay upright and every facet of the level tunnels stays exact. Storeys meet in the
+/// open ends of tunnels that are swept as parts of one line (`sweep_part`) and have the same floors there.
+struct Storey {
+  std::vector<Solid> spaces;     ///< As those of the plan.
+  std::vector<Solid> obstacles;  ///< As those of the plan.
+  Floors floors;
+};
 
 struct WorldPlan {
   std::vector<Solid>
@@ -21,13 +31,16 @@ struct WorldPlan {
   double max_edge = 1.0;  ///< Longest edge of a triangle, metres.
   bool flat_floor = true;
   std::vector<Drive> drives;
-  double tunnel_length = 0.0;  ///< Sum over the centre lines, metres.
+  std::vector<Route> routes;    ///< Routes that are planned already; they follow those of `drives`.
+  std::vector<Storey> storeys;  ///< Beside the level spaces above.
+  double tunnel_length = 0.0;   ///< Sum over the centre lines, metres.
 };
 
 [[nodiscard]] WorldPlan plan_zab(const WorldConfig& config);
 [[nodiscard]] WorldPlan plan_mine(const WorldConfig& config);
 [[nodiscard]] WorldPlan plan_metro(const WorldConfig& config);
 [[nodiscard]] WorldPlan plan_tiles(const WorldConfig& config);
+[[nodiscard]] WorldPlan plan_network(const WorldConfig& config);
 
 /// An empty plan with concrete walls: facets of a metre, uneven by millimetres.
 [[nodiscard]] WorldPlan concrete_plan(const WorldConfig& config);
@@ -54,9 +67,12 @@ struct WallSite {
     return foot.position + left() * (side * lateral) + foot.direction * along;
   }
 };
+[[nodiscard]] Solid niche(const WallSite& site);
+[[nodiscard]] Solid cabinet(const WallSite& site);
+/// A wheel loader parked along the tunnel, its middle `lateral` metres from the line.
+[[nodiscard]] std::vector<Solid> machine(const WallSite& site, double lateral);
 void add_niche(WorldPlan& plan, const WallSite& site);
 void add_cabinet(WorldPlan& plan, const WallSite& site);
-/// A wheel loader parked along the tunnel, its middle `lateral` metres from the line.
 void add_machine(WorldPlan& plan, const WallSite& site, double lateral);
 
 }  // namespace adit

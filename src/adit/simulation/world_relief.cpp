@@ -42,14 +42,15 @@ Vector3 smooth_noise(std::uint64_t seed, const Vector3& p) {
   return sum;
 }
 
-Vector3 rock(const Relief& relief, const Vector3& p) {
+/// `above_floor` is the height of p above the smooth floor.
+Vector3 rock(const Relief& relief, const Vector3& p, double above_floor) {
   Vector3 sum = Vector3::Zero();
   for (std::size_t i = 0; i < relief.octaves.size(); ++i)
     if (relief.octaves[i].amplitude > 0.0)
       // A lattice has about two nodes per wave.
       sum += relief.octaves[i].amplitude *
              smooth_noise(mix64(relief.seed, i), p * (2.0 / relief.octaves[i].wavelength));
-  const double fade = std::clamp(p.z() / kFloorInfluence, 0.0, 1.0);
+  const double fade = std::clamp(above_floor / kFloorInfluence, 0.0, 1.0);
   sum.z() *= relief.floor_share + (1.0 - relief.floor_share) * fade * fade * (3.0 - 2.0 * fade);
   return sum;
 }
@@ -66,12 +67,22 @@ double ramp(const Relief& relief, const Vector3& p) {
 }  // namespace
 
 Vector3 displaced(const Relief& relief, const Vector3& p) {
-  return p + rock(relief, p) + Vector3(0.0, 0.0, ramp(relief, p));
+  return p + rock(relief, p, p.z()) + Vector3(0.0, 0.0, ramp(relief, p));
+}
+
+Vector3 displaced(const Relief& relief, const Vector3& p, double lift) {
+  const Vector3 lifted = p + Vector3(0.0, 0.0, lift);
+  return lifted + rock(relief, lifted, p.z()) + Vector3(0.0, 0.0, ramp(relief, p));
 }
 
 Vector3 on_floor(const Relief& relief, const Vector3& p) {
   const Vector3 foot(p.x(), p.y(), 0.0);
   return {p.x(), p.y(), displaced(relief, foot).z()};
+}
+
+Vector3 on_floor(const Relief& relief, const Vector3& p, double lift) {
+  const Vector3 foot(p.x(), p.y(), 0.0);
+  return {p.x(), p.y(), displaced(relief, foot, lift).z()};
 }
 
 }  // namespace adit

@@ -29,7 +29,12 @@ struct Relief {
 /// The position of a point of the smooth world after displacement.
 [[nodiscard]] Vector3 displaced(const Relief& relief, const Vector3& p);
 
+/// The same where the floor lies `lift` metres above z = 0 at (p.x, p.y) and p is given as above a level
+/// floor. Rock belongs to the place where it ends up, so that levels above one another differ.
+[[nodiscard]] Vector3 displaced(const Relief& relief, const Vector3& p, double lift);
+
 /// The same for a point of the smooth floor (its z is ignored): only its height changes.
 [[nodiscard]] Vector3 on_floor(const Relief& relief, const Vector3& p);
+[[nodiscard]] Vector3 on_floor(const Relief& relief, const Vector3& p, double lift);
 
 }  // namespace adit

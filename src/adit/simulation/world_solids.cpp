@@ -109,25 +109,50 @@ Profile shifted(Profile profile, double left) {
 }
 
 Solid sweep(const Profile& profile, std::span<const Vector3> line, Ends ends) {
+  return sweep_part(profile, line, {0, line.size() - 1, ends, ends});
+}
+
+Solid sweep_part(const Profile& profile, std::span<const Vector3> line, const LinePart& part) {
+  const auto [first, last, begin, end] = part;
   ADIT_CHECK(line.size() >= 2 && profile.size() >= 3, "a sweep needs a line and a profile");
+  ADIT_CHECK(first < last && last < line.size(), "a part of a sweep lies within its line");
   const std::vector<Section> sections = mitre_sections(line);
   Solid solid;
-  Ring from = ring_of(profile, sections.front());
-  for (std::size_t i = 0; i + 1 < sections.size(); ++i) {
+  Ring from = ring_of(profile, sections[first]);
+  for (std::size_t i = first; i < last; ++i) {
     const Ring to = ring_of(profile, sections[i + 1]);
     const Vector3 inside = 0.5 * (mean_of(from) + mean_of(to));
     ConvexPiece piece = side_walls(solid, from, to);
-    const bool first = i == 0 && ends == Ends::closed;
-    const bool last = i + 2 == sections.size() && ends == Ends::closed;
-    if (first) add_wall(solid, piece, face_towards(from, inside));
-    if (last) add_wall(solid, piece, face_towards(to, inside));
-    if (!first) piece.planes.push_back({-sections[i].tangent, -sections[i].tangent.dot(sections[i].centre)});
-    if (!last)
+    const bool wall_before = i == first && begin == Ends::closed;
+    const bool wall_after = i + 1 == last && end == Ends::closed;
+    if (wall_before) add_wall(solid, piece, face_towards(from, inside));
+    if (wall_after) add_wall(solid, piece, face_towards(to, inside));
+    if (!wall_before)
+      piece.planes.push_back({-sections[i].tangent, -sections[i].tangent.dot(sections[i].centre)});
+    if (!wall_after)
       piece.planes.push_back({sections[i + 1].tangent, sections[i + 1].tangent.dot(sections[i + 1].centre)});
     solid.box.extend(piece.box);
     solid.pieces.push_back(std::move(piece));
     from = to;
   }
+  return solid;
+}
+
+Solid upright_prism(std::span<const Eigen::Vector2d> corners, double height) {
+  ADIT_CHECK(corners.size() >= 3 && height > 0.0, "a room needs three corners and a height");
+  Ring floor;
+  Ring roof;
+  for (const Eigen::Vector2d& p : corners) {
+    floor.emplace_back(p.x(), p.y(), 0.0);
+    roof.emplace_back(p.x(), p.y(), height);
+  }
+  const Vector3 inside = 0.5 * (mean_of(floor) + mean_of(roof));
+  Solid solid;
+  ConvexPiece piece = side_walls(solid, floor, roof);
+  add_wall(solid, piece, face_towards(floor, inside));
+  add_wall(solid, piece, face_towards(roof, inside));
+  solid.box = piece.box;
+  solid.pieces.push_back(std::move(piece));
   return solid;
 }
 

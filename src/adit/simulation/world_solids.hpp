@@ -62,6 +62,20 @@ enum class Ends { open, closed };
 /// plane, so that every facet is planar. The line's bends must be wider than the profile.
 [[nodiscard]] Solid sweep(const Profile& profile, std::span<const Vector3> line, Ends ends);
 
+/// From the point `first` of a line to its point `last`.
+struct LinePart {
+  std::size_t first = 0;
+  std::size_t last = 1;
+  Ends begin = Ends::closed;
+  Ends end = Ends::closed;
+};
+/// A part of such a sweep. Two parts that share a point of the line meet there in the same corners, to the
+/// last bit.
+[[nodiscard]] Solid sweep_part(const Profile& profile, std::span<const Vector3> line, const LinePart& part);
+
+/// A room over a convex polygon (counter-clockwise, at least three corners, metres) from z = 0 to `height`.
+[[nodiscard]] Solid upright_prism(std::span<const Eigen::Vector2d> corners, double height);
+
 /// Closed sweep of a rectangle along the straight line from `from` to `to`.
 [[nodiscard]] Solid box_between(const Vector3& from, const Vector3& to, const Profile& profile);
 
