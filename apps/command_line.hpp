@@ -117,6 +117,7 @@ void add_slam(Program& program);
 void add_study(Program& program);
 void add_merge_study(Program& program);
 void add_merge_calibration(Program& program);
+void add_merge_curves(Program& program);
 void add_loop_study(Program& program);
 void add_uncertainty_study(Program& program);
 void add_evaluate(Program& program);

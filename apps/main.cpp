@@ -6,6 +6,7 @@ int main(int argc, char** argv) {
   adit::app::Program program;
   add_study(program);
   add_merge_study(program);
+  add_merge_curves(program);
   add_merge_calibration(program);
   add_loop_study(program);
   add_uncertainty_study(program);

@@ -11,6 +11,8 @@
 #   ADIT_MERGE_FRESH=1    drives all worlds anew: needed after a change of simulation, odometry, keyframes or descriptors
 #   ADIT_MERGE_PAGE=FILE  writes the tables into that page instead
 #   ADIT_MERGE_LOOPS=0    leaves the pose graphs out
+#   ADIT_MERGE_CURVES=1   then measures the effects of bench/merge/effects.toml one by one, into the section "merge-curves"
+#   ADIT_MERGE_CALIBRATION=1  then compares the stated rate of wrong merges with the observed one, "merge-calibration"
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/setup.sh
@@ -20,3 +22,9 @@ cmake --build --preset release --target adit_program
 page="${ADIT_MERGE_PAGE:-docs/results.md}"
 build/release/adit merge-study --worlds bench/merge/worlds.toml --out build/merge --page "$page" "$@"
 [ "${ADIT_MERGE_LOOPS:-1}" = 0 ] || build/release/adit loop-study --graphs bench/merge/graphs.toml --out build/merge --page "$page"
+if [ "${ADIT_MERGE_CURVES:-0}" = 1 ]; then
+  build/release/adit merge-curves --worlds bench/merge/worlds.toml --effects bench/merge/effects.toml --out build/merge/curves --page "$page"
+fi
+if [ "${ADIT_MERGE_CALIBRATION:-0}" = 1 ]; then
+  build/release/adit merge-calibration --worlds bench/merge/worlds.toml --out build/merge --page "$page"
+fi

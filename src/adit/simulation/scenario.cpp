@@ -91,13 +91,18 @@ struct Robot {
 };
 
 // From the end of the second turn on, so that the first sweep begins well after the first wheel odometry.
-std::vector<Stamp> sweep_ends(const Trajectory& truth, const LidarConfig& lidar) {
+std::vector<Stamp> sweep_ends(const Trajectory& truth, const LidarConfig& lidar, Stamp last) {
   std::vector<Stamp> stamps;
   for (std::int64_t i = 2;; ++i) {
     const Stamp stamp = truth.front().stamp + from_seconds(static_cast<double>(i) / lidar.rate_hz);
-    if (stamp > truth.back().stamp) return stamps;
+    if (stamp > last) return stamps;
     stamps.push_back(stamp);
   }
+}
+
+// Wheels and IMU whose clocks are early fall silent before the drive ends, and a sweep needs both.
+Stamp last_heard_of_all(const Robot& robot) {
+  return robot.truth.back().stamp + std::min({Duration(0), robot.unit.wheels_late, robot.unit.imu_late});
 }
 
 // As reported: in order, and within the time that the truth covers.
@@ -177,9 +182,10 @@ Recording recording_of(Robot robot, const ScenarioConfig& config) {
   recording.mount_source = "simulation";
   add_wheels(recording, robot, config.wheels);
   add_imu(recording, robot, config.imu);
-  robot.sweep_ends = sweep_ends(robot.truth, robot.lidar);
-  robot.scan_stamps = with_jitter(robot.sweep_ends, robot.truth.back().stamp, robot.unit.jitter_s,
-                                  mix64(robot.seed, kJitterStream));
+  const Stamp last = last_heard_of_all(robot);
+  robot.sweep_ends = sweep_ends(robot.truth, robot.lidar, last);
+  robot.scan_stamps =
+      with_jitter(robot.sweep_ends, last, robot.unit.jitter_s, mix64(robot.seed, kJitterStream));
   robot.truth = with_poses_at(robot.truth, robot.scan_stamps);
   recording.scan_stamps = robot.scan_stamps;
   recording.truth = robot.truth;

@@ -70,6 +70,20 @@ TEST(Scenario, wheels_and_truth_cover_every_sweep) {
   }
 }
 
+TEST(Scenario, wheels_and_imu_whose_clocks_err_cover_every_sweep) {
+  ScenarioConfig config = quick();
+  set_conditions(Conditions::field, config);
+  config.lidar_errors.clock_s = 0.02;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    config.seed = seed;
+    for (const Recording& r : simulated(hall(), config)) {
+      EXPECT_GE(r.wheel.back().stamp, r.scan_stamps.back()) << seed;
+      EXPECT_GE(r.imu.back().stamp, r.scan_stamps.back()) << seed;
+      EXPECT_GT(r.num_scans(), 80U);
+    }
+  }
+}
+
 TEST(Scenario, a_scan_deskewed_with_the_truth_lies_on_the_walls) {
   ScenarioConfig config = quick();
   config.lidar.noise_near = config.lidar.noise_far = 0.0;

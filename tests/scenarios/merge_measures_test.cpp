@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+// `adit merge-curves` and `adit merge-calibration` on a world of two short drives: what they write and
+// refuse.
+#include <gtest/gtest.h>
+
+#include "support/files.hpp"
+#include "support/program.hpp"
+#include "support/two_drives.hpp"
+
+namespace adit {
+namespace {
+
+using test::expect_done;
+using test::expect_refused;
+using test::get_file;
+using test::put_file;
+
+constexpr const char* kThin = " --lidar vlp-16 --set simulation.lidar.columns=180";
+
+/// Two worlds of the same two drives, with noise of their own.
+void put_worlds(const test::TemporaryFolder& folder) {
+  test::put_two_drives(folder.path());
+  put_file(folder / "list.toml",
+           "[[world]]\nname = 'one'\nroutes_file = 'routes.yaml'\n"
+           "[[world]]\nname = 'other'\nnoise_seed = 2\nroutes_file = 'routes.yaml'\n");
+}
+
+std::string measure(const test::TemporaryFolder& folder, const std::string& command,
+                    const std::string& options) {
+  return command + " --worlds " + (folder / "list.toml").string() + " --out " + (folder / "out").string() +
+         kThin + " " + options;
+}
+
+TEST(MergeCurvesCommand, WritesTablesAndAFigure) {
+  const test::TemporaryFolder folder;
+  put_worlds(folder);
+  put_file(
+      folder / "effects.toml",
+      "[[effect]]\nname = 'bias'\nfield = 'simulation.lidar_errors.range_bias'\nstated = 0.03\nsteps = 1\n");
+  put_file(folder / "page.md", "<!-- merge-curves begin -->\n<!-- merge-curves end -->\n");
+  const std::string effects = "--effects " + (folder / "effects.toml").string();
+  expect_done(
+      measure(folder, "merge-curves", effects + " --only one --page " + (folder / "page.md").string()));
+  EXPECT_NE(get_file(folder / "page.md").find("| bias | 0.06 | 2 |"), std::string::npos)
+      << get_file(folder / "page.md");
+  EXPECT_NE(get_file(folder / "out/curves.svg").find("bias"), std::string::npos);
+  EXPECT_NE(get_file(folder / "out/results.json").find("adaptive bias 0.06"), std::string::npos);
+  expect_refused(measure(folder, "merge-curves", effects + " --only two"), 1, "no world 'two'");
+  put_file(folder / "effects.toml", "[[effect]]\nname = 'bias'\nfield = 'simulation.bias'\nstated = 1\n");
+  expect_refused(measure(folder, "merge-curves", effects), 1, "effect 'bias'");
+}
+
+TEST(MergeCalibrationCommand, JudgesTheHypothesesOfWorldsAndBetweenThem) {
+  const test::TemporaryFolder folder;
+  put_worlds(folder);
+  put_file(folder / "page.md", "<!-- merge-calibration begin -->\n<!-- merge-calibration end -->\n");
+  expect_done(measure(folder, "merge-calibration", "--page " + (folder / "page.md").string()));
+  EXPECT_EQ(test::num_entries(folder / "out/maps"), 2U);
+  EXPECT_NE(get_file(folder / "page.md").find("Claimed rate"), std::string::npos);
+  // The worlds are one in truth: loops between them are found, and count as wrong.
+  EXPECT_NE(get_file(folder / "out/calibration.json").find("\"truth\": \"wrong\""), std::string::npos);
+  expect_refused(measure(folder, "merge-calibration", "--partners -1"), 2, "partners");
+  expect_refused(measure(folder, "merge-calibration", "--only two"), 1, "no world 'two'");
+}
+
+}  // namespace
+}  // namespace adit
