@@ -92,7 +92,8 @@ struct Counts {
   std::size_t confirmed = 0;
   std::size_t differing = 0;
   std::size_t largest_difference = 0;
-  std::vector<ChangedThing> things;  // in the frame of b
+  std::vector<DifferingPatch> structures;  // in the frame of b, the largest first
+  std::vector<DifferingPatch> things;
 };
 
 // Compares the points of b with what a saw in the same space.
@@ -119,13 +120,13 @@ Counts seen_by(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
   counts.differing = differing.size();
   for (std::vector<std::size_t>& patch : connected_patches(where, static_cast<float>(config.voxel_size))) {
     for (std::size_t& i : patch) i = differing[i];
-    if (!may_be_a_thing(b, patch, all, config)) {
-      counts.largest_difference = patch.size();
-      break;
-    }
+    const bool is_thing = patch.size() >= kLeastPatch && may_be_a_thing(b, patch, all, config);
+    if (!is_thing) counts.largest_difference = std::max(counts.largest_difference, patch.size());
+    if (patch.size() < kLeastPatch) break;
     Vector3 sum = Vector3::Zero();
     for (const std::size_t i : patch) sum += points.points[i].cast<double>();
-    counts.things.push_back({sum / static_cast<double>(patch.size()), patch.size()});
+    (is_thing ? counts.things : counts.structures)
+        .push_back({sum / static_cast<double>(patch.size()), patch.size()});
   }
   return counts;
 }
@@ -177,9 +178,11 @@ std::size_t SeenSurface::num_bytes() const {
 Agreement agreement(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
                     const RegistrationConfig& config) {
   const std::array<Counts, 2> both = {seen_by(a, b, T_a_b, config), seen_by(b, a, T_a_b.inverse(), config)};
-  Agreement out{1.0, 0.0, both[1].things};
-  for (const ChangedThing& thing : both[0].things)
-    out.things.push_back({T_a_b * thing.position, thing.num_points});
+  Agreement out{1.0, 0.0, both[1].structures, both[1].things};
+  for (const DifferingPatch& patch : both[0].structures)
+    out.structures.push_back({T_a_b * patch.position, patch.num_points});
+  for (const DifferingPatch& patch : both[0].things)
+    out.things.push_back({T_a_b * patch.position, patch.num_points});
   for (const Counts& counts : both) {
     if (counts.confirmed == 0) return {};
     out.confirmed = std::min(out.confirmed, static_cast<double>(counts.confirmed) /

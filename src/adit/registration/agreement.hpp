@@ -47,11 +47,13 @@ class SeenSurface {
   float highest_ = -1.0F;
 };
 
-/// A patch that differs and may be a thing that comes and goes (changed_thing.hpp).
-struct ChangedThing {
+/// A connected patch that differs.
+struct DifferingPatch {
   Vector3 position;  ///< Of its middle, as it was seen; metres.
   std::size_t num_points = 0;
 };
+
+inline constexpr std::size_t kLeastPatch = 4;
 
 /// How well two scans agree at a given relative pose, where both could see. Of each scan, only points count
 /// that lie where the other scan saw too. They are confirmed when they lie on its surfaces. They differ when
@@ -63,8 +65,10 @@ struct Agreement {
   /// come and go; the larger of both directions. A niche or a passage that only one of two tubes has makes
   /// one large patch; noise and beams that miss make many small ones.
   double largest_difference = std::numeric_limits<double>::infinity();
-  /// Larger patches than that, of things that may come and go, wherever either scan saw them; frame of a.
-  std::vector<ChangedThing> things = {};
+  /// All patches that are no such thing, of either direction, and those that are (changed_thing.hpp); frame
+  /// of a. Patches of fewer than kLeastPatch points are left out.
+  std::vector<DifferingPatch> structures = {};
+  std::vector<DifferingPatch> things = {};
   [[nodiscard]] bool is_comparable() const { return confirmed > 0.0; }  ///< Points of both scans count.
 };
 

@@ -71,6 +71,9 @@ Fields fields_of(ReliefConfig& c) {
       {"min_normal_cosine", &c.min_normal_cosine, "", 0.0, 1.0,
        "smallest cosine between the normals of a pair of points"},
       {"min_points", &c.min_points, "", 1, 1000, "points needed per patch and pair of scans"},
+      {"changed_share", &c.changed_share, "", 0.0, 0.9,
+       "share of the walls that is left out where it differs most, by stretches of 10 m: fresh lining, "
+       "widened faces"},
       {"same_share", &c.same_share, "", 0.5, 1.0,
        "share of equal signs on one wall, from three tuning worlds (decision 0015)"},
       {"same_sigma", &c.same_sigma, "", 0.0, 0.5, "its standard deviation from stretch to stretch"},

@@ -18,6 +18,7 @@ struct ReliefConfig {
   double min_offset_m = 0.002;
   double min_normal_cosine = 0.95;
   int min_points = 6;
+  double changed_share = 0.25;
   double same_share = 0.52;
   double same_sigma = 0.015;
   double prior_sigma = 0.35;

@@ -47,6 +47,57 @@ struct OnPatch {
   int num_points = 0;
 };
 
+/// A patch weighs as much as the pairs beyond the first that saw it.
+struct OfPatch {
+  double weight;
+  double agreeing;
+};
+
+/// Patches nearby, which fresh lining or a widened face would change together.
+using Stretch = std::array<std::int32_t, 3>;
+Stretch stretch_of(const WallPatch& patch, double patch_m) {
+  constexpr double kStretch = 10.0;  // metres
+  Stretch out;
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = static_cast<std::int32_t>(std::floor(patch[i] * patch_m / kStretch));
+  return out;
+}
+
+double weight_of(const std::vector<OfPatch>& patches) {
+  double weight = 0.0;
+  for (const OfPatch& one : patches) weight += one.weight;
+  return weight;
+}
+
+double share_of(const std::vector<OfPatch>& patches) {
+  double agreeing = 0.0;
+  for (const OfPatch& one : patches) agreeing += one.agreeing;
+  return agreeing / weight_of(patches);
+}
+
+/// The patches but those of the stretches with the largest shares, which together weigh at most `changed`.
+std::vector<OfPatch> without_changed(const std::map<Stretch, std::vector<OfPatch>>& by_stretch,
+                                     double changed) {
+  std::vector<std::pair<double, const std::vector<OfPatch>*>> stretches;
+  double weight = 0.0;
+  for (const auto& [where, patches] : by_stretch) {
+    stretches.emplace_back(share_of(patches), &patches);
+    weight += weight_of(patches);
+  }
+  std::ranges::stable_sort(stretches, std::ranges::greater(),
+                           &std::pair<double, const std::vector<OfPatch>*>::first);
+  std::vector<OfPatch> kept;
+  double left_out = 0.0;
+  for (const auto& [share, patches] : stretches) {
+    if (kept.empty() && left_out + weight_of(*patches) <= changed * weight) {
+      left_out += weight_of(*patches);
+      continue;
+    }
+    kept.insert(kept.end(), patches->begin(), patches->end());
+  }
+  return kept;
+}
+
 std::int32_t side_of(const Eigen::Vector3f& normal) {
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
@@ -128,24 +179,23 @@ EqualSignShare WallOffsets::count() const {
     Sides& sides = patches[offsets_[i].patch];
     ++(metres > 0.0 ? sides.num_in_front : sides.num_behind);
   }
-  // A patch weighs as much as the pairs beyond the first that saw it.
-  struct OfPatch {
-    double weight;
-    double agreeing;
-  };
-  std::vector<OfPatch> all;
-  double weight = 0.0;
-  double agreeing = 0.0;
+  std::map<Stretch, std::vector<OfPatch>> by_stretch;
   for (const auto& [patch, sides] : patches) {
     const auto front = static_cast<double>(sides.num_in_front);
     const auto behind = static_cast<double>(sides.num_behind);
     const double num = front + behind;
     if (num < 2.0) continue;
-    all.push_back({num - 1.0, (front * (front - 1.0) + behind * (behind - 1.0)) / num});
-    weight += all.back().weight;
-    agreeing += all.back().agreeing;
+    by_stretch[stretch_of(patch, config_.patch_m)].push_back(
+        {num - 1.0, (front * (front - 1.0) + behind * (behind - 1.0)) / num});
   }
+  const std::vector<OfPatch> all = without_changed(by_stretch, config_.changed_share);
   if (all.empty()) return {};
+  double weight = 0.0;
+  double agreeing = 0.0;
+  for (const OfPatch& one : all) {
+    weight += one.weight;
+    agreeing += one.agreeing;
+  }
   EqualSignShare out{all.size(), agreeing / weight, 0.0};
   double squares = 0.0;
   for (const OfPatch& one : all) squares += std::pow(one.agreeing - out.share * one.weight, 2);

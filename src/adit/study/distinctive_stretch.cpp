@@ -77,9 +77,9 @@ Pose frame_of(std::span<const SurfaceSample> stretch) {
 }
 
 /// All paths of a world, to look for one stretch among them.
-class Surfaces {
+class StretchSurfaces {
  public:
-  Surfaces(const Raycaster& world, const std::vector<Trajectory>& truths) : world_(world) {
+  StretchSurfaces(const Raycaster& world, const std::vector<Trajectory>& truths) : world_(world) {
     for (const Trajectory& truth : truths) {
       paths_.push_back(surface_along(world, truth));
       same_.push_back(profiles_of(paths_.back(), Sense::same));
@@ -128,8 +128,8 @@ class Surfaces {
 
 /// How much the profiles differ with the stretch's first sample on sample `begin` of the robot's path, or in
 /// the opposite sense its last.
-int Surfaces::difference(const WallProfile* stretch, std::size_t robot, std::size_t begin,
-                         Sense sense) const {
+int StretchSurfaces::difference(const WallProfile* stretch, std::size_t robot, std::size_t begin,
+                                Sense sense) const {
   const std::vector<WallProfile>& path = sense == Sense::same ? same_[robot] : opposite_[robot];
   int sum = 0;
   for (std::size_t k = 0; k <= kStretchSamples; ++k)
@@ -139,8 +139,8 @@ int Surfaces::difference(const WallProfile* stretch, std::size_t robot, std::siz
 
 /// Places along one path at which the stretch looks more alike than at those beside them, the most alike
 /// first.
-std::vector<LaidOver> Surfaces::along(std::size_t robot, std::size_t begin, std::size_t other,
-                                      Sense sense) const {
+std::vector<LaidOver> StretchSurfaces::along(std::size_t robot, std::size_t begin, std::size_t other,
+                                             Sense sense) const {
   const std::size_t num = paths_[other].size() - std::min(paths_[other].size(), kStretchSamples);
   const Vector3 middle = paths_[robot][begin + kStretchSamples / 2].T_world_view.translation();
   std::vector<LaidOver> all;
@@ -159,7 +159,7 @@ std::vector<LaidOver> Surfaces::along(std::size_t robot, std::size_t begin, std:
   return found;
 }
 
-std::vector<LaidOver> Surfaces::most_alike(std::size_t robot, std::size_t begin) const {
+std::vector<LaidOver> StretchSurfaces::most_alike(std::size_t robot, std::size_t begin) const {
   std::vector<LaidOver> all;
   for (std::size_t other = 0; other < paths_.size(); ++other)
     for (const Sense sense : {Sense::same, Sense::opposite})
@@ -204,7 +204,7 @@ double covered_m(const std::vector<std::size_t>& begins) {
 }  // namespace
 
 DistinctiveMetres distinctive_stretches(const Raycaster& world, const std::vector<Trajectory>& truths) {
-  const Surfaces surfaces(world, truths);
+  const StretchSurfaces surfaces(world, truths);
   DistinctiveMetres metres(truths.size(), std::vector<double>(truths.size(), 0.0));
   const Phase phase("distinctive stretches", truths.size());
   for (std::size_t a = 0; a < truths.size(); ++a) {

@@ -40,10 +40,10 @@ struct MergeCheckConfig {
   int max_hypotheses = 12;
   int min_loops = 1;
   double same_alignment_m = 3.0;
-  double agreement_at_worst = 0.95;
-  double gross_difference = 3.0;
-  double gross_rate = 0.005;
-  double changed_per_km = 40.0;
+  double changes_at_worst_per_km = 20.0;
+  double share_differing_at_worst = 0.3;
+  double things_per_km = 40.0;
+  double things_elsewhere_per_km = 120.0;
   double misplaced_m = 0.75;
   int misplaced_keyframes = 60;
   int misplaced_neighbours = 5;

@@ -83,11 +83,34 @@ void plan_comparisons(Hypothesis& hypothesis, const LoopsBetween& between, doubl
 
 }  // namespace
 
-void ChangedThings::add(const std::vector<Vector3>& seen) {
-  constexpr double kOneThing = 5.0;  // metres between the middles of what is seen of it from two sides
+bool Changes::add(const std::vector<Vector3>& seen) {
+  const std::size_t num_before = places_.size();
   for (const Vector3& place : seen)
-    if (std::ranges::none_of(places_, [&](const Vector3& other) { return (other - place).norm() < kOneThing; }))
+    if (std::ranges::none_of(places_,
+                             [&](const Vector3& other) { return (other - place).norm() < reach_m_; }))
       places_.push_back(place);
+  return places_.size() > num_before;
+}
+
+void Hypothesis::add(const ComparedPlace& place) {
+  offsets.add(place.offsets);
+  things.add(place.things);
+  compared.push_back({place.difference, place.is_distinctive, {}, place.structures, {}, false});
+  // What a second look confirms counts then.
+  if (place.differs() && !second_looks[compared.size() - 1])
+    compared.back().is_known_change = !structures.add(place.structures);
+}
+
+void Hypothesis::add_second_look(std::size_t which, const ComparedPlace& place) {
+  second_looks[which].reset();
+  ComparedPlace& first = compared[which];
+  if (place.differs()) {
+    first.is_known_change = !structures.add(first.structures);
+    return;
+  }
+  offsets.add(place.offsets);
+  things.add(place.things);
+  first = {place.difference, place.is_distinctive, {}, {}, {}, false};
 }
 
 bool Hypothesis::is_finished() const { return compared.size() == plan.size() && to_look_at_again().empty(); }
@@ -113,10 +136,11 @@ std::vector<TestedPlace> Hypothesis::places(bool distinctive_only) const {
   std::vector<TestedPlace> places;
   for (std::size_t i = 0; i < compared.size(); ++i) {
     const bool counts = compared[i].is_distinctive || !distinctive_only;
+    const bool differs = compared[i].differs() && !compared[i].is_known_change;
     places.push_back({plan[i].own, plan[i].theirs,
-                      compared[i].differs() ? PlaceOutcome::differs
-                      : counts              ? PlaceOutcome::distinctive
-                                            : PlaceOutcome::agrees});
+                      differs                                  ? PlaceOutcome::differs
+                      : counts && !compared[i].is_known_change ? PlaceOutcome::distinctive
+                                                               : PlaceOutcome::agrees});
   }
   std::ranges::stable_sort(places, {}, &TestedPlace::a);
   return places;

@@ -20,17 +20,25 @@ struct ComparedPlace {
   double difference = 0.0;      ///< Over the limit of Discernment: above 1 the scans cannot be of one place.
   bool is_distinctive = false;  ///< A displacement along the tunnel would have shown.
   std::vector<PatchOffset> offsets = {};  ///< Of their walls from the own ones; none where it differs.
-  std::vector<Vector3> things = {};  ///< Where one robot met what may come and go; own odometry frame, metres.
+  /// Where structure differs by more than the limit, and where one robot met what may come and go; own
+  /// odometry frame, metres.
+  std::vector<Vector3> structures = {};
+  std::vector<Vector3> things = {};
+  bool is_known_change = false;  ///< All that differs was seen from other places before, and counted there.
   [[nodiscard]] bool differs() const { return !(difference <= 1.0); }
 };
 
-/// Things that one robot met and the other did not, each counted once however often it was seen.
-class ChangedThings {
+/// What has changed between two visits, each object counted once however often it is seen.
+class Changes {
  public:
-  void add(const std::vector<Vector3>& seen);
+  /// `reach_m`: what is seen within this of where an object was first seen belongs to it.
+  explicit Changes(double reach_m) : reach_m_(reach_m) {}
+  /// True if one of them was not known before.
+  bool add(const std::vector<Vector3>& seen);
   [[nodiscard]] std::size_t num() const { return places_.size(); }
 
  private:
+  double reach_m_;
   std::vector<Vector3> places_;  ///< Where each was seen first.
 };
 
@@ -40,13 +48,18 @@ struct Hypothesis {
   std::vector<std::optional<PlannedComparison>> second_looks;  ///< Of each place of the plan, until taken.
   std::vector<ComparedPlace> compared;  ///< Of the first places of the plan, without their offsets.
   WallOffsets offsets;                  ///< Of all compared walls.
-  ChangedThings things;                 ///< At all compared places.
+  Changes structures{10.0};  ///< Doors, blocked or worked tunnels: half of 20 m of fresh lining to each side.
+  Changes things{5.0};       ///< The length of a vehicle, whose middle looks elsewhere from either side.
   std::vector<double> apart_m;  ///< To each hypothesis before this one: where they put the other robot.
   double known_before = 0.0;    ///< Evidence that does not come from comparing scans.
 
   [[nodiscard]] bool is_finished() const;
   /// Places that differ and have a second look left, once all have been seen: one fit in many fails.
   [[nodiscard]] std::vector<std::size_t> to_look_at_again() const;
+  /// What comparing a place has shown; the places of the plan in turn.
+  void add(const ComparedPlace& place);
+  /// What a second look at a place that differed has shown.
+  void add_second_look(std::size_t which, const ComparedPlace& place);
   /// Compared places that differ by more than this times the limit.
   [[nodiscard]] std::size_t num_differing(double by_more_than = 1.0) const;
   /// Compared places that agree where a displacement would have shown.

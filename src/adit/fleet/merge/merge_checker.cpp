@@ -29,7 +29,6 @@ MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first) c
   // Against copies. Scans of one place seldom differ, and one wall stands apart from itself to either side.
   if (has_other_walls(best)) return MergeDecision::other_walls;
   if (differs_too_often(best)) return MergeDecision::scans_differ;
-  if (changed_too_much(best)) return MergeDecision::things_differ;
 
   // Against chance. Only places where a displacement along the tunnel would show are evidence, by how seldom
   // look-alikes of the own map agree for as long (Wald's test).
@@ -54,10 +53,10 @@ bool MergeChecker::has_other_walls(const Hypothesis& h) const {
 }
 
 bool MergeChecker::differs_too_often(const Hypothesis& h) const {
-  const std::size_t num = h.compared.size();
-  const double differs_at_worst = 1.0 - config_.agreement_at_worst;
-  return binomial_tail(h.num_differing(), num, differs_at_worst) < config_.refusal_rate ||
-         binomial_tail(h.num_differing(config_.gross_difference), num, config_.gross_rate) <
+  // One change is seen from many places, so that the places themselves are no independent trials.
+  return binomial_tail(h.num_differing(), h.compared.size(), config_.share_differing_at_worst) <
+             config_.refusal_rate ||
+         poisson_tail(h.structures.num(), config_.changes_at_worst_per_km * compared_km(h)) <
              config_.refusal_rate;
 }
 
@@ -68,12 +67,8 @@ double MergeChecker::compared_km(const Hypothesis& h) const {
   return std::min(by_places, whole) / 1000.0;
 }
 
-bool MergeChecker::changed_too_much(const Hypothesis& h) const {
-  return poisson_tail(h.things.num(), config_.changed_per_km * compared_km(h)) < config_.refusal_rate;
-}
-
 bool MergeChecker::is_refuted(const Hypothesis& h) const {
-  return differs_too_often(h) || changed_too_much(h) || has_other_walls(h);
+  return differs_too_often(h) || has_other_walls(h);
 }
 
 bool MergeChecker::are_rivals(const Hypothesis& best, const Hypothesis& other) const {
@@ -83,7 +78,7 @@ bool MergeChecker::are_rivals(const Hypothesis& best, const Hypothesis& other) c
 double MergeChecker::needed() const { return std::log(1.0 / config_.error_rate); }
 
 double MergeChecker::evidence(const Hypothesis& h) const {
-  return evidence_of_scans(h) + evidence_of_walls(h);
+  return evidence_of_scans(h) + evidence_of_walls(h) + evidence_of_things(h);
 }
 
 double MergeChecker::evidence_of_scans(const Hypothesis& h) const {
@@ -94,6 +89,14 @@ double MergeChecker::evidence_of_scans(const Hypothesis& h) const {
 
 double MergeChecker::evidence_of_walls(const Hypothesis& h) const {
   return config_.relief ? h.offsets.evidence(own_.measured().walls) : 0.0;
+}
+
+double MergeChecker::evidence_of_things(const Hypothesis& h) const {
+  const auto num = static_cast<double>(h.things.num());
+  const double same = config_.things_per_km;
+  const double other = config_.things_elsewhere_per_km;
+  // Few things are no evidence: there may be none at all.
+  return std::min(0.0, num * std::log(same / other) + (other - same) * compared_km(h));
 }
 
 std::optional<std::size_t> MergeChecker::to_go_on_with() const {
@@ -143,23 +146,13 @@ void MergeChecker::add(const std::vector<ComparedPlace>& places) {
   Hypothesis& h = hypotheses_[*which];
   if (h.compared.size() == h.plan.size()) return add_second_looks(h, places);
   ADIT_CHECK(h.compared.size() + places.size() <= h.plan.size(), "only what was asked for is added");
-  for (const ComparedPlace& place : places) {
-    h.offsets.add(place.offsets);
-    h.things.add(place.things);
-    h.compared.push_back({place.difference, place.is_distinctive});
-  }
+  for (const ComparedPlace& place : places) h.add(place);
 }
 
 void MergeChecker::add_second_looks(Hypothesis& h, const std::vector<ComparedPlace>& places) {
   const std::vector<std::size_t> again = h.to_look_at_again();
   ADIT_CHECK(places.size() <= again.size(), "only what was asked for is added");
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    h.second_looks[again[i]].reset();
-    if (places[i].differs()) continue;
-    h.offsets.add(places[i].offsets);
-    h.things.add(places[i].things);
-    h.compared[again[i]] = {places[i].difference, places[i].is_distinctive};
-  }
+  for (std::size_t i = 0; i < places.size(); ++i) h.add_second_look(again[i], places[i]);
 }
 
 double MergeChecker::apart_m(std::size_t one, std::size_t other) const {

@@ -41,7 +41,6 @@ enum class MergeDecision : std::uint8_t {
   no_loops,
   other_walls,          ///< The relief of the walls is another one.
   scans_differ,         ///< At more places than a true alignment leaves.
-  things_differ,        ///< More vehicles and the like than come and go.
   nothing_distinctive,  ///< All places that agree would agree if displaced along the tunnel, too.
   too_little_evidence,
   too_few_loops,
@@ -67,8 +66,6 @@ class MergeChecker {
   [[nodiscard]] MergeDecision decide(const std::vector<std::size_t>& best_first) const;
   [[nodiscard]] bool has_other_walls(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool differs_too_often(const Hypothesis& hypothesis) const;
-  /// Against Poisson's distribution: more things than places change by.
-  [[nodiscard]] bool changed_too_much(const Hypothesis& hypothesis) const;
   [[nodiscard]] double compared_km(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool is_refuted(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool are_rivals(const Hypothesis& best, const Hypothesis& other) const;
@@ -77,6 +74,8 @@ class MergeChecker {
   [[nodiscard]] double evidence(const Hypothesis& hypothesis) const;
   [[nodiscard]] double evidence_of_scans(const Hypothesis& hypothesis) const;
   [[nodiscard]] double evidence_of_walls(const Hypothesis& hypothesis) const;
+  /// Poisson's log likelihood ratio of what may come and go; never positive.
+  [[nodiscard]] double evidence_of_things(const Hypothesis& hypothesis) const;
   [[nodiscard]] ChancesToGoOn chances() const { return own_.measured().look_alikes.chances(); }
 
   [[nodiscard]] std::optional<std::size_t> to_go_on_with() const;

@@ -10,10 +10,10 @@
 
 namespace adit {
 
-/// P(scans of one place do not differ | the alignment is true), as it is on average. Constant, not a setting:
-/// the evidence of several robots is added up, so that all have to weigh alike. (A hypothesis is refuted by a
-/// lower share, MergeCheckConfig::agreement_at_worst, because single stretches are worse than the average.)
-inline constexpr double kAgreementIfTrue = 0.99;
+/// P(a place shows no change of structure that none before has shown | the alignment is true): one place in 3
+/// m and five changes in a kilometre (doors, blocked, lined or widened tunnels). Constant, not a setting: the
+/// evidence of several robots is added up, so that all have to weigh alike.
+inline constexpr double kAgreementIfTrue = 0.985;
 
 /// P(the next distinctive place agrees | look-alikes), after `passed` that agreed; at most kAgreementIfTrue.
 [[nodiscard]] double chance_to_go_on(const ChancesToGoOn& chances, std::size_t passed);

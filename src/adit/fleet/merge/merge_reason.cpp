@@ -41,11 +41,6 @@ std::string MergeChecker::reason(MergeDecision decision, const std::vector<std::
           "scans differ at {} of {} places along the stretch that {} loops align: tunnels that only look "
           "alike; drive on until one passes where the other has truly been",
           h.num_differing(), h.compared.size(), h.loops.size());
-    case MergeDecision::things_differ:
-      return format(
-          "only one of the robots met {} things that stand on the floor, along {:.0f} m that {} loops align: more "
-          "than come and go in a mine; drive on until one passes where the other has truly been",
-          h.things.num(), 1000.0 * compared_km(h), h.loops.size());
     case MergeDecision::nothing_distinctive:
       return format(
           "shared stretch has no along-axis constraint: {} places agree, none of which would show a "

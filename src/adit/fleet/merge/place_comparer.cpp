@@ -24,10 +24,15 @@ ComparedPlace PlaceComparer::compared(const PlannedComparison& place, const Seen
   const LocalFit fit = fit_near(own, theirs, place.T_own_theirs, limit, registration_);
   const Pose& T_odom_own = map_.keyframes[place.own].T_odom_base;
   ComparedPlace out{fit.agreement.largest_difference / limit, is_distinctive};
-  for (const ChangedThing& thing : fit.agreement.things)
-    if (static_cast<double>(thing.num_points) > limit) out.things.push_back(T_odom_own * thing.position);
-  if (!out.differs())
-    out.offsets = patch_offsets(own, theirs, fit.T_a_b, T_odom_own, registration_);
+  const auto above_limit = [&](const std::vector<DifferingPatch>& patches) {
+    std::vector<Vector3> places;
+    for (const DifferingPatch& patch : patches)
+      if (static_cast<double>(patch.num_points) > limit) places.push_back(T_odom_own * patch.position);
+    return places;
+  };
+  out.structures = above_limit(fit.agreement.structures);
+  out.things = above_limit(fit.agreement.things);
+  if (!out.differs()) out.offsets = patch_offsets(own, theirs, fit.T_a_b, T_odom_own, registration_);
   return out;
 }
 
