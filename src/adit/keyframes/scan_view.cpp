@@ -16,7 +16,7 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr std::size_t kGrain = 2048;
-constexpr int kEnoughOthers = 8;
+constexpr int kEnoughOthers = 12;
 constexpr int kDoublings = 2;
 constexpr std::size_t kSamples = 256;  // of the returns, for the typical number in a window
 constexpr auto kNowhere = std::numeric_limits<std::uint32_t>::max();
@@ -40,16 +40,17 @@ std::int64_t floor_of(float x) { return static_cast<std::int64_t>(std::floor(x))
 }  // namespace
 
 Fields fields_of(ConfirmConfig& c) {
-  return {
-      {"window_deg", &c.window_deg, "deg", 0.05, 10.0,
-       "returns no farther from a direction, sideways and upwards, are its neighbours"},
-      {"similar", &c.similar, "", 0.001, 1.0, "neighbours within this share of the range confirm a return"},
-      {"min_neighbours", &c.min_neighbours, "", 0, 100,
-       "fewer do not confirm it; 0 with min_share = 0: all returns are believed"},
-      {"min_share", &c.min_share, "", 0.0, 1.0, "a smaller share of all neighbours does not confirm it"},
-      {"clear_m", &c.clear_m, "m", 0.01, 1000.0,
-       "a place is looked through where all rays about it end this much farther"},
-      {"clear_share", &c.clear_share, "", 0.0, 1.0, "and farther by this share of the range"}};
+  return {{"window_deg", &c.window_deg, "deg", 0.05, 10.0,
+           "returns no farther from a direction, sideways and upwards, are its neighbours"},
+          {"farther", &c.farther, "", 0.001, 1.0,
+           "neighbours confirm a return where they are farther by at most this share of its range"},
+          {"nearer", &c.nearer, "", 0.0, 1.0, "and at least this share of its range away"},
+          {"min_neighbours", &c.min_neighbours, "", 0, 100,
+           "fewer do not confirm it; 0 with min_share = 0: all returns are believed"},
+          {"min_share", &c.min_share, "", 0.0, 1.0, "a smaller share of all neighbours does not confirm it"},
+          {"clear_m", &c.clear_m, "m", 0.01, 1000.0,
+           "a place is looked through where all rays about it end this much farther"},
+          {"clear_share", &c.clear_share, "", 0.0, 1.0, "and farther by this share of the range"}};
 }
 
 ScanView::ScanView(std::span<const Eigen::Vector3f> points, const Vector3& viewpoint,
@@ -63,7 +64,7 @@ ScanView::ScanView(std::span<const Eigen::Vector3f> points, const Vector3& viewp
   float window = static_cast<float>(config_.window_deg * kDegree);
   for (int doublings = 0; doublings <= kDoublings && !is_dense_; ++doublings, window *= 2.0F) {
     sort_by_cell(window, directions);
-    is_dense_ = has_eight_others();
+    is_dense_ = has_enough_others();
   }
 }
 
@@ -139,7 +140,8 @@ void ScanView::visit_around(const Direction& direction, float half_height, const
 // The return itself counts, once, in both.
 ScanView::Counts ScanView::counts_at(const Direction& direction) const {
   const float half_width = std::min(window_ / std::max(std::cos(direction.elevation), 1e-6F), kPi);
-  const float tolerance = static_cast<float>(config_.similar) * direction.range;
+  const float nearest = static_cast<float>(config_.nearer) * direction.range;
+  const float farthest = static_cast<float>(1.0 + config_.farther) * direction.range;
   Counts counts{-1, -1};
   visit_around(direction, window_, [&](std::uint32_t begin, std::uint32_t end, float azimuth) {
     int others = 0;
@@ -148,7 +150,7 @@ ScanView::Counts ScanView::counts_at(const Direction& direction) const {
       const int inside = static_cast<int>(std::abs(azimuths_[k] - azimuth) <= half_width) &
                          static_cast<int>(std::abs(elevations_[k] - direction.elevation) <= window_);
       others += inside;
-      similar += inside & static_cast<int>(std::abs(ranges_[k] - direction.range) <= tolerance);
+      similar += inside & static_cast<int>(ranges_[k] >= nearest) & static_cast<int>(ranges_[k] <= farthest);
     }
     counts.others += others;
     counts.similar += similar;
@@ -157,7 +159,7 @@ ScanView::Counts ScanView::counts_at(const Direction& direction) const {
   return counts;
 }
 
-bool ScanView::has_eight_others() const {
+bool ScanView::has_enough_others() const {
   const std::size_t step = std::max<std::size_t>(ranges_.size() / kSamples, 1);
   std::size_t num = 0;
   std::size_t enough = 0;
