@@ -35,6 +35,16 @@ float arc_tangent(float y, float x) {
   return y < 0.0F ? -angle : angle;
 }
 
+std::size_t num_rows(float window) { return static_cast<std::size_t>(kPi / window) + 1; }
+
+// Row by row upwards.
+std::size_t cell_of(float azimuth, float elevation, float window, std::size_t num_columns) {
+  const float columns_per_radian = static_cast<float>(num_columns) / (2.0F * kPi);
+  const auto row = static_cast<std::size_t>(std::max(elevation + 0.5F * kPi, 0.0F) / window);
+  const auto column = static_cast<std::size_t>(std::max(azimuth + kPi, 0.0F) * columns_per_radian);
+  return std::min(row, num_rows(window) - 1) * num_columns + std::min(column, num_columns - 1);
+}
+
 std::int64_t floor_of(float x) { return static_cast<std::int64_t>(std::floor(x)); }
 
 }  // namespace
@@ -80,17 +90,12 @@ ScanView::Direction ScanView::direction_of(const Eigen::Vector3f& point) const {
 void ScanView::sort_by_cell(float window, std::span<const Direction> directions) {
   window_ = window;
   num_columns_ = static_cast<std::size_t>(std::max(1.0F, std::floor(2.0F * kPi / window)));
-  const auto num_rows = static_cast<std::size_t>(kPi / window) + 1;
-  const float columns_per_radian = static_cast<float>(num_columns_) / (2.0F * kPi);
   std::vector<std::uint32_t> cells(directions.size(), kNowhere);
-  begins_.assign(num_rows * num_columns_ + 1, 0);
+  begins_.assign(num_rows(window) * num_columns_ + 1, 0);
   for (std::size_t i = 0; i < directions.size(); ++i) {
     const Direction& d = directions[i];
     if (!(d.range > 0.0F && d.range <= std::numeric_limits<float>::max())) continue;
-    const auto row = std::min(static_cast<std::size_t>((d.elevation + 0.5F * kPi) / window), num_rows - 1);
-    const auto column =
-        std::min(static_cast<std::size_t>((d.azimuth + kPi) * columns_per_radian), num_columns_ - 1);
-    cells[i] = static_cast<std::uint32_t>(row * num_columns_ + column);
+    cells[i] = static_cast<std::uint32_t>(cell_of(d.azimuth, d.elevation, window, num_columns_));
     ++begins_[cells[i] + 1];
   }
   for (std::size_t cell = 1; cell < begins_.size(); ++cell) begins_[cell] += begins_[cell - 1];
@@ -192,9 +197,13 @@ void ScanView::keep(std::span<const std::uint8_t> flags) {
 bool ScanView::looks_through(const Eigen::Vector3f& point) const {
   const Direction d = direction_of(point);
   if (!is_dense_ || !(d.range > 0.0F && d.range <= std::numeric_limits<float>::max())) return false;
+  const float clear = d.range + static_cast<float>(config_.clear_m + config_.clear_share * d.range);
+  // All of the place's own cell lies in the window: nearly every place is decided here.
+  const std::size_t cell = cell_of(d.azimuth, d.elevation, window_, num_columns_);
+  for (std::uint32_t k = begins_[cell]; k < begins_[cell + 1]; ++k)
+    if (ranges_[k] <= clear) return false;
   const float half_width = std::min(window_ / std::max(std::cos(d.elevation), 1e-6F), kPi);
   const float half_height = 2.0F * window_;
-  const float clear = d.range + static_cast<float>(config_.clear_m + config_.clear_share * d.range);
   bool left = false;
   bool right = false;
   bool above = false;
