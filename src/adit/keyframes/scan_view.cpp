@@ -16,7 +16,7 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 constexpr std::size_t kGrain = 2048;
-constexpr int kEnoughOthers = 8;
+constexpr int kEnoughOthers = 12;
 constexpr int kDoublings = 2;
 constexpr std::size_t kSamples = 256;  // of the returns, for the typical number in a window
 constexpr auto kNowhere = std::numeric_limits<std::uint32_t>::max();
@@ -35,21 +35,32 @@ float arc_tangent(float y, float x) {
   return y < 0.0F ? -angle : angle;
 }
 
+std::size_t num_rows(float window) { return static_cast<std::size_t>(kPi / window) + 1; }
+
+// Row by row upwards.
+std::size_t cell_of(float azimuth, float elevation, float window, std::size_t num_columns) {
+  const float columns_per_radian = static_cast<float>(num_columns) / (2.0F * kPi);
+  const auto row = static_cast<std::size_t>(std::max(elevation + 0.5F * kPi, 0.0F) / window);
+  const auto column = static_cast<std::size_t>(std::max(azimuth + kPi, 0.0F) * columns_per_radian);
+  return std::min(row, num_rows(window) - 1) * num_columns + std::min(column, num_columns - 1);
+}
+
 std::int64_t floor_of(float x) { return static_cast<std::int64_t>(std::floor(x)); }
 
 }  // namespace
 
 Fields fields_of(ConfirmConfig& c) {
-  return {
-      {"window_deg", &c.window_deg, "deg", 0.05, 10.0,
-       "returns no farther from a direction, sideways and upwards, are its neighbours"},
-      {"similar", &c.similar, "", 0.001, 1.0, "neighbours within this share of the range confirm a return"},
-      {"min_neighbours", &c.min_neighbours, "", 0, 100,
-       "fewer do not confirm it; 0 with min_share = 0: all returns are believed"},
-      {"min_share", &c.min_share, "", 0.0, 1.0, "a smaller share of all neighbours does not confirm it"},
-      {"clear_m", &c.clear_m, "m", 0.01, 1000.0,
-       "a place is looked through where all rays about it end this much farther"},
-      {"clear_share", &c.clear_share, "", 0.0, 1.0, "and farther by this share of the range"}};
+  return {{"window_deg", &c.window_deg, "deg", 0.05, 10.0,
+           "returns no farther from a direction, sideways and upwards, are its neighbours"},
+          {"farther", &c.farther, "", 0.001, 1.0,
+           "neighbours confirm a return where they are farther by at most this share of its range"},
+          {"nearer", &c.nearer, "", 0.0, 1.0, "and at least this share of its range away"},
+          {"min_neighbours", &c.min_neighbours, "", 0, 100,
+           "fewer do not confirm it; 0 with min_share = 0: all returns are believed"},
+          {"min_share", &c.min_share, "", 0.0, 1.0, "a smaller share of all neighbours does not confirm it"},
+          {"clear_m", &c.clear_m, "m", 0.01, 1000.0,
+           "a place is looked through where all rays about it end this much farther"},
+          {"clear_share", &c.clear_share, "", 0.0, 1.0, "and farther by this share of the range"}};
 }
 
 ScanView::ScanView(std::span<const Eigen::Vector3f> points, const Vector3& viewpoint,
@@ -63,7 +74,7 @@ ScanView::ScanView(std::span<const Eigen::Vector3f> points, const Vector3& viewp
   float window = static_cast<float>(config_.window_deg * kDegree);
   for (int doublings = 0; doublings <= kDoublings && !is_dense_; ++doublings, window *= 2.0F) {
     sort_by_cell(window, directions);
-    is_dense_ = has_eight_others();
+    is_dense_ = has_enough_others();
   }
 }
 
@@ -79,17 +90,12 @@ ScanView::Direction ScanView::direction_of(const Eigen::Vector3f& point) const {
 void ScanView::sort_by_cell(float window, std::span<const Direction> directions) {
   window_ = window;
   num_columns_ = static_cast<std::size_t>(std::max(1.0F, std::floor(2.0F * kPi / window)));
-  const auto num_rows = static_cast<std::size_t>(kPi / window) + 1;
-  const float columns_per_radian = static_cast<float>(num_columns_) / (2.0F * kPi);
   std::vector<std::uint32_t> cells(directions.size(), kNowhere);
-  begins_.assign(num_rows * num_columns_ + 1, 0);
+  begins_.assign(num_rows(window) * num_columns_ + 1, 0);
   for (std::size_t i = 0; i < directions.size(); ++i) {
     const Direction& d = directions[i];
     if (!(d.range > 0.0F && d.range <= std::numeric_limits<float>::max())) continue;
-    const auto row = std::min(static_cast<std::size_t>((d.elevation + 0.5F * kPi) / window), num_rows - 1);
-    const auto column =
-        std::min(static_cast<std::size_t>((d.azimuth + kPi) * columns_per_radian), num_columns_ - 1);
-    cells[i] = static_cast<std::uint32_t>(row * num_columns_ + column);
+    cells[i] = static_cast<std::uint32_t>(cell_of(d.azimuth, d.elevation, window, num_columns_));
     ++begins_[cells[i] + 1];
   }
   for (std::size_t cell = 1; cell < begins_.size(); ++cell) begins_[cell] += begins_[cell - 1];
@@ -139,7 +145,8 @@ void ScanView::visit_around(const Direction& direction, float half_height, const
 // The return itself counts, once, in both.
 ScanView::Counts ScanView::counts_at(const Direction& direction) const {
   const float half_width = std::min(window_ / std::max(std::cos(direction.elevation), 1e-6F), kPi);
-  const float tolerance = static_cast<float>(config_.similar) * direction.range;
+  const float nearest = static_cast<float>(config_.nearer) * direction.range;
+  const float farthest = static_cast<float>(1.0 + config_.farther) * direction.range;
   Counts counts{-1, -1};
   visit_around(direction, window_, [&](std::uint32_t begin, std::uint32_t end, float azimuth) {
     int others = 0;
@@ -148,7 +155,7 @@ ScanView::Counts ScanView::counts_at(const Direction& direction) const {
       const int inside = static_cast<int>(std::abs(azimuths_[k] - azimuth) <= half_width) &
                          static_cast<int>(std::abs(elevations_[k] - direction.elevation) <= window_);
       others += inside;
-      similar += inside & static_cast<int>(std::abs(ranges_[k] - direction.range) <= tolerance);
+      similar += inside & static_cast<int>(ranges_[k] >= nearest) & static_cast<int>(ranges_[k] <= farthest);
     }
     counts.others += others;
     counts.similar += similar;
@@ -157,7 +164,7 @@ ScanView::Counts ScanView::counts_at(const Direction& direction) const {
   return counts;
 }
 
-bool ScanView::has_eight_others() const {
+bool ScanView::has_enough_others() const {
   const std::size_t step = std::max<std::size_t>(ranges_.size() / kSamples, 1);
   std::size_t num = 0;
   std::size_t enough = 0;
@@ -190,9 +197,13 @@ void ScanView::keep(std::span<const std::uint8_t> flags) {
 bool ScanView::looks_through(const Eigen::Vector3f& point) const {
   const Direction d = direction_of(point);
   if (!is_dense_ || !(d.range > 0.0F && d.range <= std::numeric_limits<float>::max())) return false;
+  const float clear = d.range + static_cast<float>(config_.clear_m + config_.clear_share * d.range);
+  // All of the place's own cell lies in the window: nearly every place is decided here.
+  const std::size_t cell = cell_of(d.azimuth, d.elevation, window_, num_columns_);
+  for (std::uint32_t k = begins_[cell]; k < begins_[cell + 1]; ++k)
+    if (ranges_[k] <= clear) return false;
   const float half_width = std::min(window_ / std::max(std::cos(d.elevation), 1e-6F), kPi);
   const float half_height = 2.0F * window_;
-  const float clear = d.range + static_cast<float>(config_.clear_m + config_.clear_share * d.range);
   bool left = false;
   bool right = false;
   bool above = false;

@@ -16,12 +16,13 @@ namespace adit {
 /// When a return is believed. Walls, things and people are seen by many rays; a grain of dust or a drop by
 /// one, and a thing that moves stands in no two scans in the same place.
 struct ConfirmConfig {
-  double window_deg = 0.75;   ///< Rings of the sparsest LiDAR of 32 rings (OS2-32) are 0.7 degrees apart.
-  double similar = 0.1;       ///< A wall 5 degrees off the ray: this much between rays half a degree apart.
-  int min_neighbours = 2;     ///< Both neighbours on one ring.
-  double min_share = 0.15;    ///< The rays that the narrowest pole holds of a window: a column or two of ten.
-  double clear_m = 0.3;       ///< Thicker than errors of the odometry from keyframe to keyframe; less than
-                              ///< what a pedestrian walks meanwhile.
+  double window_deg = 0.75;  ///< Rings of the sparsest LiDAR of 32 rings (OS2-32) are 0.7 degrees apart.
+  double farther = 0.1;      ///< A wall 5 degrees off the ray: this much between rays half a degree apart.
+  double nearer = 0.5;       ///< Walls at a slant have returns far nearer beside; dust has what is behind it.
+  int min_neighbours = 2;    ///< Both neighbours on one ring.
+  double min_share = 0.15;   ///< The rays that the narrowest pole holds of a window: a column or two of ten.
+  double clear_m = 0.3;      ///< Thicker than errors of the odometry from keyframe to keyframe; less than
+                             ///< what a pedestrian walks meanwhile.
   double clear_share = 0.02;  ///< 1 degree of error across the ray, as for windows at their edge.
 };
 [[nodiscard]] Fields fields_of(ConfirmConfig& config);
@@ -35,9 +36,9 @@ class ScanView {
   ScanView(std::span<const Eigen::Vector3f> points, const Vector3& viewpoint, const ConfirmConfig& config);
 
   /// 1 for each return that its neighbours confirm: of the others in a window about its direction
-  /// (`window_deg` to each side), `min_share` and `min_neighbours` are as far away as itself. The window
-  /// is doubled up to twice for a sensor that has fewer than eight other returns in it; a cloud that is
-  /// thinner still is confirmed as a whole.
+  /// (`window_deg` to each side), `min_share` and `min_neighbours` are about as far away as itself: from
+  /// `nearer` to 1 + `farther` times its range. The window is doubled up to twice for a sensor that has fewer
+  /// than twelve other returns in it; a cloud that is thinner still is confirmed as a whole.
   [[nodiscard]] std::vector<std::uint8_t> confirmed_by_neighbours() const;
 
   /// From now on the scan has only the returns whose flag is 1.
@@ -65,7 +66,7 @@ class ScanView {
 
   [[nodiscard]] Direction direction_of(const Eigen::Vector3f& point) const;
   void sort_by_cell(float window, std::span<const Direction> directions);
-  [[nodiscard]] bool has_eight_others() const;
+  [[nodiscard]] bool has_enough_others() const;
   [[nodiscard]] Counts counts_at(const Direction& direction) const;
   template <class Visit>
   void visit_around(const Direction& direction, float half_height, const Visit& visit) const;

@@ -103,14 +103,16 @@ Angles angles_of(const Eigen::Vector3f& p) {
 }
 
 /// One return against every other.
-Oracle by_brute_force(const std::vector<Angles>& all, const Angles& at, double window, double similar) {
+Oracle by_brute_force(const std::vector<Angles>& all, const Angles& at, double window,
+                      const ConfirmConfig& c) {
   Oracle oracle;
   for (const Angles& other : all) {
     const double aside = std::abs(std::remainder(other.azimuth - at.azimuth, 2.0 * std::numbers::pi));
     if (aside * std::cos(at.elevation) > window || std::abs(other.elevation - at.elevation) > window)
       continue;
     ++oracle.others;
-    oracle.similar += std::abs(other.range - at.range) <= similar * at.range ? 1 : 0;
+    oracle.similar +=
+        other.range >= c.nearer * at.range && other.range <= (1.0 + c.farther) * at.range ? 1 : 0;
   }
   return oracle;
 }
@@ -123,7 +125,7 @@ TEST(ScanView, NeighboursAreThoseOfABruteForceSearch) {
     const double x = rng.normal();
     const double y = rng.normal();
     const Vector3 ray = Vector3(x, y, rng.normal()).normalized();
-    points.emplace_back((rng.uniform(1.0, 1.6) * ray).cast<float>());
+    points.emplace_back((rng.uniform(1.0, 3.0) * ray).cast<float>());
     all.push_back(angles_of(points.back()));
   }
   ConfirmConfig config;
@@ -137,8 +139,8 @@ TEST(ScanView, NeighboursAreThoseOfABruteForceSearch) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     // Angles are good to 2e-4 rad: where that decides, either answer is right.
     const double window = view.window_deg() * kDegree;
-    const Oracle narrow = by_brute_force(all, all[i], window - 4e-4, config.similar);
-    const Oracle wide = by_brute_force(all, all[i], window + 4e-4, config.similar);
+    const Oracle narrow = by_brute_force(all, all[i], window - 4e-4, config);
+    const Oracle wide = by_brute_force(all, all[i], window + 4e-4, config);
     if (narrow.others != wide.others) continue;
     ++num_decided;
     const bool confirmed =

@@ -12,6 +12,10 @@
 namespace adit {
 namespace {
 
+// A keyframe is described again where at least this share of its returns has left: 16 of 32 000, as many as a
+// pedestrian 20 m away has.
+constexpr double kWorthDescribing = 5e-4;
+
 RobotSlamConfig checked(RobotSlamConfig config) {
   const Result<> valid = check_fields(fields_of(config));
   ADIT_CHECK(valid.has_value(), valid ? "" : valid.error().message.c_str());
@@ -77,8 +81,9 @@ void RobotSlam::add_keyframe(const OdometryStep& step) {
   Look look = look_of(step);
   if (last_look_) {
     remove_seen_through(look, *last_look_);
-    const bool changed = remove_seen_through(*last_look_, look) > 0;
-    if (changed) describe_keyframe(map_.keyframes.size() - 1, *last_look_);
+    const double removed = static_cast<double>(remove_seen_through(*last_look_, look));
+    if (removed > kWorthDescribing * static_cast<double>(last_look_->num_returns))
+      describe_keyframe(map_.keyframes.size() - 1, *last_look_);
   }
   const std::size_t k = map_.keyframes.size();
   Keyframe keyframe;

@@ -39,7 +39,7 @@ RobotSlamConfig config_for(const Recording& recording, RobotSlamConfig config,
   return config;
 }
 
-/// Clean scans of simulated mines lose up to 1 % of their returns (decision 0038).
+/// Clean scans of a simulated mine lose 0.1 % of their returns (decision 0038), so this is not the mine.
 constexpr double kNotableShare = 0.03;
 
 /// A note where a robot's scans are not as good as they should be.
