@@ -37,9 +37,9 @@ foreach(flags adit_flags adit_test_flags)
     # Meant for headers that use an unnamed namespace; files that one file includes are none.
     target_compile_options(${flags} INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
-  # GCC 12 takes moved and concatenated strings for overlapping copies (its bugs 105329, 105651).
+  # GCC 12 takes moved and concatenated strings for overlapping copies, and for uninitialized (its bugs 105329, 105651, 105562).
   target_compile_options(${flags} INTERFACE
-    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread>)
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-maybe-uninitialized>)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     target_compile_options(${flags} INTERFACE -march=x86-64-v2 -mtune=generic)
   endif()
