@@ -54,6 +54,30 @@ OrientedPoints every_nth(const OrientedPoints& all) {
   return some;
 }
 
+// By the points around some of those within 10 m: on a plane without gaps about seven lie within 1.5 voxels.
+double thinness_of(const OrientedPoints& all, const Eigen::Vector3f& viewpoint, float voxel) {
+  constexpr float kNear = 10.0F;
+  constexpr std::size_t kSamples = 64;
+  constexpr float kRadiusVoxels = 1.5F;
+  constexpr double kThinnest = 4.0;
+  const float reach = kRadiusVoxels * voxel;
+  const double without_gaps = std::numbers::pi * static_cast<double>(kRadiusVoxels * kRadiusVoxels);
+  std::vector<std::size_t> counts;
+  const std::size_t step = std::max<std::size_t>(all.size() / kSamples, 1);
+  for (std::size_t i = 0; i < all.size(); i += step) {
+    const Eigen::Vector3f& p = all.points[i];
+    if ((p - viewpoint).norm() > kNear) continue;
+    counts.push_back(
+        static_cast<std::size_t>(std::ranges::count_if(all.points, [&](const Eigen::Vector3f& other) {
+          return (other - p).squaredNorm() < reach * reach;
+        })));
+  }
+  if (counts.empty()) return 1.0;
+  const auto middle = counts.begin() + std::ssize(counts) / 2;
+  std::ranges::nth_element(counts, middle);
+  return std::clamp(without_gaps / static_cast<double>(*middle), 1.0, kThinnest);
+}
+
 // By how much the range of a surface changes from one ring to the next.
 float between_rings(const Eigen::Vector3f& ray, float range, const Eigen::Vector3f& normal) {
   constexpr float kLeastCosine = 0.05F;
@@ -91,7 +115,7 @@ Compared compared(const SeenSurface& a, const Eigen::Vector3f& p, const Eigen::V
 struct Counts {
   std::size_t confirmed = 0;
   std::size_t differing = 0;
-  std::size_t largest_difference = 0;
+  double largest_difference = 0.0;
   std::vector<DifferingPatch> structures;  // in the frame of b, the largest first
   std::vector<DifferingPatch> things;
 };
@@ -121,12 +145,12 @@ Counts seen_by(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
   for (std::vector<std::size_t>& patch : connected_patches(where, static_cast<float>(config.voxel_size))) {
     for (std::size_t& i : patch) i = differing[i];
     const bool is_thing = patch.size() >= kLeastPatch && may_be_a_thing(b, patch, all, config);
-    if (!is_thing) counts.largest_difference = std::max(counts.largest_difference, patch.size());
+    const double size = b.thinness() * static_cast<double>(patch.size());
+    if (!is_thing) counts.largest_difference = std::max(counts.largest_difference, size);
     if (patch.size() < kLeastPatch) break;
     Vector3 sum = Vector3::Zero();
     for (const std::size_t i : patch) sum += points.points[i].cast<double>();
-    (is_thing ? counts.things : counts.structures)
-        .push_back({sum / static_cast<double>(patch.size()), patch.size()});
+    (is_thing ? counts.things : counts.structures).push_back({sum / static_cast<double>(patch.size()), size});
   }
   return counts;
 }
@@ -138,12 +162,13 @@ void SeenSurface::Ranges::add(const Ranges& other) {
   farthest = std::max(farthest, other.farthest);
 }
 
-SeenSurface::SeenSurface(OrientedPoints points, const Vector3& viewpoint)
+SeenSurface::SeenSurface(OrientedPoints points, const Vector3& viewpoint, double voxel_m)
     : points_(std::move(points)),
       some_(every_nth(points_)),
       tree_(points_.points),
       viewpoint_(viewpoint.cast<float>()),
-      ranges_(std::size_t{kRows} * kColumns) {
+      ranges_(std::size_t{kRows} * kColumns),
+      thinness_(thinness_of(points_, viewpoint_, static_cast<float>(voxel_m))) {
   std::vector<Ranges> own(ranges_.size());
   for (const Eigen::Vector3f& p : points_.points) {
     const Eigen::Vector3f ray = p - viewpoint_;
@@ -187,7 +212,7 @@ Agreement agreement(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_
     if (counts.confirmed == 0) return {};
     out.confirmed = std::min(out.confirmed, static_cast<double>(counts.confirmed) /
                                                 static_cast<double>(counts.confirmed + counts.differing));
-    out.largest_difference = std::max(out.largest_difference, static_cast<double>(counts.largest_difference));
+    out.largest_difference = std::max(out.largest_difference, counts.largest_difference);
   }
   return out;
 }

@@ -26,7 +26,8 @@ class SeenSurface {
   };
 
   /// `points` and `viewpoint`, where the sensor stood, in the same frame, metres.
-  SeenSurface(OrientedPoints points, const Vector3& viewpoint);
+  /// `voxel_m`: points are one per voxel of this edge.
+  SeenSurface(OrientedPoints points, const Vector3& viewpoint, double voxel_m);
 
   [[nodiscard]] const OrientedPoints& points() const { return points_; }
   /// A sample of the points, spread over all, that suffices for alignment.
@@ -35,6 +36,9 @@ class SeenSurface {
   [[nodiscard]] const Eigen::Vector3f& viewpoint() const { return viewpoint_; }
   /// Nothing was seen above and below the sensor's field of view, however near a surface ends there.
   [[nodiscard]] const Ranges& towards(const Eigen::Vector3f& direction) const;
+  /// Into how many points, one per voxel, a sensor that leaves no gaps would see each of these, near the
+  /// robot: what sparse and dense sensors see differ is compared by its area.
+  [[nodiscard]] double thinness() const { return thinness_; }
   [[nodiscard]] std::size_t num_bytes() const;
 
  private:
@@ -43,14 +47,15 @@ class SeenSurface {
   KdTree tree_;
   Eigen::Vector3f viewpoint_;
   std::vector<Ranges> ranges_;
+  double thinness_ = 1.0;
   float lowest_ = 1.0F;  ///< Sines of the elevations between which something was seen.
   float highest_ = -1.0F;
 };
 
 /// A connected patch that differs.
 struct DifferingPatch {
-  Vector3 position;  ///< Of its middle, as it was seen; metres.
-  std::size_t num_points = 0;
+  Vector3 position;         ///< Of its middle, as it was seen; metres.
+  double num_points = 0.0;  ///< Times SeenSurface::thinness.
 };
 
 inline constexpr std::size_t kLeastPatch = 4;
@@ -61,9 +66,9 @@ inline constexpr std::size_t kLeastPatch = 4;
 /// other's surfaces, or between its beams, do not count.
 struct Agreement {
   double confirmed = 0.0;  ///< Share of the points that count, the smaller of both directions.
-  /// Number of points, one per voxel, in the largest connected patch that differs and is no thing that may
-  /// come and go; the larger of both directions. A niche or a passage that only one of two tubes has makes
-  /// one large patch; noise and beams that miss make many small ones.
+  /// Number of points, one per voxel, times SeenSurface::thinness, in the largest connected patch that
+  /// differs and is no thing that may come and go; the larger of both directions. A niche or a passage that
+  /// only one of two tubes has makes one large patch; noise and beams that miss make many small ones.
   double largest_difference = std::numeric_limits<double>::infinity();
   /// All patches that are no such thing, of either direction, and those that are (changed_thing.hpp); frame
   /// of a. Patches of fewer than kLeastPatch points are left out.

@@ -58,6 +58,8 @@ Fields fields_of(MergeCheckConfig& c) {
        "vehicles and the like that one robot meets on a shared stretch and the other does not"},
       {"things_elsewhere_per_km", &c.things_elsewhere_per_km, "1/km", 0.1, 1e4,
        "the same, where the robots drove in different tunnels"},
+      {"things_speak_at_most", &c.things_speak_at_most, "", 0.0, 100.0,
+       "evidence that such things take away at most: they come and go"},
       {"misplaced_m", &c.misplaced_m, "m", 0.0, 1000.0,
        "a loop contradicts another one nearby if they disagree by more"},
       {"misplaced_keyframes", &c.misplaced_keyframes, "", 0, 1e6,

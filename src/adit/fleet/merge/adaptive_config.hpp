@@ -17,7 +17,7 @@ struct DiscernmentConfig {
   double displacement_m = 5.0;
   double usual_share = 0.9;
   double allowance = 1.5;
-  double least_difference_m2 = 1.44;
+  double least_difference_m2 = 0.9;
   bool second_looks = true;
   double second_look_m = 1.0;
   double followed_m = 60.0;
@@ -44,6 +44,7 @@ struct MergeCheckConfig {
   double share_differing_at_worst = 0.3;
   double things_per_km = 40.0;
   double things_elsewhere_per_km = 120.0;
+  double things_speak_at_most = 3.0;
   double misplaced_m = 0.75;
   int misplaced_keyframes = 60;
   int misplaced_neighbours = 5;

@@ -83,6 +83,8 @@ void plan_comparisons(Hypothesis& hypothesis, const LoopsBetween& between, doubl
 
 }  // namespace
 
+bool Changes::know(const std::vector<Vector3>& seen) { return !seen.empty() && !add(seen); }
+
 bool Changes::add(const std::vector<Vector3>& seen) {
   const std::size_t num_before = places_.size();
   for (const Vector3& place : seen)
@@ -98,14 +100,14 @@ void Hypothesis::add(const ComparedPlace& place) {
   compared.push_back({place.difference, place.is_distinctive, {}, place.structures, {}, false});
   // What a second look confirms counts then.
   if (place.differs() && !second_looks[compared.size() - 1])
-    compared.back().is_known_change = !structures.add(place.structures);
+    compared.back().is_known_change = structures.know(place.structures);
 }
 
 void Hypothesis::add_second_look(std::size_t which, const ComparedPlace& place) {
   second_looks[which].reset();
   ComparedPlace& first = compared[which];
   if (place.differs()) {
-    first.is_known_change = !structures.add(first.structures);
+    first.is_known_change = structures.know(first.structures);
     return;
   }
   offsets.add(place.offsets);

@@ -33,7 +33,9 @@ class Changes {
  public:
   /// `reach_m`: what is seen within this of where an object was first seen belongs to it.
   explicit Changes(double reach_m) : reach_m_(reach_m) {}
-  /// True if one of them was not known before.
+  /// Adds them; true if there are any and all were known before.
+  bool know(const std::vector<Vector3>& seen);
+  /// Adds them; true if one of them was not known before.
   bool add(const std::vector<Vector3>& seen);
   [[nodiscard]] std::size_t num() const { return places_.size(); }
 

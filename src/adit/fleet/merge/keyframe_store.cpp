@@ -27,7 +27,8 @@ SurfaceStore::SurfaceStore(std::shared_ptr<const RobotMap> map, const Registrati
     : KeyframeStore(
           std::move(map),
           [config](const RobotMap& of, std::uint32_t k) {
-            return SeenSurface(compute_surface(*of.keyframes[k].cloud, config), of.viewpoint);
+            return SeenSurface(compute_surface(*of.keyframes[k].cloud, config), of.viewpoint,
+                               config.voxel_size);
           },
           [](const SeenSurface& surface) { return surface.num_bytes(); }, max_bytes) {}
 

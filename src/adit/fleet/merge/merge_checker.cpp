@@ -96,7 +96,8 @@ double MergeChecker::evidence_of_things(const Hypothesis& h) const {
   const double same = config_.things_per_km;
   const double other = config_.things_elsewhere_per_km;
   // Few things are no evidence: there may be none at all.
-  return std::min(0.0, num * std::log(same / other) + (other - same) * compared_km(h));
+  return std::clamp(num * std::log(same / other) + (other - same) * compared_km(h),
+                    -config_.things_speak_at_most, 0.0);
 }
 
 std::optional<std::size_t> MergeChecker::to_go_on_with() const {

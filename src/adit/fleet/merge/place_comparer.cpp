@@ -27,7 +27,7 @@ ComparedPlace PlaceComparer::compared(const PlannedComparison& place, const Seen
   const auto above_limit = [&](const std::vector<DifferingPatch>& patches) {
     std::vector<Vector3> places;
     for (const DifferingPatch& patch : patches)
-      if (static_cast<double>(patch.num_points) > limit) places.push_back(T_odom_own * patch.position);
+      if (patch.num_points > limit) places.push_back(T_odom_own * patch.position);
     return places;
   };
   out.structures = above_limit(fit.agreement.structures);
@@ -47,7 +47,8 @@ std::vector<ComparedPlace> PlaceComparer::with_clouds(const std::vector<PlannedC
     const Clouds::Cloud& received = *came.at(asked[i].theirs);
     PointCloud cloud;
     cloud.points = received.points;
-    const SeenSurface theirs(compute_surface(cloud, registration_), received.viewpoint.cast<double>());
+    const SeenSurface theirs(compute_surface(cloud, registration_), received.viewpoint.cast<double>(),
+                             registration_.voxel_size);
     places[i] = compared(asked[i], theirs, distinctive[i]);
   });
   return places;

@@ -68,7 +68,7 @@ std::optional<CloudRequest> PeerSession::request() const {
     if (request.indices.size() == kCloudsPerMessage) break;
     request.indices.push_back(index);
   }
-  if (request.indices.empty()) request = {CloudKind::scan, to_compare_};
+  if (request.indices.empty()) request = {to_compare_, CloudKind::scan};
   if (request.indices.empty()) return std::nullopt;
   return request;
 }

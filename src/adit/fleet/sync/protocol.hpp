@@ -68,19 +68,19 @@ struct Places {
 enum class CloudKind : std::uint8_t { scan, submap };
 
 struct CloudRequest {
-  CloudKind kind = CloudKind::scan;
   std::vector<std::uint32_t> indices;
+  CloudKind kind = CloudKind::scan;
 };
 
 /// The sender's own keyframe clouds, each in its keyframe's base frame.
 struct Clouds {
-  CloudKind kind = CloudKind::scan;
   struct Cloud {
     std::uint32_t index = 0;
     Eigen::Vector3f viewpoint = Eigen::Vector3f::Zero();  ///< The LiDAR, in the frame of the points.
     std::vector<Eigen::Vector3f> points;
   };
   std::vector<Cloud> clouds;
+  CloudKind kind = CloudKind::scan;
 };
 
 /// Loops number first, first + 1, ... of those that `author`, who need not be the sender, registered:
