@@ -219,9 +219,9 @@ TEST(FeatureStore, ForgetsWhatWasUsedLongestAgoAndKeepsItsBound) {
   const test::BoxWorld world(3);
   const auto map = std::make_shared<const RobotMap>(test::drive(world, {0}, street(0.0, 20.0, 0.0), 0.0));
   const RegistrationConfig config = lenient().registration;
-  FeatureStore measure(map, config);
+  FeatureStore measure(map, config, {});
   measure.prepare({0, 1});
-  FeatureStore store(map, config, measure.num_bytes());  // room for two or so
+  FeatureStore store(map, config, {}, measure.num_bytes());  // room for two or so
   store.prepare({0});
   store.prepare({1});
   const Features first = store.at(1);

@@ -16,7 +16,8 @@ SeenSurface seen_at(const test::Scene& scene, double x, std::uint64_t seed) {
   lidar.jitter = 0.5;
   lidar.seed = seed;
   const test::Drive still{Pose::planar(x, 0.0, 0.0), Vector6::Zero()};
-  return {compute_surface(test::scan_of(scene, lidar, Pose(), still, 0).cloud, {}), Vector3::Zero()};
+  return {compute_surface(test::scan_of(scene, lidar, Pose(), still, 0).cloud, {}), Vector3::Zero(),
+          RegistrationConfig().voxel_size};
 }
 
 test::Scene with_block(double x = 5.0) {
@@ -56,9 +57,9 @@ test::Scene with_vehicle(double height = 1.6) {
   return scene;
 }
 
-ChangedThing largest_thing(const Agreement& found) {
-  ChangedThing largest;
-  for (const ChangedThing& thing : found.things)
+DifferingPatch largest_thing(const Agreement& found) {
+  DifferingPatch largest;
+  for (const DifferingPatch& thing : found.things)
     if (thing.num_points > largest.num_points) largest = thing;
   return largest;
 }
@@ -101,13 +102,13 @@ TEST(Agreement, FreeSpaceBeginsAtTheSensor) {
   const Vector3 wrong(0.0, 0.0, -1.9);
   const Agreement right = between(a, b, Pose::planar(2.0, 0.0, 0.0));
   const Agreement from_the_floor =
-      between({a.points(), wrong}, {b.points(), wrong}, Pose::planar(2.0, 0.0, 0.0));
+      between({a.points(), wrong, 0.3}, {b.points(), wrong, 0.3}, Pose::planar(2.0, 0.0, 0.0));
   EXPECT_LT(from_the_floor.confirmed, right.confirmed);
 }
 
 TEST(Agreement, OfNothingIsNotComparable) {
   const SeenSurface a = seen_at(with_block(), 0.0, 1);
-  const SeenSurface nothing({}, Vector3::Zero());
+  const SeenSurface nothing({}, Vector3::Zero(), RegistrationConfig().voxel_size);
   EXPECT_FALSE(between(a, nothing, Pose()).is_comparable());
   EXPECT_FALSE(between(nothing, a, Pose()).is_comparable());
   EXPECT_FALSE(fit_near(a, nothing, Pose(), kNoise, {}).agreement.is_comparable());

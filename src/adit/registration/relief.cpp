@@ -75,25 +75,23 @@ double share_of(const std::vector<OfPatch>& patches) {
   return agreeing / weight_of(patches);
 }
 
-/// The patches but those of the stretches with the largest shares, which together weigh at most `changed`.
+/// The patches but those of stretches on which nearly all offsets lie on one side, as where the wall itself
+/// was moved. The relief of other walls does not: noise is larger. At most the share `changed` of all is left
+/// out.
 std::vector<OfPatch> without_changed(const std::map<Stretch, std::vector<OfPatch>>& by_stretch,
                                      double changed) {
-  std::vector<std::pair<double, const std::vector<OfPatch>*>> stretches;
-  double weight = 0.0;
-  for (const auto& [where, patches] : by_stretch) {
-    stretches.emplace_back(share_of(patches), &patches);
-    weight += weight_of(patches);
-  }
-  std::ranges::stable_sort(stretches, std::ranges::greater(),
-                           &std::pair<double, const std::vector<OfPatch>*>::first);
+  constexpr double kMoved = 0.85;       // least share of equal signs,
+  constexpr double kLeastWeight = 8.0;  // counted over so much
+  double all = 0.0;
+  for (const auto& [where, patches] : by_stretch) all += weight_of(patches);
   std::vector<OfPatch> kept;
   double left_out = 0.0;
-  for (const auto& [share, patches] : stretches) {
-    if (kept.empty() && left_out + weight_of(*patches) <= changed * weight) {
-      left_out += weight_of(*patches);
-      continue;
-    }
-    kept.insert(kept.end(), patches->begin(), patches->end());
+  for (const auto& [where, patches] : by_stretch) {
+    const double weight = weight_of(patches);
+    if (weight >= kLeastWeight && share_of(patches) >= kMoved && left_out + weight <= changed * all)
+      left_out += weight;
+    else
+      kept.insert(kept.end(), patches.begin(), patches.end());
   }
   return kept;
 }

@@ -40,7 +40,7 @@ SeenSurface seen(std::uint64_t tunnel, double x, std::uint64_t noise, double bia
                               static_cast<float>(r * std::sin(angle)));
     cloud.points.back() += static_cast<float>(bias) * cloud.points.back().normalized();
   }
-  return {compute_surface(cloud, {}), Vector3::Zero()};
+  return {compute_surface(cloud, {}), Vector3::Zero(), RegistrationConfig().voxel_size};
 }
 
 // One robot drove through `first`, the other through `second`, which coincide except for the rock; the second
@@ -134,7 +134,8 @@ TEST(Relief, LargeOffsetsAreNotRelief) {
   const SeenSurface a = seen(1, 0.0, 1);
   OrientedPoints points = a.points();
   for (Eigen::Vector3f& p : points.points) p.tail<2>() *= 3.7F / 4.0F;
-  EXPECT_TRUE(patch_offsets(a, {points, Vector3::Zero()}, Pose(), Pose(), {}).empty());
+  EXPECT_TRUE(patch_offsets(a, {points, Vector3::Zero(), RegistrationConfig().voxel_size}, Pose(), Pose(), {})
+                  .empty());
 }
 
 TEST(Relief, OffsetsAreTowardsTheFreeSide) {
@@ -146,7 +147,8 @@ TEST(Relief, OffsetsAreTowardsTheFreeSide) {
   for (Eigen::Vector3f& p : bulged.points)
     if (is_bulged(p)) p.tail<2>() *= 3.95F / 4.0F;
   int num = 0;
-  for (const PatchOffset& one : patch_offsets(a, {bulged, Vector3::Zero()}, Pose(), Pose(), {})) {
+  for (const PatchOffset& one :
+       patch_offsets(a, {bulged, Vector3::Zero(), RegistrationConfig().voxel_size}, Pose(), Pose(), {})) {
     const bool is_there = one.patch[0] == 2 && one.patch[1] == 3;
     EXPECT_NEAR(one.metres, is_there ? 0.05 : 0.0, 0.01);
     num += is_there ? 1 : 0;
@@ -179,6 +181,25 @@ TEST(WallOffsets, EveryTwoPairsThatSawAPatchAreCompared) {
   offsets.add(
       {offset_of(lasting, -0.005)});  // one of three combinations still agrees; the patch weighs as two
   EXPECT_DOUBLE_EQ(offsets.counted().share, (2.0 / 3.0 + 0.0) / (2.0 + 1.0));
+}
+
+// 40 m of wall seen twice, of which the patches from 0 to `moved_m` stand in front both times.
+EqualSignShare with_moved(double moved_m) {
+  WallOffsets offsets;
+  for (int i = 0; i < 40; ++i)
+    for (int k = 0; k < 10; ++k) {
+      const double second = i < moved_m || (i + k) % 2 == 0 ? 0.01 : -0.01;
+      offsets.add({offset_of({i, k, 0, 0}, 0.01)});
+      offsets.add({offset_of({i, k, 0, 0}, second)});
+    }
+  return offsets.counted();
+}
+
+TEST(WallOffsets, AStretchThatWasMovedAsAWholeIsLeftOut) {
+  EXPECT_NEAR(with_moved(0.0).share, 0.5, 1e-9);
+  EXPECT_NEAR(with_moved(10.0).share, 0.5, 1e-9) << "fresh lining over 10 m";
+  EXPECT_EQ(with_moved(10.0).num_patches, 300U);
+  EXPECT_GT(with_moved(40.0).share, 0.99) << "no more than a quarter was moved: other walls";
 }
 
 TEST(WallOffsets, SmallOffsetsHaveNoSign) {

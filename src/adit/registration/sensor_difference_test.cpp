@@ -41,7 +41,7 @@ SeenSurface seen_from(const Eigen::Vector3f& viewpoint, const RangeErrors& error
     const double error = errors.bias + errors.walk * off_normal * off_normal + 0.01 * rng.normal();
     cloud.points.emplace_back((range + static_cast<float>(error)) * direction.matrix());
   }
-  return {compute_surface(cloud, {}), Vector3::Zero()};
+  return {compute_surface(cloud, {}), Vector3::Zero(), RegistrationConfig().voxel_size};
 }
 
 const Eigen::Vector3f kFromA(0.0F, 0.0F, 0.0F);

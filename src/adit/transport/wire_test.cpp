@@ -48,12 +48,13 @@ std::vector<Message> one_of_each() {
   return {{{0}, {1}, Hello{{{{0}, 5, 6, 3, 2}, {{1}, 7, 8, 0, 1}}, true}},
           {{1}, {0}, GraphPart{{2}, "robot_2", 4, {node, node}}},
           {{1}, {0}, Places{9, {{11, context}}, true}},
-          {{0}, {1}, CloudRequest{{1, 2, 3}}},
+          {{0}, {1}, CloudRequest{{1, 2, 3}, CloudKind::submap}},
           {{1},
            {0},
            Clouds{{{5,
                     {0.5F, 0.0F, 0.9F},
-                    {Eigen::Vector3f(1.0F, -2.0F, 3.0F), Eigen::Vector3f(0.0025F, 160.0F, -160.0F)}}}}},
+                    {Eigen::Vector3f(1.0F, -2.0F, 3.0F), Eigen::Vector3f(0.0025F, 160.0F, -160.0F)}}},
+                  CloudKind::submap}},
           {{0}, {1}, Loops{{0}, 3, {a_loop()}}},
           {{0}, {2}, MergeChecks{{1}, 4, {a_check()}}}};
 }

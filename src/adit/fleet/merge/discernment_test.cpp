@@ -36,14 +36,14 @@ TEST(Discernment, ADisplacementDoesNotShowInASmoothTubeAndDoesBesideABlock) {
   OnAMap smooth(in_a_tube({}));
   const std::vector<std::uint32_t> places = {40, 50, 60, 70};
   for (const bool is_distinctive : smooth.discernment.distinctive(places)) EXPECT_FALSE(is_distinctive);
-  OnAMap with_block(in_a_tube({{{29.0, 1.5, -2.0}, {31.0, 4.0, 1.0}}}));
+  OnAMap with_block(in_a_tube({{{29.0, 1.5, -4.0}, {31.0, 4.0, 4.0}}}));
   const std::vector<bool> near = with_block.discernment.distinctive({56, 64});
   EXPECT_TRUE(near[0]);
   EXPECT_TRUE(near[1]);
 }
 
 TEST(Discernment, ScansOfOnePlaceDoNotDifferAndThoseOfAnotherDo) {
-  const auto map = in_a_tube({{{29.0, 1.5, -2.0}, {31.0, 4.0, 1.0}}});
+  const auto map = in_a_tube({{{29.0, 1.5, -4.0}, {31.0, 4.0, 4.0}}});
   OnAMap measured(map);
   EXPECT_GT(measured.discernment.limit(), 0.0);
   EXPECT_LT(measured.discernment.limit(), 30.0);
@@ -61,10 +61,10 @@ TEST(Discernment, BlocksThatRepeatGoOnLongerThanBlocksThatDoNot) {
   std::vector<test::Box> irregular;
   Rng rng(4);
   for (double x = -40.0; x < 110.0; x += 10.0) {
-    repeating.push_back({{x, 1.5, -2.0}, {x + 2.0, 4.0, 1.0}});
+    repeating.push_back({{x, 1.5, -4.0}, {x + 2.0, 4.0, 4.0}});
     const double at = x + rng.uniform(0.0, 6.0);
     const double side = rng.uniform() < 0.5 ? -4.0 : 1.5;
-    irregular.push_back({{at, side, -2.0}, {at + rng.uniform(0.8, 3.0), side + 2.5, rng.uniform(-1.0, 2.0)}});
+    irregular.push_back({{at, side, -4.0}, {at + rng.uniform(0.8, 3.0), side + 2.5, 4.0}});
   }
   OnAMap tiles(in_a_tube(repeating));
   const LookAlikes with_tiles = tiles.discernment.measured().look_alikes;

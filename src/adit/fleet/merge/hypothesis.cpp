@@ -129,6 +129,13 @@ std::size_t Hypothesis::num_differing(double by_more_than) const {
       compared, [&](const ComparedPlace& place) { return !(place.difference <= by_more_than); }));
 }
 
+std::size_t Hypothesis::num_changes() const {
+  std::size_t num = structures.num();
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    if (compared[i].differs() && compared[i].structures.empty() && !second_looks[i]) ++num;
+  return num;
+}
+
 std::size_t Hypothesis::num_distinctive() const {
   return static_cast<std::size_t>(std::ranges::count_if(
       compared, [](const ComparedPlace& place) { return place.is_distinctive && !place.differs(); }));

@@ -64,6 +64,8 @@ struct Hypothesis {
   void add_second_look(std::size_t which, const ComparedPlace& place);
   /// Compared places that differ by more than this times the limit.
   [[nodiscard]] std::size_t num_differing(double by_more_than = 1.0) const;
+  /// Changes of structure, and places that differ for another reason: by a second look, too.
+  [[nodiscard]] std::size_t num_changes() const;
   /// Compared places that agree where a displacement would have shown.
   [[nodiscard]] std::size_t num_distinctive() const;
   /// What was found at each place, in the order driven by the own robot; where not `distinctive_only` every

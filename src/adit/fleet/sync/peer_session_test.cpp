@@ -17,8 +17,9 @@ Places part_of(std::uint32_t first, const std::vector<std::uint32_t>& keyframes,
   return part;
 }
 
-Clouds clouds_of(const std::vector<std::uint32_t>& keyframes) {
+Clouds clouds_of(const std::vector<std::uint32_t>& keyframes, CloudKind kind) {
   Clouds clouds;
+  clouds.kind = kind;
   for (const std::uint32_t k : keyframes) clouds.clouds.push_back({k, Eigen::Vector3f::Zero(), {}});
   return clouds;
 }
@@ -48,12 +49,13 @@ TEST(PeerSession, GoesFromGreetingToDecided) {
   EXPECT_EQ(session.state(), PeerState::awaiting_clouds);
   EXPECT_EQ(session.num_waiting(), 3U);
   EXPECT_EQ(session.request()->indices, (std::vector<std::uint32_t>{4, 5}));
-  EXPECT_EQ(session.take_arrived(clouds_of({4, 5})).size(), 3U);
+  EXPECT_EQ(session.take_arrived(clouds_of({4, 5}, CloudKind::submap)).size(), 3U);
   session.await_comparison_of({10, 20});
   EXPECT_EQ(session.state(), PeerState::comparing);
+  EXPECT_FALSE(session.has_comparison(clouds_of({10, 20}, CloudKind::submap))) << "late clouds of candidates";
   EXPECT_EQ(session.request()->indices, (std::vector<std::uint32_t>{10, 20}));
-  EXPECT_FALSE(session.has_comparison(clouds_of({10})));
-  EXPECT_TRUE(session.has_comparison(clouds_of({20, 10})));
+  EXPECT_FALSE(session.has_comparison(clouds_of({10}, CloudKind::scan)));
+  EXPECT_TRUE(session.has_comparison(clouds_of({20, 10}, CloudKind::scan)));
   session.await_comparison_of({});
   EXPECT_EQ(session.state(), PeerState::decided);
   EXPECT_FALSE(session.request());
