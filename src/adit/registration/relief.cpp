@@ -80,8 +80,8 @@ double share_of(const std::vector<OfPatch>& patches) {
 /// out.
 std::vector<OfPatch> without_changed(const std::map<Stretch, std::vector<OfPatch>>& by_stretch,
                                      double changed) {
-  constexpr double kMoved = 0.85;       // least share of equal signs,
-  constexpr double kLeastWeight = 8.0;  // counted over so much
+  constexpr double kMoved = 0.92;        // least share of equal signs,
+  constexpr double kLeastWeight = 30.0;  // counted over so much
   double all = 0.0;
   for (const auto& [where, patches] : by_stretch) all += weight_of(patches);
   std::vector<OfPatch> kept;

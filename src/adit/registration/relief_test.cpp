@@ -74,7 +74,7 @@ WallOffsets of_a_thousand(int num_equal) {
   WallOffsets offsets;
   for (int i = 0; i < 1000; ++i) {
     const double metres = i % 2 == 0 ? 0.01 : -0.01;
-    for (const double one : {metres, i < num_equal ? metres : -metres})
+    for (const double one : {metres, i * 617 % 1000 < num_equal ? metres : -metres})
       offsets.add({offset_of({i, 0, 0, 0}, one)});
   }
   return offsets;
@@ -207,7 +207,7 @@ TEST(WallOffsets, SmallOffsetsHaveNoSign) {
     WallOffsets offsets({.min_offset_m = 0.002});
     for (int i = 0; i < 100; ++i)
       for (int pair = 0; pair < 2; ++pair)
-        offsets.add({offset_of({i, 0, 0, 0}, i % 2 == 0 ? metres : -metres)});
+        offsets.add({offset_of({i, 0, 0, 0}, (i + pair) % 2 == 0 ? metres : -metres)});
     return offsets.counted().num_patches;
   };
   EXPECT_EQ(num_patches(0.0019), 0U);

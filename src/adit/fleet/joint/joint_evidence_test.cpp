@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 #include "adit/fleet/joint/joint_evidence.hpp"
+#include "adit/fleet/merge/merge_evidence.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "adit/fleet/merge/merge_evidence.hpp"
 #include "support/circling_fleet.hpp"
 
 namespace adit {
@@ -17,7 +19,7 @@ using test::true_pose;
 
 constexpr double kNeeded = 6.9;
 constexpr double kGoesOn = 0.3;
-const double kOfAPlace = std::log(0.99 / kGoesOn);  // five are too few, ten enough
+const double kOfAPlace = std::log(kAgreementIfTrue / kGoesOn);  // five are too few, ten enough
 
 /// Which keyframe of a robot stands at an angle of the circle.
 std::uint32_t at(RobotId robot, double angle) {
@@ -74,7 +76,7 @@ TEST(JointEvidence, TwoPairsTogetherJoinWhatNeitherCouldAlone) {
     EXPECT_EQ(pair.joined_reason.empty(), pair.a == RobotId{0} && pair.b == RobotId{1});
   }
   EXPECT_NE(
-      together.pairs[1].joined_reason.find("robot_0-robot_2 (6.0) and robot_1-robot_2 (6.0) say the same"),
+      together.pairs[1].joined_reason.find("robot_0-robot_2 (5.9) and robot_1-robot_2 (5.9) say the same"),
       std::string::npos)
       << together.pairs[1].joined_reason;
 }
