@@ -54,7 +54,7 @@ struct OfPatch {
 };
 
 /// Patches nearby, which fresh lining or a widened face would change together.
-using Stretch = std::array<std::int32_t, 3>;
+using Stretch = std::array<std::int32_t, 2>;
 Stretch stretch_of(const WallPatch& patch, double patch_m) {
   constexpr double kStretch = 10.0;  // metres
   Stretch out;
@@ -81,7 +81,7 @@ double share_of(const std::vector<OfPatch>& patches) {
 std::vector<OfPatch> without_changed(const std::map<Stretch, std::vector<OfPatch>>& by_stretch,
                                      double changed) {
   constexpr double kMoved = 0.92;        // least share of equal signs,
-  constexpr double kLeastWeight = 30.0;  // counted over so much
+  constexpr double kLeastWeight = 60.0;  // counted over so much
   double all = 0.0;
   for (const auto& [where, patches] : by_stretch) all += weight_of(patches);
   std::vector<OfPatch> kept;
