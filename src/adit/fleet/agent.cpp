@@ -37,10 +37,12 @@ std::vector<MessageBody> request_of(const PeerSession& session) {
 
 LoopRegistrationConfig registration_of(const AgentConfig& config) {
   LoopRegistrationConfig out{config.registration_in_use()};
-  if (config.policy == MergePolicy::adaptive)
+  if (config.policy == MergePolicy::adaptive) {
     out.one_place_m = config.adaptive.one_place_m;
-  else
+    out.upright = true;
+  } else {
     out.noise = config.loop_noise;
+  }
   return out;
 }
 

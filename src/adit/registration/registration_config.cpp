@@ -77,6 +77,8 @@ Fields fields_of(ReliefConfig& c) {
       {"same_share", &c.same_share, "", 0.5, 1.0,
        "share of equal signs on one wall, from three tuning worlds (decision 0015)"},
       {"same_sigma", &c.same_sigma, "", 0.0, 0.5, "its standard deviation from stretch to stretch"},
+      {"prior_other_share", &c.prior_other_share, "", 0.51, 1.0,
+       "share of equal signs on other walls, where the own map has none to measure it on (decision 0013)"},
       {"prior_sigma", &c.prior_sigma, "", 0.0, 5.0,
        "prior of the log share's standard deviation over look-alikes"},
       {"prior_stretches", &c.prior_stretches, "", 0.0, 1000.0,

@@ -21,6 +21,7 @@ struct ReliefConfig {
   double changed_share = 0.25;
   double same_share = 0.52;
   double same_sigma = 0.015;
+  double prior_other_share = 0.62;
   double prior_sigma = 0.35;
   double prior_stretches = 4.0;
   double may_be_same = 0.05;

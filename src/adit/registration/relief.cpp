@@ -194,7 +194,8 @@ EqualSignShare WallOffsets::count() const {
     weight += one.weight;
     agreeing += one.agreeing;
   }
-  EqualSignShare out{all.size(), agreeing / weight, 0.0};
+  EqualSignShare out{0, agreeing / weight, 0.0};
+  for (const auto& [where, of_stretch] : by_stretch) out.num_patches += of_stretch.size();
   double squares = 0.0;
   for (const OfPatch& one : all) squares += std::pow(one.agreeing - out.share * one.weight, 2);
   // Even where all agree, count one that might not have.
@@ -211,11 +212,15 @@ bool WallOffsets::are_of_other_walls(const EqualSignShares& shares, double rate)
 double WallOffsets::evidence(const EqualSignShares& shares) const {
   const std::optional<OtherWalls> other = shares.other();
   EqualSignShare found = counted();
-  if (!other || found.num_patches < static_cast<std::size_t>(shares.config().min_patches)) return 0.0;
+  if (found.num_patches < static_cast<std::size_t>(shares.config().min_patches)) return 0.0;
   found.share = std::max(found.share, kChance);  // less than chance is chance
   constexpr double kLeast = 1e-300;              // for the logarithm
-  return std::log(std::max(density(found, shares.same()), kLeast)) -
-         std::log(std::max(density(found, *other), kLeast));
+  // What was not measured on the own walls speaks against them, never for them.
+  const OtherWalls believed{std::log(shares.config().prior_other_share - kChance),
+                            shares.config().prior_sigma};
+  const double ratio = std::log(std::max(density(found, shares.same()), kLeast)) -
+                       std::log(std::max(density(found, other.value_or(believed)), kLeast));
+  return other ? ratio : std::min(ratio, 0.0);
 }
 
 void EqualSignShares::set_same(const EqualSignShare& share) { same_ = share; }

@@ -38,7 +38,7 @@ struct PatchOffset {
 /// The share of equal signs: how often two pairs of scans that saw a patch put the wall on the same side.
 /// 0.5, as by chance, where no patch was seen twice.
 struct EqualSignShare {
-  std::size_t num_patches = 0;  ///< Over which it was counted.
+  std::size_t num_patches = 0;  ///< Seen twice, of which those of moved stretches are left out of the share.
   double share = 0.5;
   double sigma = 0.5;  ///< Standard deviation of the share, from counting.
 };
@@ -93,8 +93,8 @@ class WallOffsets {
   [[nodiscard]] EqualSignShare counted() const;
   /// True if P(share >= observed, same wall) < `rate`; needs `min_patches_to_refute` patches.
   [[nodiscard]] bool are_of_other_walls(const EqualSignShares& shares, double rate) const;
-  /// Log likelihood ratio, same walls to different ones. 0 if the share of different walls is not known or
-  /// fewer than `min_patches` patches were seen.
+  /// Log likelihood ratio, same walls to different ones; 0 if fewer than `min_patches` patches were seen.
+  /// Where the share of different walls was not measured, the one believed before counts, and only against.
   [[nodiscard]] double evidence(const EqualSignShares& shares) const;
 
  private:

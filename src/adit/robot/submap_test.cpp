@@ -38,7 +38,8 @@ TEST(Submap, ReachCountsAlongThePath) {
   // The way back passes the same spots, which are far away along the path.
   const RobotMap map = there_and_back(100);
   EXPECT_EQ(submap(map, 5, {}).points.size(), 5U) << "the path begins 2.5 m before";
-  EXPECT_EQ(submap(map, 99, {.radius_m = 100.0}).points.size(), 7U) << "around the turning point both ways are near";
+  EXPECT_EQ(submap(map, 99, {.radius_m = 100.0}).points.size(), 7U)
+      << "around the turning point both ways are near";
 }
 
 TEST(Submap, LeavesOutWhatIsFar) {

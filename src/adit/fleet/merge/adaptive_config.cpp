@@ -52,8 +52,6 @@ Fields fields_of(MergeCheckConfig& c) {
       {"changes_at_worst_per_km", &c.changes_at_worst_per_km, "1/km", 0.1, 1000.0,
        "changes of structure between two visits of one stretch, at worst: doors, blocked, lined or widened "
        "tunnels"},
-      {"share_differing_at_worst", &c.share_differing_at_worst, "", 0.01, 0.9,
-       "share of the compared places from which such changes may be seen, at worst"},
       {"things_per_km", &c.things_per_km, "1/km", 0.1, 1e4,
        "vehicles and the like that one robot meets on a shared stretch and the other does not"},
       {"things_elsewhere_per_km", &c.things_elsewhere_per_km, "1/km", 0.1, 1e4,

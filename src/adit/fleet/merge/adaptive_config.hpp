@@ -41,7 +41,6 @@ struct MergeCheckConfig {
   int min_loops = 1;
   double same_alignment_m = 3.0;
   double changes_at_worst_per_km = 20.0;
-  double share_differing_at_worst = 0.3;
   double things_per_km = 40.0;
   double things_elsewhere_per_km = 120.0;
   double things_speak_at_most = 3.0;

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "adit/fleet/merge/loop_registration.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "adit/core/angles.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
@@ -63,6 +66,15 @@ LoopClosure LoopRegistration::registered(const LoopCandidate& candidate, const F
   if (loop.verdict == LoopVerdict::accepted && apart_m > config_.one_place_m) {
     loop.verdict = LoopVerdict::rejected;
     loop.reason = format("its ends would be {:.1f} m apart: not one place", apart_m);
+  }
+  // Floor and roof of a tunnel look alike, and a tunnel's mirror image is that tunnel upside down.
+  constexpr double kSteepest = 60.0;  // degrees between two robots on ramps
+  const double upright = loop.T_from_to.rotation_matrix()(2, 2);
+  if (loop.verdict == LoopVerdict::accepted && config_.upright && upright < std::cos(kSteepest * kDegree)) {
+    loop.verdict = LoopVerdict::rejected;
+    loop.reason =
+        format("one robot would be tilted by {:.0f} degrees against the other: both stand on the floor",
+               std::acos(std::max(upright, -1.0)) / kDegree);
   }
   return loop;
 }

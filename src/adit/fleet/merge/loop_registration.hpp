@@ -27,6 +27,7 @@ struct LoopRegistrationConfig {
   RegistrationConfig registration;
   /// Farther apart, in metres, two scans may show the same walls, but it is not one place.
   double one_place_m = std::numeric_limits<double>::infinity();
+  bool upright = false;  ///< Both robots stand on floors: no loop tilts one by more than 60 degrees.
   std::optional<FixedLoopNoise> noise = {};  ///< Instead of what each registration says of itself.
 };
 

@@ -53,11 +53,9 @@ bool MergeChecker::has_other_walls(const Hypothesis& h) const {
 }
 
 bool MergeChecker::differs_too_often(const Hypothesis& h) const {
-  // One change is seen from many places, so that the places themselves are no independent trials.
-  return binomial_tail(h.num_differing(), h.compared.size(), config_.share_differing_at_worst) <
-             config_.refusal_rate ||
-         poisson_tail(h.num_changes(), config_.changes_at_worst_per_km * compared_km(h)) <
-             config_.refusal_rate;
+  // One change is seen from many places: the places themselves are no independent trials.
+  return poisson_tail(h.num_changes(), config_.changes_at_worst_per_km * compared_km(h)) <
+         config_.refusal_rate;
 }
 
 double MergeChecker::compared_km(const Hypothesis& h) const {

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "adit/core/log_gamma.hpp"
-
 namespace adit {
 
 double chance_to_go_on(const ChancesToGoOn& chances, std::size_t passed) {
@@ -43,17 +41,6 @@ double poisson_tail(std::size_t k, double mean) {
     term *= mean / static_cast<double>(i + 1);
   }
   return std::max(1.0 - fewer, 0.0);
-}
-
-double binomial_tail(std::size_t k, std::size_t n, double p) {
-  double chance = 0.0;
-  for (std::size_t i = k; i <= n; ++i) {
-    const auto x = static_cast<double>(i);
-    const auto all = static_cast<double>(n);
-    chance += std::exp(log_gamma(all + 1.0) - log_gamma(x + 1.0) - log_gamma(all - x + 1.0) +
-                       x * std::log(p) + (all - x) * std::log1p(-p));
-  }
-  return chance;
 }
 
 }  // namespace adit

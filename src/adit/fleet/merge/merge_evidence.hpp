@@ -30,7 +30,4 @@ inline constexpr double kAgreementIfTrue = 0.985;
 /// P(`k` or more events, of which `mean` are expected), by Poisson's distribution.
 [[nodiscard]] double poisson_tail(std::size_t k, double mean);
 
-/// P(`k` or more of `n` events), each with probability `p`.
-[[nodiscard]] double binomial_tail(std::size_t k, std::size_t n, double p);
-
 }  // namespace adit
