@@ -98,7 +98,7 @@ std::vector<Vector3> ends_of(const std::filesystem::path& session) {
 
 TEST(Canaries, TwoRobotsOnOneDriftMergeWhereTheyAre) {
   const test::TemporaryFolder folder;
-  const RoutesFile pair = put_world(folder, "single", {0, 0, 40}, {0, 8, 48});
+  const RoutesFile pair = put_world(folder, "single", {0, 0, 46}, {0, 8, 54});
   ASSERT_EQ(pair.routes.size(), 2U);
   const std::string session = map_pair(folder);
   EXPECT_NE(session.find("merged = true"), std::string::npos) << session;

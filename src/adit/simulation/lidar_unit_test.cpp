@@ -194,9 +194,11 @@ TEST(LidarUnit, ClocksShiftWheelsAndImuAndStampsJitterInOrder) {
   EXPECT_NE(wheels, imu);
   EXPECT_LE(std::abs(to_seconds(wheels)), 0.02);
   EXPECT_LE(std::abs(to_seconds(imu)), 0.02);
-  ASSERT_EQ(shifted.num_scans(), plain.num_scans());
+  // Early clocks end before the last sweep does, which is then left out.
+  ASSERT_LE(shifted.num_scans(), plain.num_scans());
+  ASSERT_GE(shifted.num_scans() + 1, plain.num_scans());
   double of_stamps = 0.0;
-  for (std::size_t i = 0; i < plain.num_scans(); ++i) {
+  for (std::size_t i = 0; i < shifted.num_scans(); ++i) {
     const double off = to_seconds(shifted.scan_stamps[i] - plain.scan_stamps[i]);
     EXPECT_LE(std::abs(off), 0.002 + 1e-9);
     of_stamps += off * off / static_cast<double>(plain.num_scans());
