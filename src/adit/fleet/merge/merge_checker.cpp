@@ -53,6 +53,8 @@ bool MergeChecker::has_other_walls(const Hypothesis& h) const {
 }
 
 bool MergeChecker::differs_too_often(const Hypothesis& h) const {
+  const std::size_t num = h.compared.size();
+  if (num >= static_cast<std::size_t>(config_.first_checks) && h.num_differing() == num) return true;
   // One change is seen from many places: the places themselves are no independent trials.
   return poisson_tail(h.num_changes(), config_.changes_at_worst_per_km * compared_km(h)) <
          config_.refusal_rate;
