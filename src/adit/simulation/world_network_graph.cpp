@@ -191,12 +191,12 @@ bool opens_outwards(const Network& network, std::size_t node) {
   const std::size_t own = network.edges_at(node).front();
   const Vector3& mouth = network.nodes[node].at;
   const Eigen::Vector2d out = -direction_at(network.edges[own], node);
-  for (std::size_t i = 0; i < network.edges.size(); ++i)
-    for (const Vector3& p : network.edges[i].line) {
+  for (const auto& edge : network.edges)
+    for (const Vector3& p : edge.line) {
       const Eigen::Vector2d off = (p - mouth).head<2>();
       const double ahead = off.dot(out);
       const double aside = std::abs(out.x() * off.y() - out.y() * off.x());
-      const double half = 0.5 * network.edges[i].section.width;
+      const double half = 0.5 * edge.section.width;
       // What widens by 45 degrees: rays that leave more sideways meet the last metres of the tunnel.
       if (ahead > 1.0 && ahead < kFar && aside < ahead + half + kRoom) return false;
     }

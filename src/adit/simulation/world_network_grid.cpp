@@ -15,7 +15,8 @@ struct Lattice {
   Eigen::Vector2d along;
   Eigen::Vector2d across;
   [[nodiscard]] std::size_t index(int column, int row) const {
-    return static_cast<std::size_t>(row * columns + column);
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(column);
   }
 };
 
