@@ -25,9 +25,9 @@ enum class Compared : unsigned char {
     const std::vector<Eigen::Vector3f>& points, float cell_size);
 
 /// True if the points `patch` of a scan, which differ, may be a thing that stands on the floor: it begins at
-/// most 1 m above the floor, is at most 2.8 m high and 7 m long, and does not continue a wall that both scans
-/// saw, as what fills a niche or closes an opening would. `compared` is of each point of the scan, whose z
-/// axis points upwards. A patch over a floor that was not seen is no thing.
+/// most 1.5 m above the floor, ends at most 3.1 m above it, is at most 7 m long, and does not continue a wall
+/// that both scans saw, as what fills a niche or closes an opening would. `compared` is of each point of the
+/// scan, whose z axis points upwards. A patch of a scan that shows no floor is no thing.
 [[nodiscard]] bool may_be_a_thing(const SeenSurface& scan, std::span<const std::size_t> patch,
                                   const std::vector<Compared>& compared, const RegistrationConfig& config);
 

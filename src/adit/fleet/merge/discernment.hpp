@@ -36,7 +36,8 @@ class Discernment {
               const AdaptiveConfig& config);
 
   /// Scans of one place do not differ by more than this (points of Agreement::largest_difference): the usual
-  /// difference of neighbouring keyframes times an allowance. 0 on a map too short to measure on: all differ.
+  /// difference of neighbouring keyframes times an allowance, or `least_difference_m2`. 0 on a map too short
+  /// to measure on: all differ.
   [[nodiscard]] double limit() const { return limit_; }
   [[nodiscard]] bool differ(const Agreement& agreement) const {
     return !(agreement.largest_difference <= limit_);
