@@ -316,7 +316,7 @@ template <class P>
   if (left.ok() && tried == Tried::all) left = trials.without_undecided(std::move(left));
   const auto num_loops = static_cast<std::size_t>(
       std::ranges::count(graph.edges, EdgeKind::loop, &BasicPoseGraph<P>::Edge::kind));
-  return num_rejected(best) == 0 && num_rejected(left) == num_loops ? best : left;
+  return num_rejected(left) == num_loops && 2 * num_rejected(best) < num_loops ? best : left;
 }
 
 }  // namespace adit

@@ -71,9 +71,6 @@ Fields fields_of(ReliefConfig& c) {
       {"min_normal_cosine", &c.min_normal_cosine, "", 0.0, 1.0,
        "smallest cosine between the normals of a pair of points"},
       {"min_points", &c.min_points, "", 1, 1000, "points needed per patch and pair of scans"},
-      {"changed_share", &c.changed_share, "", 0.0, 0.9,
-       "share of the walls that is left out where it differs most, by stretches of 10 m: fresh lining, "
-       "widened faces"},
       {"same_share", &c.same_share, "", 0.5, 1.0,
        "share of equal signs on one wall, from three tuning worlds (decision 0015)"},
       {"same_sigma", &c.same_sigma, "", 0.0, 0.5, "its standard deviation from stretch to stretch"},
@@ -81,6 +78,9 @@ Fields fields_of(ReliefConfig& c) {
        "share of equal signs on other walls, where the own map has none to measure it on (decision 0013)"},
       {"prior_sigma", &c.prior_sigma, "", 0.0, 5.0,
        "prior of the log share's standard deviation over look-alikes"},
+      {"prior_moulded", &c.prior_moulded, "", 0.0, 1.0,
+       "share of look-alikes whose walls were cast in one mould, where the own map has none to measure it "
+       "on"},
       {"prior_stretches", &c.prior_stretches, "", 0.0, 1000.0,
        "number of look-alikes that the prior counts as"},
       {"may_be_same", &c.may_be_same, "", 0.0, 1.0,

@@ -18,11 +18,11 @@ struct ReliefConfig {
   double min_offset_m = 0.002;
   double min_normal_cosine = 0.95;
   int min_points = 6;
-  double changed_share = 0.25;
   double same_share = 0.52;
   double same_sigma = 0.015;
   double prior_other_share = 0.62;
   double prior_sigma = 0.35;
+  double prior_moulded = 0.1;
   double prior_stretches = 4.0;
   double may_be_same = 0.05;
   int min_patches = 100;

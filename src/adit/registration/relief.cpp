@@ -47,53 +47,66 @@ struct OnPatch {
   int num_points = 0;
 };
 
-/// A patch weighs as much as the pairs beyond the first that saw it.
-struct OfPatch {
-  double weight;
-  double agreeing;
-};
-
-/// Patches nearby, which fresh lining or a widened face would change together.
-using Stretch = std::array<std::int32_t, 2>;
+/// One side of a stretch of tunnel, which fresh lining or a widened face would move as a whole.
+using Stretch = std::array<std::int32_t, 3>;
 Stretch stretch_of(const WallPatch& patch, double patch_m) {
   constexpr double kStretch = 10.0;  // metres
-  Stretch out;
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = static_cast<std::int32_t>(std::floor(patch[i] * patch_m / kStretch));
-  return out;
+  const auto cell = [&](std::int32_t i) {
+    return static_cast<std::int32_t>(std::floor(i * patch_m / kStretch));
+  };
+  return {cell(patch[0]), cell(patch[1]), patch[3]};
 }
 
-double weight_of(const std::vector<OfPatch>& patches) {
+/// The share of equal signs on a stretch. It weighs as much as the pairs beyond the first that saw its
+/// patches.
+struct OfStretch {
   double weight = 0.0;
-  for (const OfPatch& one : patches) weight += one.weight;
+  double agreeing = 0.0;
+  [[nodiscard]] double share() const { return agreeing / weight; }
+};
+
+double weight_of(const std::vector<OfStretch>& stretches) {
+  double weight = 0.0;
+  for (const OfStretch& one : stretches) weight += one.weight;
   return weight;
 }
 
-double share_of(const std::vector<OfPatch>& patches) {
-  double agreeing = 0.0;
-  for (const OfPatch& one : patches) agreeing += one.agreeing;
-  return agreeing / weight_of(patches);
+/// The number below which half of the weight lies; `value` of each stretch.
+template <class Value>
+double weighted_median(std::vector<OfStretch> stretches, const Value& value) {
+  std::ranges::stable_sort(stretches, {}, value);
+  const double half = 0.5 * weight_of(stretches);
+  double below = 0.0;
+  for (const OfStretch& one : stretches)
+    if ((below += one.weight) >= half) return value(one);
+  return kChance;
 }
 
-/// The patches but those of stretches on which nearly all offsets lie on one side, as where the wall itself
-/// was moved. The relief of other walls does not: noise is larger. At most the share `changed` of all is left
-/// out.
-std::vector<OfPatch> without_changed(const std::map<Stretch, std::vector<OfPatch>>& by_stretch,
-                                     double changed) {
-  constexpr double kMoved = 0.92;        // least share of equal signs,
-  constexpr double kLeastWeight = 60.0;  // counted over so much
-  double all = 0.0;
-  for (const auto& [where, patches] : by_stretch) all += weight_of(patches);
-  std::vector<OfPatch> kept;
-  double left_out = 0.0;
-  for (const auto& [where, patches] : by_stretch) {
-    const double weight = weight_of(patches);
-    if (weight >= kLeastWeight && share_of(patches) >= kMoved && left_out + weight <= changed * all)
-      left_out += weight;
-    else
-      kept.insert(kept.end(), patches.begin(), patches.end());
-  }
-  return kept;
+EqualSignShare mean_of(const std::vector<OfStretch>& stretches) {
+  const double weight = weight_of(stretches);
+  EqualSignShare out;
+  double agreeing = 0.0;
+  for (const OfStretch& one : stretches) agreeing += one.agreeing;
+  out.share = agreeing / weight;
+  double squares = 0.0;
+  for (const OfStretch& one : stretches) squares += std::pow(one.agreeing - out.share * one.weight, 2);
+  out.sigma = std::max(std::sqrt(squares), 1.0) / weight;  // even where all agree, one might not have
+  return out;
+}
+
+EqualSignShare median_of(const std::vector<OfStretch>& stretches) {
+  constexpr double kOfMedian = 1.2533;  // standard deviation of a median, by that of a mean
+  constexpr double kOfMad = 1.4826;     // standard deviation by the median of deviations; both of normal ones
+  const double weight = weight_of(stretches);
+  EqualSignShare out;
+  out.share = weighted_median(stretches, [](const OfStretch& one) { return one.share(); });
+  const double mad =
+      weighted_median(stretches, [&](const OfStretch& one) { return std::abs(one.share() - out.share); });
+  double squares = 0.0;
+  for (const OfStretch& one : stretches) squares += one.weight * one.weight;
+  // No surer than the number of signs allows.
+  out.sigma = kOfMedian * std::max(kOfMad * mad * std::sqrt(squares) / weight, 0.5 / std::sqrt(weight));
+  return out;
 }
 
 std::int32_t side_of(const Eigen::Vector3f& normal) {
@@ -165,6 +178,7 @@ EqualSignShare WallOffsets::counted() const {
 }
 
 EqualSignShare WallOffsets::count() const {
+  constexpr std::size_t kFew = 5;  // stretches, of which a median says little
   struct Sides {
     std::size_t num_in_front = 0;
     std::size_t num_behind = 0;
@@ -177,29 +191,24 @@ EqualSignShare WallOffsets::count() const {
     Sides& sides = patches[offsets_[i].patch];
     ++(metres > 0.0 ? sides.num_in_front : sides.num_behind);
   }
-  std::map<Stretch, std::vector<OfPatch>> by_stretch;
+  std::map<Stretch, OfStretch> by_stretch;
+  std::size_t num_patches = 0;
   for (const auto& [patch, sides] : patches) {
     const auto front = static_cast<double>(sides.num_in_front);
     const auto behind = static_cast<double>(sides.num_behind);
     const double num = front + behind;
     if (num < 2.0) continue;
-    by_stretch[stretch_of(patch, config_.patch_m)].push_back(
-        {num - 1.0, (front * (front - 1.0) + behind * (behind - 1.0)) / num});
+    ++num_patches;
+    OfStretch& stretch = by_stretch[stretch_of(patch, config_.patch_m)];
+    stretch.weight += num - 1.0;
+    stretch.agreeing += (front * (front - 1.0) + behind * (behind - 1.0)) / num;
   }
-  const std::vector<OfPatch> all = without_changed(by_stretch, config_.changed_share);
-  if (all.empty()) return {};
-  double weight = 0.0;
-  double agreeing = 0.0;
-  for (const OfPatch& one : all) {
-    weight += one.weight;
-    agreeing += one.agreeing;
-  }
-  EqualSignShare out{0, agreeing / weight, 0.0};
-  for (const auto& [where, of_stretch] : by_stretch) out.num_patches += of_stretch.size();
-  double squares = 0.0;
-  for (const OfPatch& one : all) squares += std::pow(one.agreeing - out.share * one.weight, 2);
-  // Even where all agree, count one that might not have.
-  out.sigma = std::max(std::sqrt(squares), 1.0) / weight;
+  if (by_stretch.empty()) return {};
+  std::vector<OfStretch> stretches;
+  for (const auto& [where, stretch] : by_stretch) stretches.push_back(stretch);
+  const bool may_have_moved = visits_ == Visits::two && stretches.size() >= kFew;
+  EqualSignShare out = may_have_moved ? median_of(stretches) : mean_of(stretches);
+  out.num_patches = num_patches;
   return out;
 }
 
@@ -215,12 +224,13 @@ double WallOffsets::evidence(const EqualSignShares& shares) const {
   if (found.num_patches < static_cast<std::size_t>(shares.config().min_patches)) return 0.0;
   found.share = std::max(found.share, kChance);  // less than chance is chance
   constexpr double kLeast = 1e-300;              // for the logarithm
-  // What was not measured on the own walls speaks against them, never for them.
   const OtherWalls believed{std::log(shares.config().prior_other_share - kChance),
                             shares.config().prior_sigma};
-  const double ratio = std::log(std::max(density(found, shares.same()), kLeast)) -
-                       std::log(std::max(density(found, other.value_or(believed)), kLeast));
-  return other ? ratio : std::min(ratio, 0.0);
+  const double of_same = density(found, shares.same());
+  // Where other walls were not measured on the own map, they may have been cast in one mould.
+  const double moulded = other ? 0.0 : shares.config().prior_moulded;
+  const double of_other = moulded * of_same + (1.0 - moulded) * density(found, other.value_or(believed));
+  return std::log(std::max(of_same, kLeast)) - std::log(std::max(of_other, kLeast));
 }
 
 void EqualSignShares::set_same(const EqualSignShare& share) { same_ = share; }

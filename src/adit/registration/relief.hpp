@@ -38,9 +38,9 @@ struct PatchOffset {
 /// The share of equal signs: how often two pairs of scans that saw a patch put the wall on the same side.
 /// 0.5, as by chance, where no patch was seen twice.
 struct EqualSignShare {
-  std::size_t num_patches = 0;  ///< Seen twice, of which those of moved stretches are left out of the share.
+  std::size_t num_patches = 0;  ///< Seen twice.
   double share = 0.5;
-  double sigma = 0.5;  ///< Standard deviation of the share, from counting.
+  double sigma = 0.5;  ///< Standard deviation of that share.
 };
 
 /// The distribution of the share over stretches of one wall: normal, beside the error of counting.
@@ -81,20 +81,26 @@ class EqualSignShares {
   std::vector<EqualSignShare> others_;  ///< Of each stretch that was seen well.
 };
 
+/// Whether walls may have been moved between the scans of a pair: lined anew, or widened.
+enum class Visits : std::uint8_t { one, two };
+
 /// Offsets from several pairs of scans, no scan in two pairs. For each patch seen by two or more pairs it
 /// counts the pairs whose offsets have equal sign. Noise gives equal signs as often as not, whatever the
 /// number of pairs. What the sensors explain is taken off before, and offsets of less than `min_offset_m`
 /// have no sign.
 class WallOffsets {
  public:
-  explicit WallOffsets(const ReliefConfig& config = {}) : config_(config) {}
+  explicit WallOffsets(const ReliefConfig& config = {}, Visits visits = Visits::two)
+      : config_(config), visits_(visits) {}
   void add(const std::vector<PatchOffset>& of_a_pair);
-  /// Over the patches that two pairs or more saw.
+  /// Over the patches that two pairs or more saw. Of two visits it is the share of most stretches, their
+  /// median over sides of 10 m of tunnel: a few whose walls were moved do not change it.
   [[nodiscard]] EqualSignShare counted() const;
   /// True if P(share >= observed, same wall) < `rate`; needs `min_patches_to_refute` patches.
   [[nodiscard]] bool are_of_other_walls(const EqualSignShares& shares, double rate) const;
   /// Log likelihood ratio, same walls to different ones; 0 if fewer than `min_patches` patches were seen.
-  /// Where the share of different walls was not measured, the one believed before counts, and only against.
+  /// Where the share of different walls was not measured, the one believed before counts: at most
+  /// log(1 / prior_moulded) for the same walls.
   [[nodiscard]] double evidence(const EqualSignShares& shares) const;
 
  private:
@@ -103,6 +109,7 @@ class WallOffsets {
   [[nodiscard]] Eigen::VectorXd left_by_sensors() const;
 
   ReliefConfig config_;
+  Visits visits_;
   std::vector<PatchOffset> offsets_;
   mutable std::optional<EqualSignShare> counted_;
 };

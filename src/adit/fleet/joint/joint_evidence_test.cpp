@@ -76,7 +76,7 @@ TEST(JointEvidence, TwoPairsTogetherJoinWhatNeitherCouldAlone) {
     EXPECT_EQ(pair.joined_reason.empty(), pair.a == RobotId{0} && pair.b == RobotId{1});
   }
   EXPECT_NE(
-      together.pairs[1].joined_reason.find("robot_0-robot_2 (5.9) and robot_1-robot_2 (5.9) say the same"),
+      together.pairs[1].joined_reason.find("robot_0-robot_2 (5.8) and robot_1-robot_2 (5.8) say the same"),
       std::string::npos)
       << together.pairs[1].joined_reason;
 }

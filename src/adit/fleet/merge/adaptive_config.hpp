@@ -22,8 +22,8 @@ struct DiscernmentConfig {
   double second_look_m = 1.0;
   double followed_m = 60.0;
   int starts_per_look_alike = 4;
-  double prior_chance = 0.5;
-  double prior_steps = 8.0;
+  double prior_chance = 0.4;
+  double prior_steps = 4.0;
   double shortest_reach_m = 50.0;
   double longest_reach_m = 150.0;
   double reach_off_m = 0.5;
@@ -43,7 +43,7 @@ struct MergeCheckConfig {
   double changes_at_worst_per_km = 20.0;
   double things_per_km = 40.0;
   double things_elsewhere_per_km = 120.0;
-  double things_speak_at_most = 3.0;
+  double things_speak_at_most = 1.0;
   double misplaced_m = 0.75;
   int misplaced_keyframes = 60;
   int misplaced_neighbours = 5;

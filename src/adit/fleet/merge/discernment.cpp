@@ -37,6 +37,7 @@ const Measured& Discernment::measured() {
   LookAlikeWalks walks(*this, chain_, *features_, config_);
   walks.start(find_look_alikes_());
   walks.follow(measured);
+  measured.walls.add_other(compare_displaced_walls().counted());
   measured_ = std::move(measured);
   return *measured_;
 }
@@ -97,8 +98,27 @@ WallOffsets Discernment::compare_own_walls() {
       a = keyframe_at(path_m_, path_m_[*b] + kStep);
     }
   }
+  return offsets_between(pairs);
+}
+
+/// The walls of a tunnel that looks alike all along are other walls a few metres on.
+WallOffsets Discernment::compare_displaced_walls() {
+  constexpr double kStep = 1.5;  // metres from one pair to the next, which see the same patches
+  const double displacement_m = config_.merge_check.discernment.displacement_m;
+  std::vector<OwnComparison> pairs;
+  for (const std::uint32_t k : sampled()) {
+    for (int pair = 0; pair < 3; ++pair) {
+      const auto a = keyframe_at(path_m_, path_m_[k] + kStep * pair);
+      const auto b = a ? keyframe_at(path_m_, path_m_[*a] + displacement_m) : std::nullopt;
+      if (b) pairs.push_back({*a, *b, Pose()});
+    }
+  }
+  return offsets_between(pairs);
+}
+
+WallOffsets Discernment::offsets_between(const std::vector<OwnComparison>& pairs) {
   const std::vector<LocalFit> found = compare(pairs, FitFrom::guess);
-  WallOffsets offsets(config_.registration.relief);
+  WallOffsets offsets(config_.registration.relief, Visits::one);
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (!differ(found[i].agreement))
       offsets.add(patch_offsets(surfaces_.at(pairs[i].a), surfaces_.at(pairs[i].b), found[i].T_a_b,
@@ -132,12 +152,26 @@ double Discernment::measure_reach() {
 }
 
 std::vector<bool> Discernment::distinctive(const std::vector<std::uint32_t>& keyframes) {
+  std::vector<bool> out;
+  for (const DisplacementSigns& signs : displacement_signs(keyframes)) out.push_back(!signs.empty());
+  return out;
+}
+
+std::vector<Vector3> Discernment::differing(std::uint32_t keyframe, const Agreement& agreement) const {
+  std::vector<Vector3> places;
+  for (const DifferingPatch& patch : agreement.structures)
+    if (patch.num_points > limit_) places.push_back(chain_.pose(keyframe) * patch.position);
+  if (places.empty()) places.push_back(chain_.pose(keyframe).translation());  // nothing in common
+  return places;
+}
+
+std::vector<DisplacementSigns> Discernment::displacement_signs(const std::vector<std::uint32_t>& keyframes) {
   constexpr std::uint32_t kTogether = 3;  // keyframes, a metre, that the middle one speaks for
   const auto last = static_cast<std::uint32_t>(path_m_.size() - 1);
   const auto speaker_of = [&](std::uint32_t k) { return std::min(k - k % kTogether + kTogether / 2, last); };
   std::vector<std::uint32_t> open;
   for (const std::uint32_t k : keyframes)
-    if (distinctive_.emplace(speaker_of(k), false).second) open.push_back(speaker_of(k));
+    if (signs_.emplace(speaker_of(k), DisplacementSigns()).second) open.push_back(speaker_of(k));
   const double displacement_m = config_.merge_check.discernment.displacement_m;
   // Both ways: the end of a niche may show one way and not the other.
   for (const double by : {-displacement_m, displacement_m}) {
@@ -146,13 +180,17 @@ std::vector<bool> Discernment::distinctive(const std::vector<std::uint32_t>& key
       if (const auto other = keyframe_at(path_m_, path_m_[k] + by)) displaced.push_back({k, *other, Pose()});
     const std::vector<LocalFit> found = compare(displaced, FitFrom::guess);
     for (std::size_t i = 0; i < displaced.size(); ++i) {
-      const bool differs = differ(found[i].agreement);
-      distinctive_[displaced[i].a] = differs;
-      if (!differs) std::erase(open, displaced[i].a);
+      const std::uint32_t k = displaced[i].a;
+      if (differ(found[i].agreement)) {
+        signs_[k].push_back(differing(k, found[i].agreement));
+      } else {
+        signs_[k].clear();
+        std::erase(open, k);
+      }
     }
   }
-  std::vector<bool> out;
-  for (const std::uint32_t k : keyframes) out.push_back(distinctive_.at(speaker_of(k)));
+  std::vector<DisplacementSigns> out;
+  for (const std::uint32_t k : keyframes) out.push_back(signs_.at(speaker_of(k)));
   return out;
 }
 

@@ -25,6 +25,10 @@ struct OwnComparison {
   Pose T_a_b;
 };
 
+/// Where it would show at a place that scans were displaced along the path: structures that differ, own
+/// odometry frame, one list for each way that there is. Empty where one way does not show.
+using DisplacementSigns = std::vector<std::vector<Vector3>>;
+
 /// Each part is measured when it is first asked for; all together take some seconds of processor time.
 class Discernment {
  public:
@@ -44,6 +48,9 @@ class Discernment {
   }
   /// Of each keyframe: whether scans displaced along the path, to either side, differ there.
   [[nodiscard]] std::vector<bool> distinctive(const std::vector<std::uint32_t>& keyframes);
+  /// Of each keyframe: by what.
+  [[nodiscard]] std::vector<DisplacementSigns> displacement_signs(
+      const std::vector<std::uint32_t>& keyframes);
   /// Path, in metres, over which odometry leads to within half a metre to the side: by how much its heading
   /// differs from that of the scans. Within 50 and 150 m.
   [[nodiscard]] double reach_m();
@@ -57,8 +64,11 @@ class Discernment {
   [[nodiscard]] std::vector<LocalFit> compare(const std::vector<OwnComparison>& asked, FitFrom from,
                                               double good_enough);
   [[nodiscard]] std::vector<std::uint32_t> sampled() const;
+  [[nodiscard]] std::vector<Vector3> differing(std::uint32_t keyframe, const Agreement& agreement) const;
   [[nodiscard]] double usual_difference();
   [[nodiscard]] WallOffsets compare_own_walls();
+  [[nodiscard]] WallOffsets compare_displaced_walls();
+  [[nodiscard]] WallOffsets offsets_between(const std::vector<OwnComparison>& pairs);
   [[nodiscard]] double measure_reach();
 
   AdaptiveConfig config_;
@@ -70,7 +80,7 @@ class Discernment {
   double limit_ = 0.0;
   std::optional<Measured> measured_;
   std::optional<double> reach_m_;
-  std::map<std::uint32_t, bool> distinctive_;
+  std::map<std::uint32_t, DisplacementSigns> signs_;
 };
 
 }  // namespace adit

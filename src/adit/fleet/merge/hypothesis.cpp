@@ -83,36 +83,59 @@ void plan_comparisons(Hypothesis& hypothesis, const LoopsBetween& between, doubl
 
 }  // namespace
 
+bool Changes::has(const Vector3& place) const {
+  return std::ranges::any_of(places_,
+                             [&](const Vector3& other) { return (other - place).norm() < reach_m_; });
+}
+
 bool Changes::know(const std::vector<Vector3>& seen) { return !seen.empty() && !add(seen); }
 
 bool Changes::add(const std::vector<Vector3>& seen) {
   const std::size_t num_before = places_.size();
   for (const Vector3& place : seen)
-    if (std::ranges::none_of(places_,
-                             [&](const Vector3& other) { return (other - place).norm() < reach_m_; }))
-      places_.push_back(place);
+    if (!has(place)) places_.push_back(place);
   return places_.size() > num_before;
+}
+
+bool Hypothesis::is_explained(const std::vector<Vector3>& differing) {
+  if (differing.empty()) ++num_unlocated;
+  return structures.know(differing);
 }
 
 void Hypothesis::add(const ComparedPlace& place) {
   offsets.add(place.offsets);
   things.add(place.things);
-  compared.push_back({place.difference, place.is_distinctive, {}, place.structures, {}, false});
+  compared.push_back(place);
+  compared.back().offsets.clear();
+  compared.back().things.clear();
   // What a second look confirms counts then.
   if (place.differs() && !second_looks[compared.size() - 1])
-    compared.back().is_known_change = structures.know(place.structures);
+    compared.back().is_explained = is_explained(place.structures);
 }
 
 void Hypothesis::add_second_look(std::size_t which, const ComparedPlace& place) {
+  constexpr double kSameObject = 5.0;  // metres between its middles, as seen from two places
+  constexpr double kGross = 5.0;       // times the limit: no chance meeting of beams and edges
   second_looks[which].reset();
   ComparedPlace& first = compared[which];
-  if (place.differs()) {
-    first.is_known_change = structures.know(first.structures);
+  if (!place.differs()) {
+    offsets.add(place.offsets);
+    things.add(place.things);
+    first = {place.difference, place.is_distinctive, {}, {}, {}, place.signs, false};
     return;
   }
-  offsets.add(place.offsets);
-  things.add(place.things);
-  first = {place.difference, place.is_distinctive, {}, {}, {}, false};
+  std::vector<Vector3> seen_again;
+  for (const Vector3& one : first.structures)
+    if (std::ranges::any_of(place.structures,
+                            [&](const Vector3& other) { return (other - one).norm() < kSameObject; }))
+      seen_again.push_back(one);
+  const bool has_moved = seen_again.empty() && !first.structures.empty() && !place.structures.empty();
+  if (has_moved && std::min(first.difference, place.difference) < kGross) {
+    first.is_explained = true;  // by chance: the place says nothing
+    first.signs.clear();
+    return;
+  }
+  first.is_explained = is_explained(seen_again);
 }
 
 bool Hypothesis::is_finished() const { return compared.size() == plan.size() && to_look_at_again().empty(); }
@@ -129,28 +152,35 @@ std::size_t Hypothesis::num_differing(double by_more_than) const {
       compared, [&](const ComparedPlace& place) { return !(place.difference <= by_more_than); }));
 }
 
-std::size_t Hypothesis::num_changes() const {
-  std::size_t num = structures.num();
-  for (std::size_t i = 0; i < compared.size(); ++i)
-    if (compared[i].differs() && compared[i].structures.empty() && !second_looks[i]) ++num;
-  return num;
+std::size_t Hypothesis::num_agreeing() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      compared, [](const ComparedPlace& place) { return !place.differs() || place.is_explained; }));
 }
 
 std::size_t Hypothesis::num_distinctive() const {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      compared, [](const ComparedPlace& place) { return place.is_distinctive && !place.differs(); }));
+  return static_cast<std::size_t>(std::ranges::count_if(compared, [&](const ComparedPlace& place) {
+    return outcome(place, true) == PlaceOutcome::distinctive;
+  }));
+}
+
+bool Hypothesis::shows_beside_changes(const ComparedPlace& place) const {
+  const auto is_beside = [&](const Vector3& sign) { return !structures.has(sign); };
+  return !place.signs.empty() && std::ranges::all_of(place.signs, [&](const std::vector<Vector3>& one_way) {
+    return std::ranges::any_of(one_way, is_beside);
+  });
+}
+
+PlaceOutcome Hypothesis::outcome(const ComparedPlace& place, bool distinctive_only) const {
+  if (place.differs() && !place.is_explained) return PlaceOutcome::differs;
+  const bool is_distinctive = place.differs() ? shows_beside_changes(place) : place.is_distinctive;
+  return is_distinctive || (!distinctive_only && !place.differs()) ? PlaceOutcome::distinctive
+                                                                   : PlaceOutcome::agrees;
 }
 
 std::vector<TestedPlace> Hypothesis::places(bool distinctive_only) const {
   std::vector<TestedPlace> places;
-  for (std::size_t i = 0; i < compared.size(); ++i) {
-    const bool counts = compared[i].is_distinctive || !distinctive_only;
-    const bool differs = compared[i].differs() && !compared[i].is_known_change;
-    places.push_back({plan[i].own, plan[i].theirs,
-                      differs                                  ? PlaceOutcome::differs
-                      : counts && !compared[i].is_known_change ? PlaceOutcome::distinctive
-                                                               : PlaceOutcome::agrees});
-  }
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    places.push_back({plan[i].own, plan[i].theirs, outcome(compared[i], distinctive_only)});
   std::ranges::stable_sort(places, {}, &TestedPlace::a);
   return places;
 }

@@ -10,6 +10,7 @@
 
 #include "adit/fleet/merge/adaptive_config.hpp"
 #include "adit/fleet/merge/comparison_plan.hpp"
+#include "adit/fleet/merge/discernment.hpp"
 #include "adit/fleet/sync/protocol.hpp"
 #include "adit/registration/relief.hpp"
 
@@ -24,7 +25,8 @@ struct ComparedPlace {
   /// odometry frame, metres.
   std::vector<Vector3> structures = {};
   std::vector<Vector3> things = {};
-  bool is_known_change = false;  ///< All that differs was seen from other places before, and counted there.
+  DisplacementSigns signs = {};  ///< By what it is distinctive (Discernment).
+  bool is_explained = false;  ///< What differs was counted before, at another place, or was not seen again.
   [[nodiscard]] bool differs() const { return !(difference <= 1.0); }
 };
 
@@ -37,6 +39,7 @@ class Changes {
   bool know(const std::vector<Vector3>& seen);
   /// Adds them; true if one of them was not known before.
   bool add(const std::vector<Vector3>& seen);
+  [[nodiscard]] bool has(const Vector3& place) const;
   [[nodiscard]] std::size_t num() const { return places_.size(); }
 
  private:
@@ -52,8 +55,9 @@ struct Hypothesis {
   WallOffsets offsets;                  ///< Of all compared walls.
   Changes structures{10.0};  ///< Doors, blocked or worked tunnels: half of 20 m of fresh lining to each side.
   Changes things{5.0};       ///< The length of a vehicle, whose middle looks elsewhere from either side.
-  std::vector<double> apart_m;  ///< To each hypothesis before this one: where they put the other robot.
-  double known_before = 0.0;    ///< Evidence that does not come from comparing scans.
+  std::vector<double> apart_m;    ///< To each hypothesis before this one: where they put the other robot.
+  double known_before = 0.0;      ///< Evidence that does not come from comparing scans.
+  std::size_t num_unlocated = 0;  ///< Places that differ as a whole, by a second look, too.
 
   [[nodiscard]] bool is_finished() const;
   /// Places that differ and have a second look left, once all have been seen: one fit in many fails.
@@ -64,13 +68,20 @@ struct Hypothesis {
   void add_second_look(std::size_t which, const ComparedPlace& place);
   /// Compared places that differ by more than this times the limit.
   [[nodiscard]] std::size_t num_differing(double by_more_than = 1.0) const;
-  /// Changes of structure, and places that differ for another reason: by a second look, too.
-  [[nodiscard]] std::size_t num_changes() const;
-  /// Compared places that agree where a displacement would have shown.
+  /// Changes of structure, and places that differ as a whole.
+  [[nodiscard]] std::size_t num_changes() const { return structures.num() + num_unlocated; }
+  /// Compared places that agree, but for what is explained; and those of them where a displacement would have
+  /// shown beside that.
+  [[nodiscard]] std::size_t num_agreeing() const;
   [[nodiscard]] std::size_t num_distinctive() const;
-  /// What was found at each place, in the order driven by the own robot; where not `distinctive_only` every
-  /// place that agrees counts as distinctive.
+  /// What was found at each place; what differs elsewhere leaves the rest of a place to agree. In the order
+  /// driven by the own robot; where not `distinctive_only` every place that agrees counts as distinctive.
   [[nodiscard]] std::vector<TestedPlace> places(bool distinctive_only) const;
+
+ private:
+  [[nodiscard]] PlaceOutcome outcome(const ComparedPlace& place, bool distinctive_only) const;
+  [[nodiscard]] bool shows_beside_changes(const ComparedPlace& place) const;
+  [[nodiscard]] bool is_explained(const std::vector<Vector3>& differing);
 };
 
 /// Two maps and the loops between them. With the same chain given twice: a map and its revisits.

@@ -19,8 +19,8 @@ TEST(LookAlikes, ThatHaveGoneOnForLongAreTrustedToGoOn) {
   for (int i = 0; i < 80; ++i) i < 8 ? seen.add_agreed(0) : seen.add_differed(0);  // nine of ten end at once,
   for (int i = 0; i < 80; ++i)
     i < 76 ? seen.add_agreed(7) : seen.add_differed(7);  // and those that passed seven go on
-  EXPECT_LT(chance_to_go_on(seen.chances(), 0), 0.2);
-  EXPECT_LT(chance_to_go_on(seen.chances(), 6), 0.2);
+  EXPECT_EQ(chance_to_go_on(seen.chances(), 0), kLeastChance);
+  EXPECT_EQ(chance_to_go_on(seen.chances(), 6), kLeastChance);
   EXPECT_GT(chance_to_go_on(seen.chances(), 7), 0.8);
   EXPECT_EQ(chance_to_go_on(seen.chances(), 14), chance_to_go_on(seen.chances(), 7));  // one phase
   EXPECT_EQ(chance_to_go_on(seen.chances(), 1000), chance_to_go_on(seen.chances(), 7));

@@ -176,7 +176,7 @@ MergeHypothesis MergeChecker::described(std::size_t which, std::size_t best) con
   const Hypothesis& h = hypotheses_[which];
   MergeHypothesis out;
   out.num_checked = static_cast<std::uint32_t>(h.compared.size());
-  out.num_passed = static_cast<std::uint32_t>(h.compared.size() - h.num_differing());
+  out.num_passed = static_cast<std::uint32_t>(h.num_agreeing());
   out.from_best_m = apart_m(which, best);
   for (const std::size_t l : h.loops)
     out.loops.emplace_back(static_cast<std::uint32_t>(loops_[l].a), static_cast<std::uint32_t>(loops_[l].b));

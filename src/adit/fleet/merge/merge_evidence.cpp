@@ -11,7 +11,7 @@ namespace adit {
 
 double chance_to_go_on(const ChancesToGoOn& chances, std::size_t passed) {
   const std::size_t phase = std::min<std::size_t>(std::bit_width(passed + 1), chances.size()) - 1;
-  return std::min(chances[phase], kAgreementIfTrue);
+  return std::clamp(chances[phase], kLeastChance, kAgreementIfTrue);
 }
 
 double evidence_of_agreement(const ChancesToGoOn& chances, std::size_t passed) {

@@ -13,9 +13,14 @@ namespace adit {
 /// P(a place shows no change of structure that none before has shown | the alignment is true): one place in 3
 /// m and five changes in a kilometre (doors, blocked, lined or widened tunnels). Constant, not a setting: the
 /// evidence of several robots is added up, so that all have to weigh alike.
-inline constexpr double kAgreementIfTrue = 0.985;
+inline constexpr double kAgreementIfTrue = 0.95;
 
-/// P(the next distinctive place agrees | look-alikes), after `passed` that agreed; at most kAgreementIfTrue.
+/// Look-alikes go on at least this often, however seldom a robot has seen it: places 3 m apart see in part
+/// the same.
+inline constexpr double kLeastChance = 0.2;
+
+/// P(the next distinctive place agrees | look-alikes), after `passed` that agreed; within kLeastChance and
+/// kAgreementIfTrue.
 [[nodiscard]] double chance_to_go_on(const ChancesToGoOn& chances, std::size_t passed);
 
 /// Evidence of one more distinctive place that agrees, after `passed` of them: the logarithm of the

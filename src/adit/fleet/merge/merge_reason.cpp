@@ -26,7 +26,7 @@ std::string MergeChecker::reason(MergeDecision decision, const std::vector<std::
   if (decision == MergeDecision::no_loops)
     return "no loop was accepted; drive on until both robots have passed the same place";
   const Hypothesis& h = hypotheses_[best_first.front()];
-  const std::size_t num_agreeing = h.compared.size() - h.num_differing();
+  const std::size_t num_agreeing = h.num_agreeing();
   switch (decision) {
     case MergeDecision::other_walls: {
       const EqualSignShare walls = h.offsets.counted();

@@ -18,12 +18,13 @@ std::vector<std::uint32_t> own_keyframes(const std::vector<PlannedComparison>& a
 }  // namespace
 
 ComparedPlace PlaceComparer::compared(const PlannedComparison& place, const SeenSurface& theirs,
-                                      bool is_distinctive) const {
+                                      const DisplacementSigns& signs) const {
   const double limit = discernment_.limit();
   const SeenSurface& own = discernment_.surfaces().at(place.own);
   const LocalFit fit = fit_near(own, theirs, place.T_own_theirs, limit, registration_);
   const Pose& T_odom_own = map_.keyframes[place.own].T_odom_base;
-  ComparedPlace out{fit.agreement.largest_difference / limit, is_distinctive};
+  ComparedPlace out{fit.agreement.largest_difference / limit, !signs.empty()};
+  out.signs = signs;
   const auto above_limit = [&](const std::vector<DifferingPatch>& patches) {
     std::vector<Vector3> places;
     for (const DifferingPatch& patch : patches)
@@ -40,7 +41,7 @@ std::vector<ComparedPlace> PlaceComparer::with_clouds(const std::vector<PlannedC
                                                       const Clouds& clouds) {
   std::map<std::uint32_t, const Clouds::Cloud*> came;
   for (const Clouds::Cloud& cloud : clouds.clouds) came[cloud.index] = &cloud;
-  const std::vector<bool> distinctive = discernment_.distinctive(own_keyframes(asked));
+  const std::vector<DisplacementSigns> signs = discernment_.displacement_signs(own_keyframes(asked));
   discernment_.surfaces().prepare(own_keyframes(asked));
   std::vector<ComparedPlace> places(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
@@ -49,7 +50,7 @@ std::vector<ComparedPlace> PlaceComparer::with_clouds(const std::vector<PlannedC
     cloud.points = received.points;
     const SeenSurface theirs(compute_surface(cloud, registration_), received.viewpoint.cast<double>(),
                              registration_.voxel_size);
-    places[i] = compared(asked[i], theirs, distinctive[i]);
+    places[i] = compared(asked[i], theirs, signs[i]);
   });
   return places;
 }
@@ -57,12 +58,12 @@ std::vector<ComparedPlace> PlaceComparer::with_clouds(const std::vector<PlannedC
 std::vector<ComparedPlace> PlaceComparer::within_own_map(const std::vector<PlannedComparison>& asked) {
   std::vector<std::uint32_t> both;
   for (const PlannedComparison& place : asked) both.insert(both.end(), {place.own, place.theirs});
-  const std::vector<bool> distinctive = discernment_.distinctive(own_keyframes(asked));
+  const std::vector<DisplacementSigns> signs = discernment_.displacement_signs(own_keyframes(asked));
   SurfaceStore& surfaces = discernment_.surfaces();
   surfaces.prepare(both);
   std::vector<ComparedPlace> places(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
-    places[i] = compared(asked[i], surfaces.at(asked[i].theirs), distinctive[i]);
+    places[i] = compared(asked[i], surfaces.at(asked[i].theirs), signs[i]);
   });
   return places;
 }

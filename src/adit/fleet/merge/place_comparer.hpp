@@ -28,7 +28,7 @@ class PlaceComparer {
  private:
   /// With the surface of the peer's keyframe; the own one has been prepared.
   [[nodiscard]] ComparedPlace compared(const PlannedComparison& place, const SeenSurface& theirs,
-                                       bool is_distinctive) const;
+                                       const DisplacementSigns& signs) const;
 
   const RobotMap& map_;
   Discernment& discernment_;
