@@ -96,6 +96,8 @@ class WallOffsets {
   /// Log likelihood ratio, same walls to different ones; 0 if fewer than `min_patches` patches were seen.
   /// Where the share of different walls was not measured, the one believed before counts, and only against.
   [[nodiscard]] double evidence(const EqualSignShares& shares) const;
+  /// The share of the sum of squared offsets that the sensors explain; 0 without offsets.
+  [[nodiscard]] double share_of_sensors() const;
 
  private:
   [[nodiscard]] EqualSignShare count() const;
