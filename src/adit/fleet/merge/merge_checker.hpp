@@ -63,8 +63,8 @@ class MergeChecker {
   /// What has been found, about the robots `a` (own) and `b`. The reason of a refusal ends with `remedy`,
   /// half a sentence, or where that is empty with what would help anywhere.
   [[nodiscard]] MergeCheck verdict(RobotId a, RobotId b, const std::string& remedy = {}) const;
-  /// What more evidence would decide; none where maps are joined, nothing aligns them, or the
-  /// reason is, or may be, another tunnel or a sensor.
+  /// What more evidence would decide; none where maps are joined, nothing aligns them, or another tunnel or a
+  /// sensor is taken to be the reason.
   [[nodiscard]] std::optional<UndecidedStretch> undecided() const;
 
  private:

@@ -436,7 +436,7 @@ TEST(MergeRefusal, ChangesAmongPlacesThatAgreeAreNoOtherTunnel) {
   }
   EXPECT_EQ(check_of_changes(4, 0.8).refused_kind, RefusalKind::changed_or_other)
       << "where own look-alikes agree as often, too";
-  EXPECT_EQ(check_of_changes(6, 0.85).refused_kind, RefusalKind::too_little);
+  EXPECT_EQ(check_of_changes(6, 0.85).refused_kind, RefusalKind::changed_or_other);
   EXPECT_TRUE(check_of_changes(12, 0.5).accepted);
 }
 

@@ -24,7 +24,10 @@ std::string what_differs(RefusalKind kind) {
   }
 }
 
-std::string what_has_changed(const Hypothesis& h) {
+/// What is said of places that agree, where that is not enough.
+std::string what_else(const Hypothesis& h, RefusalKind kind) {
+  if (kind == RefusalKind::too_little) return "";
+  if (kind != RefusalKind::changed_place) return ", " + what_differs(kind);
   return h.num_differing() > 0
              ? ", which speaks for one tunnel that has changed"
              : format(", but only one of the robots met {} things that come and go", h.things.num());
@@ -74,10 +77,9 @@ std::string MergeChecker::why(MergeDecision decision, const std::vector<std::siz
           "displacement",
           num_agreeing);
     case MergeDecision::too_little_evidence:
-      return format(
-          "evidence {:.1f} of {:.1f}: {} of {} places agree, {} of them distinctive{}", evidence(h), needed(),
-          num_agreeing, h.compared.size(), h.num_distinctive(),
-          refused_kind(decision, best_first) == RefusalKind::changed_place ? what_has_changed(h) : "");
+      return format("evidence {:.1f} of {:.1f}: {} of {} places agree, {} of them distinctive{}", evidence(h),
+                    needed(), num_agreeing, h.compared.size(), h.num_distinctive(),
+                    what_else(h, refused_kind(decision, best_first)));
     case MergeDecision::too_few_loops:
       return format("{} loops agree, {} are needed", h.loops.size(), config_.min_loops);
     case MergeDecision::rival:
@@ -111,7 +113,9 @@ std::string MergeChecker::remedy(MergeDecision decision, const std::vector<std::
     case MergeDecision::nothing_distinctive:
       return "drive on until both pass a junction or a niche";
     case MergeDecision::too_little_evidence:
-      return what_is_missing(hypotheses_[best_first.front()]);
+      return refused_kind(decision, best_first) == RefusalKind::other_tunnel
+                 ? kUntilItTrulyIs
+                 : what_is_missing(hypotheses_[best_first.front()]);
     case MergeDecision::rival:
       return "drive on until both pass something that only one of them explains";
     case MergeDecision::too_few_loops:

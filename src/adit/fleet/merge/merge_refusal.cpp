@@ -51,12 +51,15 @@ RefusalKind MergeChecker::refused_kind(MergeDecision decision,
   return RefusalKind::unknown;
 }
 
-/// What came and went, or was changed, between the visits is all that keeps the evidence below what is
-/// needed.
+/// A place has changed where what came and went, or was changed, is all that keeps the evidence below what is
+/// needed. Where places differ and look-alikes are likelier than one tunnel, it is not just too little.
 RefusalKind MergeChecker::kind_where_evidence_is_missing(const Hypothesis& h) const {
-  const bool is_changed = evidence(h) - evidence_of_things(h) >= needed() ||
-                          evidence_of_changes(h.places(config_.distinctive_only), chances()) >= needed();
-  return is_changed ? RefusalKind::changed_place : RefusalKind::too_little;
+  if (evidence(h) - evidence_of_things(h) >= needed() ||
+      evidence_of_changes(h.places(config_.distinctive_only), chances()) >= needed())
+    return RefusalKind::changed_place;
+  if (h.num_differing() == 0 || evidence(h) >= 0.0) return RefusalKind::too_little;
+  return 2 * h.num_differing() > h.compared.size() ? RefusalKind::other_tunnel
+                                                   : RefusalKind::changed_or_other;
 }
 
 /// Refused for more changes than are usual, so that the rate of changes is taken that fits best, each change
@@ -95,10 +98,11 @@ std::optional<UndecidedStretch> MergeChecker::undecided() const {
   const std::vector<std::size_t> order = best_first();
   const MergeDecision decision = decide(order);
   const RefusalKind kind = refused_kind(decision, order);
-  const bool would_help =
-      kind == RefusalKind::too_little || kind == RefusalKind::rival || kind == RefusalKind::changed_place;
-  if (!would_help || decision == MergeDecision::too_few_loops || decision == MergeDecision::unfinished)
-    return {};
+  const bool is_other = kind == RefusalKind::other_tunnel || kind == RefusalKind::sensor;
+  const bool lacks_evidence = decision == MergeDecision::too_little_evidence ||
+                              decision == MergeDecision::nothing_distinctive ||
+                              decision == MergeDecision::rival;
+  if (is_other || !(lacks_evidence || kind == RefusalKind::changed_place)) return {};
   const Hypothesis& best = hypotheses_[order.front()];
   const auto loops_of = [&](const Hypothesis& h) {
     std::vector<PcmLoop> loops;
