@@ -259,8 +259,7 @@ void MergeCounts::add(const MergeRun& run) {
       success += is(MergeOutcome::success);
       bent += is(MergeOutcome::bent);
       refused += is(MergeOutcome::refused);
-      if (pair.outcome == MergeOutcome::refused)
-        ++refusals[static_cast<std::size_t>(refusal_kind(pair.refused_reason))];
+      if (pair.outcome == MergeOutcome::refused) ++refusals[static_cast<std::size_t>(pair.refused_kind)];
     } else if (pair.shares_enough()) {
       ++indistinct;
       indistinct_merged += is(MergeOutcome::success) + is(MergeOutcome::bent);

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "adit/evaluation/refusal_kind.hpp"
+#include "adit/core/refusal_kind.hpp"
 #include "adit/evaluation/tables.hpp"
 
 namespace adit {
@@ -56,7 +56,8 @@ struct MergePair {
   double shared_m = 0.0;
   double distinctive_m = 0.0;  ///< Of the shared stretch, by geometry alone.
   MergeOutcome outcome = MergeOutcome::refused;
-  std::string refused_reason;  ///< One sentence where it was refused.
+  RefusalKind refused_kind = RefusalKind::unknown;  ///< Where it was refused.
+  std::string refused_reason;                       ///< One sentence where it was refused.
   int registrations = 0;
   int loops_in_use = 0;
   int wrong_loops_in_use = 0;

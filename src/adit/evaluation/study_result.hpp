@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adit/core/point_cloud.hpp"
+#include "adit/core/refusal_kind.hpp"
 #include "adit/evaluation/ate.hpp"
 #include "adit/evaluation/floor_plan.hpp"
 #include "adit/evaluation/loop_stats.hpp"
@@ -73,6 +74,7 @@ struct PairResult {
   LoopCounts loops_after_pcm;
   int wrong_loops_in_solution = 0;  ///< Of either wrong class, with a final GNC weight of at least 0.5.
   bool merged = false;
+  RefusalKind refused_kind = RefusalKind::unknown;  ///< Where the pair was not merged.
   std::string refused_reason;  ///< One sentence where the pair was not merged, else empty.
   GraphPicture initial;        ///< All loops over the odometry.
   GraphPicture after_pcm;      ///< The loops that PCM kept, over the odometry.

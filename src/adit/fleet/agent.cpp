@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "adit/core/check.hpp"
+#include "adit/core/format.hpp"
 #include "adit/fleet/merge/place_comparer.hpp"
 #include "adit/fleet/sync/own_map_parts.hpp"
 
@@ -232,12 +233,30 @@ Agent::Replies Agent::go_on_checking(RobotId peer) {
 
 Agent::Replies Agent::conclude_check(RobotId peer) {
   PeerSession& session = sessions_[peer];
-  const MergeCheck check = checks_.extract(peer).mapped().verdict(map_->id, peer);
+  const MergeChecker checker = checks_.extract(peer).mapped();
+  const MergeCheck check = checker.verdict(map_->id, peer);
   if (leads_nowhere(check)) await_clouds(session, session.take_second_search());
   if (session.state() == PeerState::awaiting_clouds) return request_of(session);
   const std::size_t num_before = ledger_.num_own_checks();
-  ledger_.add_own(check);
+  ledger_.add_own(with_advice(check, checker));
   return ledger_.checks_since(map_->id, num_before);
+}
+
+MergeCheck Agent::with_advice(MergeCheck verdict, const MergeChecker& checker) {
+  const std::optional<UndecidedStretch> undecided = checker.undecided();
+  if (!undecided) return verdict;
+  const std::optional<MergeAdvice> advice =
+      where_to_drive(*undecided, chain_by(verdict.a), chain_by(verdict.b),
+                     config_.adaptive.merge_check.spacing_m, what_own_map_knows(discernment()));
+  const std::string& name_a = known().robots.at(verdict.a).name;
+  const std::string& name_b = known().robots.at(verdict.b).name;
+  if (!advice) {
+    verdict.reason += format(", but {} has been to no place beyond it that would tell", name_a);
+    return verdict;
+  }
+  verdict = checker.verdict(verdict.a, verdict.b, in_words(*advice, name_a, name_b));
+  verdict.advice = advice;
+  return verdict;
 }
 
 bool Agent::leads_nowhere(const MergeCheck& check) const {

@@ -113,6 +113,8 @@ class Agent {
   /// What the check asks for next, or its verdict.
   Replies go_on_checking(RobotId peer);
   Replies conclude_check(RobotId peer);
+  /// The verdict of a check that is over, with where to drive if that would decide it.
+  [[nodiscard]] MergeCheck with_advice(MergeCheck verdict, const MergeChecker& checker);
   /// Many loops, and all that they claim is refuted: the true ones may not have been among the candidates.
   [[nodiscard]] bool leads_nowhere(const MergeCheck& check) const;
 

@@ -219,6 +219,44 @@ TEST(AdaptiveAgent, WhatItForgetsOfItsOwnKeyframesChangesNoResult) {
   EXPECT_EQ(one.checks.begin()->second.reason, other.checks.begin()->second.reason);
 }
 
+constexpr double kStart = 4.0;  // metres along the street, of robot 0
+
+// Robot 0 drove the whole street, robot 1 a part of it, towards it.
+MergeCheck check_of_part(double from, double to) {
+  AgentConfig config = adaptive();
+  config.adaptive.merge_check.error_rate = 1e-4;  // for which 14 m of a street are too little
+  TwoRobots fleet(3, config);
+  const test::BoxWorld world(3, 70.0);
+  const auto map_of = [&](RobotId id, const std::vector<Pose>& truth, double drift) {
+    return std::make_shared<const RobotMap>(test::drive(world, id, truth, drift));
+  };
+  fleet.agents[0] = Agent(map_of({0}, street(kStart, 60.0, -0.5), 0.0005), config);
+  fleet.agents[1] = Agent(map_of({1}, street(to, from, 0.5), -0.0005), config);
+  fleet.meet();
+  EXPECT_EQ(fleet.agents[1].known().checks.size(), 1U);
+  return fleet.agents[1].known().checks.at({{0}, {1}});
+}
+
+TEST(AdaptiveAgent, ADriveThatFollowsTheAdviceIsMergedWithTheEvidenceItPromised) {
+  constexpr double kFrom = 36.0;
+  constexpr double kTo = 50.0;
+  const MergeCheck before = check_of_part(kFrom, kTo);
+  ASSERT_FALSE(before.accepted) << before.reason;
+  EXPECT_EQ(before.refused_kind, RefusalKind::too_little) << before.reason;
+  ASSERT_TRUE(before.advice) << before.reason;
+  EXPECT_NE(before.reason.find("let robot_1 go on along the path of robot_0 from"), std::string::npos)
+      << before.reason;
+  EXPECT_NEAR(before.advice->missing, before.needed - before.evidence, 1e-9);
+  EXPECT_GE(before.advice->gain, before.advice->missing);
+  EXPECT_NEAR(before.advice->from.x(), before.advice->from_m, 1.0) << "the street is straight";
+  const double street_to = kStart + before.advice->to_m;
+  const MergeCheck after = check_of_part(std::min(kFrom, street_to), std::max(kTo, street_to));
+  EXPECT_TRUE(after.accepted) << before.reason << "\n" << after.reason;
+  const double grown = after.evidence - before.evidence;
+  EXPECT_GT(grown, 0.5 * before.advice->gain) << before.reason << "\n" << after.reason;
+  EXPECT_LT(grown, 2.0 * before.advice->gain) << before.reason << "\n" << after.reason;
+}
+
 TEST(AdaptiveAgent, DecisionsOfOthersThatMakeNoSenseAreLeftOut) {
   TwoRobots fleet(3, adaptive());
   fleet.meet();

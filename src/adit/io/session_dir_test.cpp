@@ -101,6 +101,20 @@ TEST(SessionDir, EveryCandidateSaysWhyItIsInTheSolutionOrNot) {
   EXPECT_EQ(num_of_first, 3U);
 }
 
+TEST(SessionDir, TheProvenanceSaysWhatKindOfDifferenceARefusalIsAndWhereToDrive) {
+  const TemporaryFolder folder;
+  Session session = session_of_two();
+  MergeCheck& check = session.fleet.checks.at({{0}, {1}});
+  check.accepted = false;
+  check.refused_kind = RefusalKind::too_little;
+  check.advice = MergeAdvice{143.5, 183.25, {51.25, -8.0, 0.5}, 5.25, 4.0};
+  ASSERT_TRUE(write_session(folder.path(), session, MapFiles::leave_out));
+  const std::string toml = get_file(folder / "session.toml");
+  for (const char* part : {"refused_kind = 'too little'", "from_m = 143.5", "to_m = 183.25",
+                           "from = [ 51.25, -8.0, 0.5 ]", "gain = 5.25", "missing = 4.0"})
+    EXPECT_NE(toml.find(part), std::string::npos) << part << "\n" << toml;
+}
+
 TEST(SessionDir, TheProvenanceListsTheHypotheses) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_session(folder.path(), session_of_two(), MapFiles::leave_out));

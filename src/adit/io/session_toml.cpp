@@ -17,6 +17,16 @@ std::string name_of(const FleetGraph& fleet, RobotId id) { return fleet.robots.a
 
 double rounded(double value) { return std::round(100.0 * value) / 100.0; }
 
+/// In the odometry frame of the first robot, along its path.
+toml::table advice_table(const MergeAdvice& advice) {
+  return toml::table{
+      {"from_m", rounded(advice.from_m)},
+      {"to_m", rounded(advice.to_m)},
+      {"from", toml::array{rounded(advice.from.x()), rounded(advice.from.y()), rounded(advice.from.z())}},
+      {"gain", rounded(advice.gain)},
+      {"missing", rounded(advice.missing)}};
+}
+
 /// A merge that was tested, joined or not, with the hypotheses about it, the best one first.
 toml::table merge_table(const FleetGraph& fleet, const MergeCheck& check) {
   toml::array hypotheses;
@@ -31,11 +41,14 @@ toml::table merge_table(const FleetGraph& fleet, const MergeCheck& check) {
                                      {"from_best_m", rounded(h.from_best_m)},
                                      {"loops", loops}});
   }
-  return toml::table{{"robots", toml::array{name_of(fleet, check.a), name_of(fleet, check.b)}},
-                     {"accepted", check.accepted},
-                     {"evidence_needed", rounded(check.needed)},
-                     {"reason", check.reason},
-                     {"hypotheses", hypotheses}};
+  toml::table out{{"robots", toml::array{name_of(fleet, check.a), name_of(fleet, check.b)}},
+                  {"accepted", check.accepted},
+                  {"evidence_needed", rounded(check.needed)},
+                  {"reason", check.reason},
+                  {"hypotheses", hypotheses}};
+  if (!check.accepted) out.insert("refused_kind", std::string(to_string(check.refused_kind)));
+  if (check.advice) out.insert("where_to_drive", advice_table(*check.advice));
+  return out;
 }
 
 toml::array array_of(const std::vector<std::string>& texts) {

@@ -172,6 +172,12 @@ Eigen::VectorXd WallOffsets::left_by_sensors() const {
   return metres - explained_by_sensors(terms, metres, {});
 }
 
+double WallOffsets::share_of_sensors() const {
+  double whole = 0.0;
+  for (const PatchOffset& offset : offsets_) whole += offset.metres * offset.metres;
+  return whole > 0.0 ? std::clamp(1.0 - left_by_sensors().squaredNorm() / whole, 0.0, 1.0) : 0.0;
+}
+
 EqualSignShare WallOffsets::counted() const {
   if (!counted_) counted_ = count();
   return *counted_;

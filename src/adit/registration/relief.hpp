@@ -102,6 +102,8 @@ class WallOffsets {
   /// Where the share of different walls was not measured, the one believed before counts: at most
   /// log(1 / prior_moulded) for the same walls.
   [[nodiscard]] double evidence(const EqualSignShares& shares) const;
+  /// The share of the sum of squared offsets that the sensors explain; 0 without offsets.
+  [[nodiscard]] double share_of_sensors() const;
 
  private:
   [[nodiscard]] EqualSignShare count() const;

@@ -109,6 +109,15 @@ TEST(Relief, ASensorWhoseRangesAreTooLongIsNoOtherWall) {
   }
 }
 
+TEST(Relief, SaysHowMuchOfTheOffsetsTheSensorsExplain) {
+  EXPECT_EQ(WallOffsets().share_of_sensors(), 0.0);
+  for (const std::uint64_t second : {1U, 11U}) {
+    EXPECT_LT(driven(1, second, 12).share_of_sensors(), 0.2) << "neither noise nor rock is a sensor";
+    EXPECT_GT(driven(1, second, 12, 1.0, 0.03).share_of_sensors(), 0.3);
+    EXPECT_GT(driven(1, second, 12, 1.0, 0.06).share_of_sensors(), 0.5);
+  }
+}
+
 // The share does not depend on how many scans saw a patch, so short stretches compare with long ones.
 TEST(Relief, TheShareIsTheSameForFewPairsOfScansAndForMany) {
   const WallOffsets few = driven(1, 11, 3);

@@ -63,6 +63,7 @@ Json pair_json(const PairResult& pair) {
           {"wrong_registration_after_pcm", pair.loops_after_pcm.wrong_registration},
           {"wrong_loops_in_solution", pair.wrong_loops_in_solution},
           {"merged", pair.merged},
+          {"refused_kind", pair.merged ? "" : to_string(pair.refused_kind)},
           {"refused_reason", pair.refused_reason},
           {"success", pair.success()},
           {"ate_max_m", ate_list(pair.robots, &AteResult::max_m)},

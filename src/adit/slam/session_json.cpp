@@ -55,6 +55,7 @@ Json pairs_json(const Session& session) {
                      {"second_clique", pair.second_clique},
                      {"merged", pair.merged},
                      {"sigma", accuracy_json(pair.accuracy)},
+                     {"refused_kind", pair.merged ? "" : to_string(pair.refused_kind)},
                      {"refused_reason", pair.refused_reason}});
   return pairs;
 }

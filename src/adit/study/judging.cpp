@@ -122,6 +122,7 @@ PairResult pair_result(const std::vector<const RobotRun*>& runs, const Meeting& 
   result.wrong_loops_in_solution = wrong_in_use(judged);
   const PairOutcome& outcome = judged.solution.pairs.front();
   result.merged = outcome.merged;
+  result.refused_kind = outcome.refused_kind;
   result.refused_reason = outcome.refused_reason;
   const std::vector<std::vector<Vector3>> paths = odometry_paths(runs, meeting);
   result.initial = picture(paths, runs, judged, [](const LoopOutcome&) { return true; });

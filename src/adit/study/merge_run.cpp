@@ -51,6 +51,7 @@ Result<MergePair> run_pair(const std::vector<RobotRun>& runs, const Meeting& mee
   pair.robots = {result.robots[0].name, result.robots[1].name};
   pair.shared_m = truth.shared_m[a][b];
   pair.distinctive_m = truth.distinctive_m[a][b];
+  pair.refused_kind = result.refused_kind;
   pair.refused_reason = result.refused_reason;
   pair.registrations = static_cast<int>(known.loops.size());
   pair.loops_in_use = loops_in_use(judged->solution);

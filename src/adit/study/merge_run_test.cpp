@@ -35,6 +35,7 @@ MergeRun made_up_run(const std::string& world, const std::string& keyframes) {
                          .shared_m = 100.0 / 3.0,
                          .distinctive_m = 45.0,
                          .outcome = outcome,
+                         .refused_kind = RefusalKind::rival,
                          .refused_reason = "one \"loop\", no more",
                          .registrations = 12,
                          .loops_in_use = 7,
@@ -56,6 +57,7 @@ void expect_equal(const MergePair& a, const MergePair& b) {
   EXPECT_EQ(a.shared_m, b.shared_m);
   EXPECT_EQ(a.distinctive_m, b.distinctive_m);
   EXPECT_EQ(a.outcome, b.outcome);
+  EXPECT_EQ(a.refused_kind, b.refused_kind);
   EXPECT_EQ(a.refused_reason, b.refused_reason);
   EXPECT_EQ(a.registrations, b.registrations);
   EXPECT_EQ(a.loops_in_use, b.loops_in_use);
@@ -114,7 +116,7 @@ TEST(MergeResults, OtherFilesAreRefusedWithTheRemedy) {
        {std::string(), std::string("{}"), good.substr(0, good.size() / 2), replaced("\"bent\"", "\"so-so\""),
         replaced("\"shared_m\"", "\"shared\""),
         replaced("\"registrations\": 12", "\"registrations\": \"12\""),
-        replaced("\"version\": 3", "\"version\": 1"), replaced("\"version\": 3,", "")}) {
+        replaced("\"version\": 4", "\"version\": 1"), replaced("\"version\": 4,", "")}) {
     put_file(folder / "results.json", text);
     EXPECT_ERROR(read_merge_runs(folder / "results.json"),
                  "results.json: not results of this version; remove the file");

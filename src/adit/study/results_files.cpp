@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adit/core/format.hpp"
+#include "adit/core/refusal_kind.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/csv.hpp"
 #include "adit/study/incremental_study.hpp"
@@ -17,13 +18,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kMergeRunsVersion = 3;  // of results.json
+constexpr int kMergeRunsVersion = 4;  // of results.json
 
 Json json_of(const MergePair& pair) {
   return {{"robots", pair.robots},
           {"shared_m", pair.shared_m},
           {"distinctive_m", pair.distinctive_m},
           {"outcome", to_string(pair.outcome)},
+          {"refused_kind", to_string(pair.refused_kind)},
           {"refused_reason", pair.refused_reason},
           {"registrations", pair.registrations},
           {"loops_in_use", pair.loops_in_use},
@@ -101,6 +103,7 @@ MergePair pair_of(const Json& json) {
   get(json, "shared_m", pair.shared_m);
   get(json, "distinctive_m", pair.distinctive_m);
   pair.outcome = merge_outcome(json.at("outcome").get<std::string>());
+  pair.refused_kind = refusal_kind(json.at("refused_kind").get<std::string>());
   get(json, "refused_reason", pair.refused_reason);
   get(json, "registrations", pair.registrations);
   get(json, "loops_in_use", pair.loops_in_use);
@@ -182,15 +185,14 @@ Result<> write_merge_csv(const std::filesystem::path& file, const std::vector<Me
   const auto thousandths = [](double value) { return format("{:.3f}", value); };
   for (const MergeRun& run : runs)
     for (const MergePair& pair : run.pairs)
-      text += csv_row(
-          {run.world, run.group, run.keyframes, run.sensors, run.conditions, pair.robots[0], pair.robots[1],
-           format("{:.1f}", pair.shared_m), format("{:.1f}", pair.distinctive_m),
-           std::string(to_string(pair.outcome)), number(pair.registrations), number(pair.loops_in_use),
-           number(pair.wrong_loops_in_use), thousandths(pair.ate_max_m[0]), thousandths(pair.ate_max_m[1]),
-           thousandths(pair.ate_max_over_path_pct[0]), thousandths(pair.ate_max_over_path_pct[1]),
-           pair.outcome == MergeOutcome::refused ? std::string(to_string(refusal_kind(pair.refused_reason)))
-                                                 : "",
-           pair.refused_reason});
+      text += csv_row({run.world, run.group, run.keyframes, run.sensors, run.conditions, pair.robots[0],
+                       pair.robots[1], format("{:.1f}", pair.shared_m), format("{:.1f}", pair.distinctive_m),
+                       std::string(to_string(pair.outcome)), number(pair.registrations),
+                       number(pair.loops_in_use), number(pair.wrong_loops_in_use),
+                       thousandths(pair.ate_max_m[0]), thousandths(pair.ate_max_m[1]),
+                       thousandths(pair.ate_max_over_path_pct[0]), thousandths(pair.ate_max_over_path_pct[1]),
+                       pair.outcome == MergeOutcome::refused ? std::string(to_string(pair.refused_kind)) : "",
+                       pair.refused_reason});
   return write_bytes(file, text);
 }
 

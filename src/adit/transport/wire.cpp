@@ -333,6 +333,19 @@ void get(Reader& in, MergeHypothesis& hypothesis) {
     in.refuse();
 }
 
+void put(Writer& out, const MergeAdvice& advice) {
+  for (const double value : {advice.from_m, advice.to_m, advice.from.x(), advice.from.y(), advice.from.z(),
+                             advice.gain, advice.missing})
+    out.scalar(value);
+}
+void get(Reader& in, MergeAdvice& advice) {
+  for (double* value : {&advice.from_m, &advice.to_m, &advice.from.x(), &advice.from.y(), &advice.from.z(),
+                        &advice.gain, &advice.missing}) {
+    *value = in.scalar<double>();
+    if (!std::isfinite(*value)) in.refuse();
+  }
+}
+
 void put(Writer& out, const MergeCheck& check) {
   out.scalar(check.a.value);
   out.scalar(check.b.value);
@@ -345,6 +358,9 @@ void put(Writer& out, const MergeCheck& check) {
   put(out, check.reason);
   out.vector(check.hypotheses);
   for (const double chance : check.goes_on) out.scalar(chance);
+  out.scalar(check.refused_kind);
+  out.scalar(static_cast<std::uint8_t>(check.advice ? 1 : 0));
+  if (check.advice) put(out, *check.advice);
 }
 void get(Reader& in, MergeCheck& check) {
   check.a.value = in.scalar<std::uint8_t>();
@@ -361,6 +377,9 @@ void get(Reader& in, MergeCheck& check) {
     chance = in.scalar<double>();
     if (!(chance >= 0.0 && chance <= 1.0)) in.refuse();
   }
+  check.refused_kind = in.scalar<RefusalKind>();
+  if (check.refused_kind > RefusalKind::unknown) in.refuse();
+  if (in.scalar<std::uint8_t>() != 0) get(in, check.advice.emplace());
   if (!std::isfinite(check.evidence) || !std::isfinite(check.needed) || check.num_passed > check.num_checked)
     in.refuse();
 }

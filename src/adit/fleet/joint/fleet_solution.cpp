@@ -72,35 +72,44 @@ std::map<RobotPair, Tried> tried_by_pair(const FleetGraph& fleet) {
   return by_pair;
 }
 
-std::string refusal(const FleetGraph& fleet, const BackEndConfig& config, const PairOutcome& pair,
-                    const Tried& tried, std::size_t num_used) {
+struct Refusal {
+  RefusalKind kind;
+  std::string reason;
+};
+
+Refusal refusal(const FleetGraph& fleet, const BackEndConfig& config, const PairOutcome& pair,
+                const Tried& tried, std::size_t num_used) {
   for (const RobotId robot : {pair.a, pair.b}) {
     if (fleet.robots.at(robot).nodes.empty()) {
-      return format("the keyframe policy left no keyframe of {}; keep more of them, or drive on",
-                    fleet.robots.at(robot).name);
+      return {RefusalKind::no_loop,
+              format("the keyframe policy left no keyframe of {}; keep more of them, or drive on",
+                     fleet.robots.at(robot).name)};
     }
   }
   if (tried.num == 0) {
-    return format("no keyframe of {} resembled one of {}; drive on until both have passed the same place",
-                  fleet.robots.at(pair.a).name, fleet.robots.at(pair.b).name);
+    return {RefusalKind::no_loop, format("no keyframe of {} resembled one of {}; drive on until both have "
+                                         "passed the same place, none is known yet",
+                                         fleet.robots.at(pair.a).name, fleet.robots.at(pair.b).name)};
   }
   if (pair.num_loops == 0) {
     const auto most =
         std::ranges::max_element(tried.reasons, {}, &decltype(tried.reasons)::value_type::second);
-    return format(
-        "none of {} candidates could be registered (mostly: {}); drive on until both have passed the same "
-        "place, nearer to one another",
-        tried.num, most->first);
+    return {RefusalKind::no_loop,
+            format("none of {} candidates could be registered (mostly: {}); drive on until both have passed "
+                   "the same place, nearer to one another, none is known yet",
+                   tried.num, most->first)};
   }
   const auto check = fleet.checks.find({pair.a, pair.b});
-  if (check != fleet.checks.end() && !check->second.accepted) return check->second.reason;
+  if (check != fleet.checks.end() && !check->second.accepted)
+    return {check->second.refused_kind, check->second.reason};
   if (check == fleet.checks.end() && fleet.policy == MergePolicy::adaptive)
-    return format("{} loops, but scans along them were never compared; the robots have to meet again",
-                  pair.num_loops);
-  return format(
-      "only {} of {} loops agree with the odometries of both robots, {} needed; drive a longer stretch that "
-      "both know",
-      num_used, pair.num_loops, config.min_loops);
+    return {RefusalKind::too_little,
+            format("{} loops, but scans along them were never compared; the robots have to meet again",
+                   pair.num_loops)};
+  return {RefusalKind::too_little,
+          format("only {} of {} loops agree with the odometries of both robots, {} needed; drive a longer "
+                 "stretch that both know",
+                 num_used, pair.num_loops, config.min_loops)};
 }
 
 void decide_merges(const FleetGraph& fleet, const BackEndConfig& config, const LoopsOfPairs& of_pairs,
@@ -113,8 +122,11 @@ void decide_merges(const FleetGraph& fleet, const BackEndConfig& config, const L
     pair.merged = num_used >= static_cast<std::size_t>(config.min_loops);
     if (pair.merged) continue;
     pair.joined_reason.clear();
-    if (pair.refused_reason.empty())
-      pair.refused_reason = refusal(fleet, config, pair, tried[{pair.a, pair.b}], num_used);
+    if (pair.refused_reason.empty()) {
+      Refusal found = refusal(fleet, config, pair, tried[{pair.a, pair.b}], num_used);
+      pair.refused_kind = found.kind;
+      pair.refused_reason = std::move(found.reason);
+    }
     // Too few loops join no maps, by way of third robots either.
     for (const std::size_t l : of_pair) solution.loops[l].weight = 0.0;
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "adit/core/config.hpp"
+#include "adit/core/refusal_kind.hpp"
 #include "adit/fleet/joint/cycle.hpp"
 #include "adit/fleet/sync/fleet_graph.hpp"
 #include "adit/posegraph/gnc.hpp"
@@ -63,8 +64,9 @@ struct PairOutcome {
   bool clique_exact = true;       ///< PCM proved both to be the largest.
   bool merged = false;
   std::optional<MergeAccuracy> accuracy = {};  ///< By measure_merges.
-  std::string joined_reason;   ///< One sentence where several pairs together had enough evidence; else "".
-  std::string refused_reason;  ///< One sentence; "" when merged.
+  std::string joined_reason;  ///< One sentence where several pairs together had enough evidence; else "".
+  RefusalKind refused_kind = RefusalKind::unknown;  ///< Where it is not merged.
+  std::string refused_reason;                       ///< One sentence; "" when merged.
 };
 
 /// Robots that share one frame: that of `anchor`'s odometry, the smallest id of them.

@@ -19,6 +19,7 @@ TEST(FleetGraph, RobotsWithoutLoopsStayApartWithAReason) {
   ASSERT_EQ(solution.components.size(), 2U);
   ASSERT_EQ(solution.pairs.size(), 1U);
   EXPECT_FALSE(solution.pairs[0].merged);
+  EXPECT_EQ(solution.pairs[0].refused_kind, RefusalKind::no_loop);
   EXPECT_NE(solution.pairs[0].refused_reason.find("resembled"), std::string::npos);
   EXPECT_NE(solution.pairs[0].refused_reason.find("drive on until"), std::string::npos);
   EXPECT_LT(largest_error(solution, solution.components[1]), 1e-9);
@@ -31,6 +32,7 @@ TEST(FleetGraph, ByDefaultLoopsThatNothingCheckedJoinNoMaps) {
   const FleetSolution apart = solve(fleet, {});
   EXPECT_FALSE(apart.pairs[0].merged);
   EXPECT_EQ(apart.components.size(), 2U);
+  EXPECT_EQ(apart.pairs[0].refused_kind, RefusalKind::too_little);
   EXPECT_NE(apart.pairs[0].refused_reason.find("never compared"), std::string::npos);
   fleet.policy = MergePolicy::paper;
   EXPECT_TRUE(solve(fleet, {}).pairs[0].merged);

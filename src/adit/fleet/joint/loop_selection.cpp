@@ -163,6 +163,7 @@ class MergeReview {
     for (const Contradiction& contradiction :
          contradictions(merges_, refuted_hypotheses(fleet_), chains_, config_.cycles)) {
       const Merge& merge = merges_[contradiction.merge];
+      outcome_of(merge).refused_kind = RefusalKind::taken_back;
       outcome_of(merge).refused_reason = taken_back(fleet_, merges_, contradiction);
       for (const std::size_t l : selection_.of_pairs.at({merge.a, merge.b}))
         selection_.loops[l].is_selected = false;

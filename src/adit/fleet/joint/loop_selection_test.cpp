@@ -42,10 +42,12 @@ TEST(LoopSelection, WhereChecksAreNeededOnlyTheLoopsOfAnAcceptedOneCount) {
   EXPECT_NE(untested.refused_reason.find("have to meet again"), std::string::npos) << untested.refused_reason;
 
   MergeCheck check{{0}, {1}, -3.0, 9.0, 8, 4, false, {}, "scans differ at 4 of 8 places"};
+  check.refused_kind = RefusalKind::changed_or_other;
   fleet.checks[{{0}, {1}}] = check;
   const FleetSolution refused = solve(fleet, config);
   EXPECT_FALSE(refused.pairs[0].merged);
   EXPECT_EQ(refused.pairs[0].refused_reason, check.reason);
+  EXPECT_EQ(refused.pairs[0].refused_kind, check.refused_kind);
   EXPECT_EQ(refused.components.size(), 2U);
 
   check.accepted = true;
@@ -87,6 +89,7 @@ TEST(LoopSelection, AMergeThatLaterOnesContradictIsTakenBack) {
   add_merge(later, {1}, {2}, 15.0);
   const FleetSolution after = solve(later, config);
   EXPECT_FALSE(after.pairs[1].merged);
+  EXPECT_EQ(after.pairs[1].refused_kind, RefusalKind::taken_back);
   EXPECT_EQ(after.pairs[1].refused_reason.find("taken back: with robot_0-robot_1 and robot_1-robot_2"), 0U)
       << after.pairs[1].refused_reason;
   ASSERT_EQ(after.components.size(), 1U) << "robot 2 is joined by robot 1";

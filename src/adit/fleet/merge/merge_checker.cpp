@@ -190,7 +190,7 @@ MergeHypothesis MergeChecker::described(std::size_t which, std::size_t best) con
   return out;
 }
 
-MergeCheck MergeChecker::verdict(RobotId a, RobotId b) const {
+MergeCheck MergeChecker::verdict(RobotId a, RobotId b, const std::string& remedy) const {
   const std::vector<std::size_t> order = best_first();
   const MergeDecision decision = decide(order);
   MergeCheck out;
@@ -198,7 +198,9 @@ MergeCheck MergeChecker::verdict(RobotId a, RobotId b) const {
   out.b = b;
   out.needed = needed();
   out.accepted = decision == MergeDecision::accepted;
-  out.reason = reason(decision, order);
+  out.refused_kind = refused_kind(decision, order);
+  out.reason = why(decision, order);
+  if (!out.accepted) out.reason += "; " + (remedy.empty() ? this->remedy(decision, order) : remedy);
   if (order.empty()) return out;
   for (const std::size_t h : std::span(order).first(std::min(order.size(), kHypothesesPerCheck)))
     out.hypotheses.push_back(described(h, order.front()));

@@ -25,6 +25,7 @@
 #include "adit/fleet/merge/adaptive_config.hpp"
 #include "adit/fleet/merge/hypothesis.hpp"
 #include "adit/fleet/merge/look_alikes.hpp"
+#include "adit/fleet/merge/merge_advice.hpp"
 #include "adit/fleet/sync/protocol.hpp"
 
 namespace adit {
@@ -59,8 +60,12 @@ class MergeChecker {
   [[nodiscard]] std::vector<PlannedComparison> next(std::size_t num) const;
   /// What came of the comparisons that `next` asked for, in that order.
   void add(const std::vector<ComparedPlace>& places);
-  /// What has been found, about the robots `a` (own) and `b`.
-  [[nodiscard]] MergeCheck verdict(RobotId a, RobotId b) const;
+  /// What has been found, about the robots `a` (own) and `b`. The reason of a refusal ends with `remedy`,
+  /// half a sentence, or where that is empty with what would help anywhere.
+  [[nodiscard]] MergeCheck verdict(RobotId a, RobotId b, const std::string& remedy = {}) const;
+  /// What more evidence would decide; none where maps are joined, nothing aligns them, or another tunnel or a
+  /// sensor is taken to be the reason.
+  [[nodiscard]] std::optional<UndecidedStretch> undecided() const;
 
  private:
   [[nodiscard]] MergeDecision decide(const std::vector<std::size_t>& best_first) const;
@@ -83,7 +88,17 @@ class MergeChecker {
   [[nodiscard]] std::vector<std::size_t> best_first() const;
   [[nodiscard]] double apart_m(std::size_t one, std::size_t other) const;
   [[nodiscard]] MergeHypothesis described(std::size_t hypothesis, std::size_t best) const;
-  [[nodiscard]] std::string reason(MergeDecision decision, const std::vector<std::size_t>& best_first) const;
+  /// merge_refusal.cpp has the rules.
+  [[nodiscard]] RefusalKind refused_kind(MergeDecision decision,
+                                         const std::vector<std::size_t>& best_first) const;
+  [[nodiscard]] RefusalKind kind_where_evidence_is_missing(const Hypothesis& hypothesis) const;
+  [[nodiscard]] RefusalKind kind_where_scans_differ(const Hypothesis& hypothesis) const;
+  [[nodiscard]] RefusalKind kind_where_walls_differ(const Hypothesis& hypothesis) const;
+  /// Of a stretch that has to be longer for that many changes; metres.
+  [[nodiscard]] double metres_for_changes(const Hypothesis& hypothesis) const;
+
+  [[nodiscard]] std::string why(MergeDecision decision, const std::vector<std::size_t>& best_first) const;
+  [[nodiscard]] std::string remedy(MergeDecision decision, const std::vector<std::size_t>& best_first) const;
   [[nodiscard]] std::string what_is_missing(const Hypothesis& hypothesis) const;
 
   std::vector<PcmLoop> loops_;

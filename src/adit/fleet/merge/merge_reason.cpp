@@ -8,6 +8,44 @@
 #include "adit/fleet/merge/merge_evidence.hpp"
 
 namespace adit {
+namespace {
+
+constexpr const char* kUntilItTrulyIs =
+    "drive on until one passes where the other has truly been, no such place is known";
+
+std::string what_differs(RefusalKind kind) {
+  switch (kind) {
+    case RefusalKind::changed_place:
+      return "the others speak for one tunnel, which has changed in more places than is usual";
+    case RefusalKind::changed_or_other:
+      return "whether it has changed or is another tunnel cannot be told";
+    default:
+      return "tunnels that only look alike";
+  }
+}
+
+/// What is said of places that agree, where that is not enough.
+std::string what_else(const Hypothesis& h, RefusalKind kind) {
+  if (kind == RefusalKind::too_little) return "";
+  if (kind != RefusalKind::changed_place) return ", " + what_differs(kind);
+  return h.num_differing() > 0
+             ? ", which speaks for one tunnel that has changed"
+             : format(", but only one of the robots met {} things that come and go", h.things.num());
+}
+
+std::string why_walls_differ(const Hypothesis& h, RefusalKind kind) {
+  const EqualSignShare walls = h.offsets.counted();
+  return format(
+      "the walls differ: of the pairs of scans that saw one of {} patches, {:.0f} % found the other robot's "
+      "wall on the same side, where noise alone would leave half: {}",
+      walls.num_patches, 100.0 * walls.share,
+      kind == RefusalKind::sensor
+          ? format("it may be the sensors, all {} places agree and range errors explain {:.0f} % of it",
+                   h.compared.size(), 100.0 * h.offsets.share_of_sensors())
+          : "two tunnels built alike");
+}
+
+}  // namespace
 
 std::string MergeChecker::what_is_missing(const Hypothesis& h) const {
   constexpr double kFarthest = 1000.0;  // metres that it makes sense to ask for
@@ -22,41 +60,31 @@ std::string MergeChecker::what_is_missing(const Hypothesis& h) const {
   return format("drive the same stretch for about another {:.0f} m", metres);
 }
 
-std::string MergeChecker::reason(MergeDecision decision, const std::vector<std::size_t>& best_first) const {
-  if (decision == MergeDecision::no_loops)
-    return "no loop was accepted; drive on until both robots have passed the same place";
+std::string MergeChecker::why(MergeDecision decision, const std::vector<std::size_t>& best_first) const {
+  if (decision == MergeDecision::no_loops) return "no loop was accepted";
   const Hypothesis& h = hypotheses_[best_first.front()];
   const std::size_t num_agreeing = h.num_agreeing();
   switch (decision) {
-    case MergeDecision::other_walls: {
-      const EqualSignShare walls = h.offsets.counted();
-      return format(
-          "the walls differ: of the pairs of scans that saw one of {} patches, {:.0f} % found the other "
-          "robot's wall on the same side, where noise alone would leave half: two tunnels built alike; drive "
-          "on until one passes where the other has truly been",
-          walls.num_patches, 100.0 * walls.share);
-    }
+    case MergeDecision::other_walls:
+      return why_walls_differ(h, refused_kind(decision, best_first));
     case MergeDecision::scans_differ:
-      return format(
-          "scans differ at {} of {} places along the stretch that {} loops align: tunnels that only look "
-          "alike; drive on until one passes where the other has truly been",
-          h.num_differing(), h.compared.size(), h.loops.size());
+      return format("scans differ at {} of {} places along the stretch that {} loops align: {}",
+                    h.num_differing(), h.compared.size(), h.loops.size(),
+                    what_differs(refused_kind(decision, best_first)));
     case MergeDecision::nothing_distinctive:
       return format(
           "shared stretch has no along-axis constraint: {} places agree, none of which would show a "
-          "displacement; drive on until both pass a junction or a niche",
+          "displacement",
           num_agreeing);
     case MergeDecision::too_little_evidence:
-      return format("evidence {:.1f} of {:.1f}: {} of {} places agree, {} of them distinctive; {}",
-                    evidence(h), needed(), num_agreeing, h.compared.size(), h.num_distinctive(),
-                    what_is_missing(h));
+      return format("evidence {:.1f} of {:.1f}: {} of {} places agree, {} of them distinctive{}", evidence(h),
+                    needed(), num_agreeing, h.compared.size(), h.num_distinctive(),
+                    what_else(h, refused_kind(decision, best_first)));
     case MergeDecision::too_few_loops:
-      return format("{} loops agree, {} are needed; drive on along the same stretch", h.loops.size(),
-                    config_.min_loops);
+      return format("{} loops agree, {} are needed", h.loops.size(), config_.min_loops);
     case MergeDecision::rival:
       return format(
-          "two hypotheses {:.0f} m apart along the tunnel have similar support, evidence {:.1f} and {:.1f}; "
-          "drive on until both pass something that only one of them explains",
+          "two hypotheses {:.0f} m apart along the tunnel have similar support, evidence {:.1f} and {:.1f}",
           apart_m(best_first[0], best_first[1]), evidence(h), evidence(hypotheses_[best_first[1]]));
     case MergeDecision::no_loops:
     case MergeDecision::unfinished:
@@ -67,6 +95,36 @@ std::string MergeChecker::reason(MergeDecision decision, const std::vector<std::
       "{} of {} places along the shared stretch agree, {} of them distinctive: evidence {:.1f}, needed "
       "{:.1f}",
       num_agreeing, h.compared.size(), h.num_distinctive(), evidence(h), needed());
+}
+
+std::string MergeChecker::remedy(MergeDecision decision, const std::vector<std::size_t>& best_first) const {
+  switch (decision) {
+    case MergeDecision::no_loops:
+      return "drive on until both robots have passed the same place, none is known yet";
+    case MergeDecision::other_walls:
+      if (refused_kind(decision, best_first) == RefusalKind::sensor)
+        return "calibrate the ranges of both sensors: driving on does not tell";
+      return kUntilItTrulyIs;
+    case MergeDecision::scans_differ:
+      return refused_kind(decision, best_first) == RefusalKind::other_tunnel
+                 ? kUntilItTrulyIs
+                 : format("{:.0f} m more of the same stretch without a change would tell",
+                          metres_for_changes(hypotheses_[best_first.front()]));
+    case MergeDecision::nothing_distinctive:
+      return "drive on until both pass a junction or a niche";
+    case MergeDecision::too_little_evidence:
+      return refused_kind(decision, best_first) == RefusalKind::other_tunnel
+                 ? kUntilItTrulyIs
+                 : what_is_missing(hypotheses_[best_first.front()]);
+    case MergeDecision::rival:
+      return "drive on until both pass something that only one of them explains";
+    case MergeDecision::too_few_loops:
+      return "drive on along the same stretch";
+    case MergeDecision::unfinished:
+    case MergeDecision::accepted:
+      break;
+  }
+  return "not all places were compared, the robots have to meet again";
 }
 
 }  // namespace adit

@@ -6,17 +6,19 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
 #include "adit/core/records.hpp"
+#include "adit/core/refusal_kind.hpp"
 #include "adit/place/scan_context.hpp"
 
 namespace adit {
 
-inline constexpr std::uint8_t kProtocolVersion = 6;
+inline constexpr std::uint8_t kProtocolVersion = 7;
 inline constexpr std::size_t kPlacesPerMessage = 64;
 inline constexpr std::size_t kCloudsPerMessage = 16;
 inline constexpr std::size_t kNodesPerMessage = 512;
@@ -134,6 +136,16 @@ struct MergeHypothesis {
   [[nodiscard]] std::uint32_t num_differing() const { return num_checked - num_passed; }
 };
 
+/// Where robot b of a MergeCheck should drive to decide it: along the path of robot a, beyond the stretch
+/// that both drove, where b has not been yet.
+struct MergeAdvice {
+  double from_m = 0.0;  ///< Along a's path: where what both drove ends,
+  double to_m = 0.0;    ///< and where b may stop; less than `from_m` against a's direction of driving.
+  Vector3 from = Vector3::Zero();  ///< Position at `from_m`, metres, in the odometry frame of a.
+  double gain = 0.0;               ///< Evidence from there, if a and b are in one tunnel.
+  double missing = 0.0;            ///< Evidence that a merge lacks.
+};
+
 /// The verdict on the loops between two robots: whether they may join the maps. Robot `a`, which searched,
 /// decides; where `b` is the same robot it is about places of its own map that it came back to. A later
 /// verdict replaces those before it. Evidence, numbers and loops are those of the best hypothesis.
@@ -145,9 +157,11 @@ struct MergeCheck {
   std::uint32_t num_passed = 0;
   bool accepted = false;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> loops;  ///< Keyframes of a and b.
-  std::string reason;                         ///< One sentence: why, and what would lead to a merge.
-  std::vector<MergeHypothesis> hypotheses{};  ///< At most kHypothesesPerCheck, the best one first.
-  ChancesToGoOn goes_on{};                    ///< As robot a measured them on its own map.
+  std::string reason;                               ///< One sentence: why, and what would lead to a merge.
+  std::vector<MergeHypothesis> hypotheses{};        ///< At most kHypothesesPerCheck, the best one first.
+  ChancesToGoOn goes_on{};                          ///< As robot a measured them on its own map.
+  RefusalKind refused_kind = RefusalKind::unknown;  ///< Where it is not accepted.
+  std::optional<MergeAdvice> advice = {};           ///< Where a place is known; `reason` names it.
 };
 
 /// Number first, first + 1, ... of those that `author`, who need not be the sender, decided.

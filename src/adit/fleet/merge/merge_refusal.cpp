@@ -1,0 +1,127 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What kind of difference kept maps apart (RefusalKind), and what more evidence would decide. All rules are
+/// here; docs/decisions/0042 tells why.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "adit/fleet/merge/merge_checker.hpp"
+#include "adit/fleet/merge/merge_evidence.hpp"
+
+namespace adit {
+namespace {
+
+/// log P(outcomes | one tunnel, as many changes as fit best) - log P(outcomes | look-alikes).
+double evidence_of_changes(const std::vector<TestedPlace>& places, const ChancesToGoOn& chances) {
+  const auto num_of = [&](PlaceOutcome outcome) {
+    return static_cast<double>(std::ranges::count(places, outcome, &TestedPlace::outcome));
+  };
+  const double differ = num_of(PlaceOutcome::differs);
+  const double agree = num_of(PlaceOutcome::distinctive);
+  if (differ == 0.0 || agree == 0.0) return 0.0;
+  const std::vector<double> at_places = evidence_at_places(places, chances);
+  return std::accumulate(at_places.begin(), at_places.end(), 0.0) +
+         differ * std::log(differ / (differ + agree) / (1.0 - kAgreementIfTrue)) +
+         agree * std::log(agree / (differ + agree) / kAgreementIfTrue);
+}
+
+}  // namespace
+
+RefusalKind MergeChecker::refused_kind(MergeDecision decision,
+                                       const std::vector<std::size_t>& best_first) const {
+  switch (decision) {
+    case MergeDecision::no_loops:
+      return RefusalKind::no_loop;
+    case MergeDecision::other_walls:
+      return kind_where_walls_differ(hypotheses_[best_first.front()]);
+    case MergeDecision::scans_differ:
+      return kind_where_scans_differ(hypotheses_[best_first.front()]);
+    case MergeDecision::too_little_evidence:
+      return kind_where_evidence_is_missing(hypotheses_[best_first.front()]);
+    case MergeDecision::rival:
+      return RefusalKind::rival;
+    case MergeDecision::nothing_distinctive:
+    case MergeDecision::too_few_loops:
+    case MergeDecision::unfinished:
+      return RefusalKind::too_little;
+    case MergeDecision::accepted:
+      break;
+  }
+  return RefusalKind::unknown;
+}
+
+/// A place has changed where what came and went, or was changed, is all that keeps the evidence below what is
+/// needed. Where places differ and look-alikes are likelier than one tunnel, it is not just too little.
+RefusalKind MergeChecker::kind_where_evidence_is_missing(const Hypothesis& h) const {
+  if (evidence(h) - evidence_of_things(h) >= needed() ||
+      evidence_of_changes(h.places(config_.distinctive_only), chances()) >= needed())
+    return RefusalKind::changed_place;
+  if (h.num_differing() == 0 || evidence(h) >= 0.0) return RefusalKind::too_little;
+  return 2 * h.num_differing() > h.compared.size() ? RefusalKind::other_tunnel
+                                                   : RefusalKind::changed_or_other;
+}
+
+/// Refused for more changes than are usual, so that the rate of changes is taken that fits best, each change
+/// counted once. Where that explains the places better than look-alikes by the evidence that a merge needs,
+/// the place has changed. Else it is another tunnel if most differ, and in between nobody knows. The own map
+/// is measured only where what was believed before leaves the question open.
+RefusalKind MergeChecker::kind_where_scans_differ(const Hypothesis& h) const {
+  if (2 * h.num_differing() > h.compared.size()) return RefusalKind::other_tunnel;
+  const LookAlikes before(config_.discernment.prior_chance, config_.discernment.prior_steps);
+  const std::vector<TestedPlace> places = h.places(config_.distinctive_only);
+  return evidence_of_changes(places, before.chances()) >= needed() &&
+                 evidence_of_changes(places, chances()) >= needed()
+             ? RefusalKind::changed_place
+             : RefusalKind::changed_or_other;
+}
+
+/// Scans that agree at every place, and walls that stand off for the larger part as errors of range would
+/// have it: then what is left may be an error that the model of sensors does not have.
+RefusalKind MergeChecker::kind_where_walls_differ(const Hypothesis& h) const {
+  constexpr double kLargerPart = 0.5;
+  return h.num_differing() == 0 && h.offsets.share_of_sensors() > kLargerPart ? RefusalKind::sensor
+                                                                              : RefusalKind::other_tunnel;
+}
+
+double MergeChecker::metres_for_changes(const Hypothesis& h) const {
+  constexpr double kFarthest = 10'000.0;  // metres: so many changes are none
+  double metres = 0.0;
+  while (metres < kFarthest &&
+         poisson_tail(h.num_changes(), config_.changes_at_worst_per_km * (compared_km(h) + metres / 1000.0)) <
+             config_.refusal_rate)
+    metres += config_.spacing_m;
+  return metres;
+}
+
+std::optional<UndecidedStretch> MergeChecker::undecided() const {
+  const std::vector<std::size_t> order = best_first();
+  const MergeDecision decision = decide(order);
+  const RefusalKind kind = refused_kind(decision, order);
+  const bool is_other = kind == RefusalKind::other_tunnel || kind == RefusalKind::sensor;
+  const bool lacks_evidence = decision == MergeDecision::too_little_evidence ||
+                              decision == MergeDecision::nothing_distinctive ||
+                              decision == MergeDecision::rival;
+  if (is_other || !(lacks_evidence || kind == RefusalKind::changed_place)) return {};
+  const Hypothesis& best = hypotheses_[order.front()];
+  const auto loops_of = [&](const Hypothesis& h) {
+    std::vector<PcmLoop> loops;
+    for (const std::size_t l : h.loops) loops.push_back(loops_[l]);
+    return loops;
+  };
+  UndecidedStretch out;
+  for (const PlannedComparison& place : best.plan) out.shared.push_back(place.own);
+  out.places = best.places(config_.distinctive_only);
+  out.chances = chances();
+  out.loops = loops_of(best);
+  out.missing = std::max(needed() - evidence(best), 0.0);
+  if (decision == MergeDecision::scans_differ) out.least_m = metres_for_changes(best);
+  if (kind == RefusalKind::rival) {
+    const Hypothesis& rival = hypotheses_[order[1]];
+    out.rival_loops = loops_of(rival);
+    out.missing = needed() - (evidence(best) - evidence(rival));
+  }
+  return out;
+}
+
+}  // namespace adit
