@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "adit/posegraph/gnc.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
@@ -24,6 +26,12 @@ double lower_gamma(double a, double x) {
     sum += term;
   }
   return sum * std::exp(a * std::log(x) - x - log_gamma(a));
+}
+
+template <class P>
+std::size_t num_loops(const BasicPoseGraph<P>& graph) {
+  return static_cast<std::size_t>(
+      std::ranges::count(graph.edges, EdgeKind::loop, &BasicPoseGraph<P>::Edge::kind));
 }
 
 // From the clusters, and from other poses as long as the answer is not clearly fine; `given`: the graph's
@@ -72,11 +80,15 @@ Solution<P> best_of_all(const BasicPoseGraph<P>& graph, const GncConfig& config,
     done = is_fine();
     phase.advance();
   }
+  // Where all loops fit by their stated noise and the trials leave none, nothing is decided: loops to both
+  // sides of a slip of the odometry strain one another.
+  std::optional<Solution<P>> all_fit;
+  if (best.ok() && num_rejected(best) == 0) all_fit = best;
   if (best.ok())
     best = search.reconsider(std::move(best), evidence, done ? Reconsidered::parts : Reconsidered::all);
   phase.advance();
   if (best.ok()) best = try_loops(graph, search, evidence, tried, std::move(best));
-  return best;
+  return all_fit && num_rejected(best) == num_loops(graph) ? *all_fit : best;
 }
 
 // The paper's search from the graph's own poses and from least squares with all loops.

@@ -305,18 +305,14 @@ class LoopTrials {
 };
 
 // Where the search had to choose between explanations, every group is tried. Where the clusters settled it,
-// only parts of large ones are: a mistake may have come in with them by chance. Trials that leave no loop
-// have decided nothing: as where loops to both sides of a slip of the odometry contradict one another.
+// only parts of large ones are: a mistake may have come in with them by chance.
 template <class P>
 [[nodiscard]] Solution<P> try_loops(const BasicPoseGraph<P>& graph, const GncSearch<P>& search,
                                     const LoopEvidence<P>& evidence, Tried tried, Solution<P> best) {
   LoopTrials<P> trials(graph, search, evidence, tried);
   if (tried == Tried::parts_of_large && !trials.rejects_mistakes(best)) return best;
-  Solution<P> left = trials.without_misfits(best);
-  if (left.ok() && tried == Tried::all) left = trials.without_undecided(std::move(left));
-  const auto num_loops = static_cast<std::size_t>(
-      std::ranges::count(graph.edges, EdgeKind::loop, &BasicPoseGraph<P>::Edge::kind));
-  return num_rejected(left) == num_loops && 2 * num_rejected(best) < num_loops ? best : left;
+  best = trials.without_misfits(std::move(best));
+  return best.ok() && tried == Tried::all ? trials.without_undecided(std::move(best)) : best;
 }
 
 }  // namespace adit
