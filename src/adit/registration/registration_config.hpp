@@ -21,8 +21,9 @@ struct ReliefConfig {
   double same_share = 0.52;
   double same_sigma = 0.015;
   double prior_other_share = 0.62;
-  double prior_sigma = 0.35;
-  double prior_moulded = 0.1;
+  double prior_sigma = 0.5;
+  double prior_moulded = 0.02;
+  double moulded = 0.002;
   double prior_stretches = 4.0;
   double may_be_same = 0.05;
   int min_patches = 100;

@@ -26,6 +26,17 @@ double density(const EqualSignShare& found, const SameWalls& walls) {
   return normal_density(found.share - walls.mean, std::hypot(walls.sigma, found.sigma));
 }
 
+/// The share that walls which give `share` under one noise give under another one. Offsets of two pairs,
+/// whose common part is the relief, have the correlation rho = relief^2 / (relief^2 + noise^2) and equal
+/// signs at the share 1/2 + asin(rho) / pi (Sheppard, "On the application of the theory of error", 1899).
+double under_noise(double share, double from_m, double to_m) {
+  if (!(from_m > 0.0 && to_m > 0.0)) return share;
+  constexpr double kNearlyOne = 0.999;
+  const double rho = std::min(std::sin(std::numbers::pi * (share - kChance)), kNearlyOne);
+  const double ratio = rho / (1.0 - rho) * std::pow(from_m / to_m, 2);
+  return kChance + std::asin(ratio / (1.0 + ratio)) / std::numbers::pi;
+}
+
 /// Averages over the distribution of `walls` by steps in its standard deviation.
 double density(const EqualSignShare& found, const OtherWalls& walls) {
   constexpr double kStep = 0.1;  // sigmas
@@ -82,6 +93,9 @@ double weighted_median(std::vector<OfStretch> stretches, const Value& value) {
   return kChance;
 }
 
+/// Of the share of equal ones among so many: no share is known better, even where all agree.
+double sigma_of_signs(double num) { return 0.5 / std::sqrt(num); }
+
 EqualSignShare mean_of(const std::vector<OfStretch>& stretches) {
   const double weight = weight_of(stretches);
   EqualSignShare out;
@@ -90,7 +104,7 @@ EqualSignShare mean_of(const std::vector<OfStretch>& stretches) {
   out.share = agreeing / weight;
   double squares = 0.0;
   for (const OfStretch& one : stretches) squares += std::pow(one.agreeing - out.share * one.weight, 2);
-  out.sigma = std::max(std::sqrt(squares), 1.0) / weight;  // even where all agree, one might not have
+  out.sigma = std::max(std::sqrt(squares) / weight, sigma_of_signs(weight));
   return out;
 }
 
@@ -104,8 +118,7 @@ EqualSignShare median_of(const std::vector<OfStretch>& stretches) {
       weighted_median(stretches, [&](const OfStretch& one) { return std::abs(one.share() - out.share); });
   double squares = 0.0;
   for (const OfStretch& one : stretches) squares += one.weight * one.weight;
-  // No surer than the number of signs allows.
-  out.sigma = kOfMedian * std::max(kOfMad * mad * std::sqrt(squares) / weight, 0.5 / std::sqrt(weight));
+  out.sigma = kOfMedian * std::max(kOfMad * mad * std::sqrt(squares) / weight, sigma_of_signs(weight));
   return out;
 }
 
@@ -190,9 +203,15 @@ EqualSignShare WallOffsets::count() const {
     std::size_t num_behind = 0;
   };
   const Eigen::VectorXd left = left_by_sensors();
+  std::map<WallPatch, double> last;  // offset of each patch
+  std::vector<double> apart;         // of two offsets of one patch
   std::map<WallPatch, Sides> patches;
   for (std::size_t i = 0; i < offsets_.size(); ++i) {
     const double metres = left[static_cast<Eigen::Index>(i)];
+    if (const auto [before, is_first] = last.emplace(offsets_[i].patch, metres); !is_first) {
+      apart.push_back(std::abs(metres - before->second));
+      before->second = metres;
+    }
     if (std::abs(metres) <= config_.min_offset_m) continue;
     Sides& sides = patches[offsets_[i].patch];
     ++(metres > 0.0 ? sides.num_in_front : sides.num_behind);
@@ -215,6 +234,11 @@ EqualSignShare WallOffsets::count() const {
   const bool may_have_moved = visits_ == Visits::two && stretches.size() >= kFew;
   EqualSignShare out = may_have_moved ? median_of(stretches) : mean_of(stretches);
   out.num_patches = num_patches;
+  constexpr double kOfDifference =
+      1.4826 / std::numbers::sqrt2;  // by the median of |differences| of normal ones
+  const auto middle = apart.begin() + std::ssize(apart) / 2;
+  std::ranges::nth_element(apart, middle);
+  out.noise_m = kOfDifference * *middle;
   return out;
 }
 
@@ -225,18 +249,17 @@ bool WallOffsets::are_of_other_walls(const EqualSignShares& shares, double rate)
 }
 
 double WallOffsets::evidence(const EqualSignShares& shares) const {
-  const std::optional<OtherWalls> other = shares.other();
   EqualSignShare found = counted();
+  const std::optional<OtherWalls> other = shares.other(found.noise_m);
   if (found.num_patches < static_cast<std::size_t>(shares.config().min_patches)) return 0.0;
   found.share = std::max(found.share, kChance);  // less than chance is chance
   constexpr double kLeast = 1e-300;              // for the logarithm
-  const OtherWalls believed{std::log(shares.config().prior_other_share - kChance),
-                            shares.config().prior_sigma};
   const double of_same = density(found, shares.same());
-  // Where other walls were not measured on the own map, they may have been cast in one mould.
-  const double moulded = other ? 0.0 : shares.config().prior_moulded;
-  const double of_other = moulded * of_same + (1.0 - moulded) * density(found, other.value_or(believed));
-  return std::log(std::max(of_same, kLeast)) - std::log(std::max(of_other, kLeast));
+  const double moulded = other ? shares.config().moulded : shares.config().prior_moulded;
+  const double of_other =
+      moulded * of_same + (1.0 - moulded) * density(found, other.value_or(shares.believed(found.noise_m)));
+  const double ratio = std::log(std::max(of_same, kLeast)) - std::log(std::max(of_other, kLeast));
+  return shares.are_moulded() ? std::min(ratio, 0.0) : ratio;
 }
 
 void EqualSignShares::set_same(const EqualSignShare& share) { same_ = share; }
@@ -252,17 +275,27 @@ SameWalls EqualSignShares::same() const {
   return walls;
 }
 
-std::optional<OtherWalls> EqualSignShares::other() const {
-  if (others_.empty()) return {};
+bool EqualSignShares::are_moulded() const {
+  return std::ranges::any_of(others_, [&](const EqualSignShare& one) {
+    return chance_of_at_least(one, same()) > config_.may_be_same;
+  });
+}
+
+OtherWalls EqualSignShares::believed(double noise_m) const {
+  return {std::log(under_noise(config_.prior_other_share, same_.noise_m, noise_m) - kChance),
+          config_.prior_sigma};
+}
+
+std::optional<OtherWalls> EqualSignShares::other(double noise_m) const {
+  if (others_.empty() || are_moulded()) return {};
   const auto num = static_cast<double>(others_.size());
   double mean = 0.0;
   for (const EqualSignShare& one : others_) {
-    if (chance_of_at_least(one, same()) > config_.may_be_same) return {};
-    mean += std::log(one.share - kChance) / num;
+    mean += std::log(under_noise(one.share, one.noise_m, noise_m) - kChance) / num;
   }
   double beyond_chance = config_.prior_stretches * config_.prior_sigma * config_.prior_sigma;
   for (const EqualSignShare& one : others_) {
-    const double beyond_half = one.share - kChance;
+    const double beyond_half = under_noise(one.share, one.noise_m, noise_m) - kChance;
     beyond_chance +=
         std::max(0.0, std::pow(std::log(beyond_half) - mean, 2) - std::pow(one.sigma / beyond_half, 2));
   }

@@ -40,7 +40,8 @@ struct PatchOffset {
 struct EqualSignShare {
   std::size_t num_patches = 0;  ///< Seen twice.
   double share = 0.5;
-  double sigma = 0.5;  ///< Standard deviation of that share.
+  double sigma = 0.5;    ///< Standard deviation of that share.
+  double noise_m = 0.0;  ///< Of the offset of one pair of scans, about its patch: one standard deviation.
 };
 
 /// The distribution of the share over stretches of one wall: normal, beside the error of counting.
@@ -70,9 +71,14 @@ class EqualSignShares {
 
   /// A little more than half even for one wall, because where the beams fall on an edge is not random.
   [[nodiscard]] SameWalls same() const;
-  /// Predicted share for different walls, from the robot's own look-alikes. None if none of them has
-  /// `min_patches` patches, or if the walls of one of them may be the same (cast in one mould).
-  [[nodiscard]] std::optional<OtherWalls> other() const;
+  /// Predicted share for different walls where offsets have the noise `noise_m`, from the robot's own
+  /// look-alikes; 0: the noise of each. None if none of them has `min_patches` patches, or if the walls of
+  /// one of them may be the same (cast in one mould).
+  [[nodiscard]] std::optional<OtherWalls> other(double noise_m = 0.0) const;
+  /// What is believed where none was measured.
+  [[nodiscard]] OtherWalls believed(double noise_m) const;
+  /// Whether walls of one of the own look-alikes may be the same: cast in one mould.
+  [[nodiscard]] bool are_moulded() const;
   [[nodiscard]] const ReliefConfig& config() const { return config_; }
 
  private:
@@ -99,8 +105,9 @@ class WallOffsets {
   /// True if P(share >= observed, same wall) < `rate`; needs `min_patches_to_refute` patches.
   [[nodiscard]] bool are_of_other_walls(const EqualSignShares& shares, double rate) const;
   /// Log likelihood ratio, same walls to different ones; 0 if fewer than `min_patches` patches were seen.
-  /// Where the share of different walls was not measured, the one believed before counts: at most
-  /// log(1 / prior_moulded) for the same walls.
+  /// At most log(1 / moulded): other walls may have been cast in one mould. Where their share was not
+  /// measured, the one believed before counts; where the own map has walls that are, nothing speaks for a
+  /// merge.
   [[nodiscard]] double evidence(const EqualSignShares& shares) const;
   /// The share of the sum of squared offsets that the sensors explain; 0 without offsets.
   [[nodiscard]] double share_of_sensors() const;

@@ -289,15 +289,53 @@ TEST(EqualSignShares, MoreLookAlikesSharpenThePredictionForOtherWalls) {
   EXPECT_GT(uneven.other()->sigma_log, where_others_agree(0.65, 4).other()->sigma_log);
 }
 
-TEST(EqualSignShares, WhereOneLookAlikeMayHaveTheSameWallsLittleIsKnown) {
+TEST(EqualSignShares, UnderMoreNoiseOtherWallsShowLess) {
+  EqualSignShares shares;
+  EqualSignShare other = found(0.7);
+  other.noise_m = 0.01;
+  shares.add_other(other);
+  const auto share_under = [&](double noise_m) { return 0.5 + std::exp(shares.other(noise_m)->mean_log); };
+  EXPECT_NEAR(share_under(0.01), 0.7, 1e-12);
+  EXPECT_NEAR(share_under(0.0), 0.7, 1e-12) << "unknown: as measured";
+  EXPECT_LT(share_under(0.03), 0.56);
+  // Signs of relief of 1 sigma and noise, drawn.
+  Rng rng(5);
+  const auto drawn = [&](double noise) {
+    int num_equal = 0;
+    for (int i = 0; i < 40000; ++i) {
+      const double relief = rng.normal();
+      const double one = relief + noise * rng.normal();
+      num_equal += (one > 0.0) == (relief + noise * rng.normal() > 0.0) ? 1 : 0;
+    }
+    return num_equal / 40000.0;
+  };
+  EqualSignShares of_drawn;
+  EqualSignShare measured = found(drawn(1.0));
+  measured.noise_m = 1.0;
+  of_drawn.add_other(measured);
+  EXPECT_NEAR(0.5 + std::exp(of_drawn.other(2.0)->mean_log), drawn(2.0), 0.01);
+}
+
+TEST(WallOffsets, TheNoiseOfAnOffsetIsMeasured) {
+  Rng rng(7);
+  WallOffsets offsets;
+  std::vector<double> relief;
+  for (int i = 0; i < 500; ++i) relief.push_back(0.05 * rng.normal());
+  for (int pair = 0; pair < 6; ++pair)
+    for (int i = 0; i < 500; ++i)
+      offsets.add({offset_of({i, 0, 0, 0}, relief[static_cast<std::size_t>(i)] + 0.01 * rng.normal())});
+  EXPECT_NEAR(offsets.counted().noise_m, 0.01, 0.001);
+}
+
+TEST(EqualSignShares, WhereOneLookAlikeMayHaveTheSameWallsNothingSpeaksForAMerge) {
   EqualSignShares shares = where_others_agree(0.65);
   EXPECT_GT(of_a_thousand(500).evidence(shares), 5.0);
   shares.add_other(found(0.9, 50));  // hardly seen: not counted
   EXPECT_GT(of_a_thousand(500).evidence(shares), 5.0);
   shares.add_other(found(0.53));  // cast in one mould
   EXPECT_FALSE(shares.other());
-  EXPECT_GT(of_a_thousand(500).evidence(shares), 1.0);
-  EXPECT_LE(of_a_thousand(500).evidence(shares), std::log(1.0 / ReliefConfig().prior_moulded) + 1e-9);
+  EXPECT_EQ(of_a_thousand(500).evidence(shares), 0.0);
+  EXPECT_LE(of_a_thousand(500).evidence(where_others_agree(0.65)), std::log(1.0 / ReliefConfig().moulded));
   EXPECT_LT(of_a_thousand(650).evidence(shares), -4.0) << "believed walls speak against, too";
 }
 

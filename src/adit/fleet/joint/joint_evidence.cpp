@@ -120,7 +120,9 @@ double evidence_of(const GroupFrame& frame, const std::vector<const Candidate*>&
           of_one, [&](const Vector3& other) { return (other - position).norm() < frame.one_place_m; });
     });
   };
-  double sum = 0.0;
+  double of_places = 0.0;
+  double num_distinctive = 0.0;
+  double of_walls = 0.0;
   for (std::size_t m = 0; m < members.size(); ++m) {
     const std::vector<double> evidence =
         evidence_at_places(members[m]->hypothesis->places, members[m]->check->goes_on);
@@ -128,16 +130,19 @@ double evidence_of(const GroupFrame& frame, const std::vector<const Candidate*>&
     double counted = 0.0;
     for (std::size_t p = 0; p < evidence.size(); ++p) {
       if (evidence[p] <= 0.0) {
-        sum += evidence[p];
+        of_places += evidence[p];
         continue;
       }
       positive += evidence[p];
-      counted += evidence[p] / static_cast<double>(num_sharing(positions[m][p]));
+      const auto share = 1.0 / static_cast<double>(num_sharing(positions[m][p]));
+      counted += share * evidence[p];
+      num_distinctive += share;
     }
     const double walls = members[m]->hypothesis->walls;
-    sum += counted + (walls > 0.0 && positive > 0.0 ? walls * counted / positive : walls);
+    of_places += counted;
+    of_walls += walls > 0.0 && positive > 0.0 ? walls * counted / positive : walls;
   }
-  return sum;
+  return unless_copied(of_places, num_distinctive) + of_walls;
 }
 
 /// Messages about its keyframes and loops may still be on their way.

@@ -84,7 +84,9 @@ double MergeChecker::evidence(const Hypothesis& h) const {
 double MergeChecker::evidence_of_scans(const Hypothesis& h) const {
   const std::vector<double> at_places = evidence_at_places(h.places(config_.distinctive_only), chances());
   const double prior = static_cast<double>(h.loops.size()) / static_cast<double>(loops_.size());
-  return h.known_before + std::log(prior) + std::accumulate(at_places.begin(), at_places.end(), 0.0);
+  const double of_places = std::accumulate(at_places.begin(), at_places.end(), 0.0);
+  return h.known_before + std::log(prior) +
+         (config_.relief ? unless_copied(of_places, static_cast<double>(h.num_distinctive())) : of_places);
 }
 
 double MergeChecker::evidence_of_walls(const Hypothesis& h) const {

@@ -35,8 +35,16 @@ MeasuredWhenAsked measured(const LookAlikes& look_alikes, const EqualSignShares&
   return [all = Measured{look_alikes, walls}]() -> const Measured& { return all; };
 }
 
+// Without walls, and no tunnel was built to the plan of another.
+MergeCheckConfig by_places() {
+  MergeCheckConfig config;
+  config.relief = false;
+  return config;
+}
+
 MergeChecker checker_of(const std::vector<PcmLoop>& loops, MeasuredWhenAsked measured,
-                        const MergeCheckConfig& config = {}, const OdometryChain& chain = along_x(kNum)) {
+                        const MergeCheckConfig& config = by_places(),
+                        const OdometryChain& chain = along_x(kNum)) {
   AdaptiveConfig all;
   all.merge_check = config;
   const OdometryChain other = chain;  // another robot: the same chain twice would mean revisits
@@ -44,7 +52,7 @@ MergeChecker checker_of(const std::vector<PcmLoop>& loops, MeasuredWhenAsked mea
 }
 
 MergeChecker a_check(const std::vector<PcmLoop>& loops, double chance_to_go_on = 0.5,
-                     const MergeCheckConfig& config = {}) {
+                     const MergeCheckConfig& config = by_places()) {
   return checker_of(loops, measured(look_alikes(chance_to_go_on)), config);
 }
 
@@ -71,7 +79,7 @@ TEST(MergeChecker, ALoopThatItsNeighboursContradictIsLeftOut) {
   loops[2].T_a_b = loops[2].T_a_b * Pose::translation_of(1.0, 0.0, 0.0);
   const OdometryChain chain = along_x(kNum, 0.05);  // which would allow it
   const auto loops_of = [&](const std::vector<PcmLoop>& some) {
-    MergeChecker checker = checker_of(some, measured(look_alikes(0.5)), {}, chain);
+    MergeChecker checker = checker_of(some, measured(look_alikes(0.5)), by_places(), chain);
     const MergeCheck check = run(checker, [](const PlannedComparison&) { return kAgrees; });
     EXPECT_TRUE(check.accepted) << check.reason;
     return check.loops;
@@ -83,13 +91,13 @@ TEST(MergeChecker, ALoopThatItsNeighboursContradictIsLeftOut) {
 }
 
 TEST(MergeChecker, SoManyLoopsHaveToAgreeWhateverThePlacesSay) {
-  MergeCheckConfig three;
+  MergeCheckConfig three = by_places();
   three.min_loops = 3;
   const auto check = [](const MergeCheckConfig& config) {
     MergeChecker checker = a_check({loop_at(80), loop_at(100)}, 0.5, config);
     return run(checker, [](const PlannedComparison&) { return kAgrees; });
   };
-  EXPECT_TRUE(check({}).accepted);
+  EXPECT_TRUE(check(by_places()).accepted);
   const MergeCheck too_few = check(three);
   EXPECT_FALSE(too_few.accepted);
   EXPECT_GT(too_few.evidence, too_few.needed);
@@ -158,15 +166,22 @@ TEST(MergeChecker, WallsOnOneSideInAllScansAreOfOtherTunnels) {
 }
 
 TEST(MergeChecker, WallsCountWhereOwnLookAlikesHaveOthers) {
-  EqualSignShares shares;
-  const auto check = [&](int num_equal) {
-    MergeChecker checker = checker_of(kTrueLoops, measured(look_alikes(0.95), shares));
+  const auto check = [&](int num_equal, double share_of_others) {
+    EqualSignShares shares;
+    for (int i = 0; i < 10; ++i) shares.add_other({1000, share_of_others, 0.015});
+    MergeChecker checker = checker_of(kTrueLoops, measured(look_alikes(0.8), shares), {});
     return run(checker, [&](const PlannedComparison& c) { return with_offsets(c.theirs, num_equal); });
   };
-  EXPECT_FALSE(check(50).accepted);  // look-alikes go on for long: places alone cannot do it
-  for (int i = 0; i < 10; ++i) shares.add_other({1000, 0.62, 0.015});
-  EXPECT_TRUE(check(50).accepted);
-  EXPECT_FALSE(check(60).accepted);
+  EXPECT_FALSE(check(50, 0.51).accepted) << "look-alikes go on for long, and their walls are the same";
+  EXPECT_TRUE(check(50, 0.65).accepted);
+  EXPECT_FALSE(check(60, 0.65).accepted);
+}
+
+TEST(MergeEvidence, PlacesAloneDoNotTellATunnelFromOneBuiltToTheSamePlan) {
+  EXPECT_NEAR(unless_copied(2.0, 5.0), 2.0, 0.1);
+  EXPECT_NEAR(unless_copied(-20.0, 5.0), -20.0, 0.1);
+  EXPECT_LT(unless_copied(30.0, 10.0), std::log(1.0 / kCopied) + 0.6);
+  EXPECT_GT(unless_copied(100.0, 150.0), std::log(1e3)) << "but no plan was built twice all over";
 }
 
 TEST(MergeChecker, AfterAPlaceThatDiffersTheCountStartsAnew) {
@@ -339,7 +354,7 @@ TEST(MergeChecker, PlacesWithoutAnAlongAxisConstraintSayNothing) {
   EXPECT_FALSE(check.accepted);
   EXPECT_NE(check.reason.find("no along-axis constraint"), std::string::npos) << check.reason;
   EXPECT_NE(check.reason.find("drive on until both pass a junction"), std::string::npos) << check.reason;
-  MergeCheckConfig all_count;
+  MergeCheckConfig all_count = by_places();
   all_count.distinctive_only = false;
   MergeChecker other = a_check(kTrueLoops, 0.5, all_count);
   EXPECT_TRUE(run(other, [](const PlannedComparison&) { return kSilent; }).accepted);
@@ -431,8 +446,9 @@ struct Told {
   bool is_undecided;
 };
 template <class Answer>
-Told told(const std::vector<PcmLoop>& loops, double chance_to_go_on, const Answer& answer) {
-  MergeChecker checker = a_check(loops, chance_to_go_on);
+Told told(const std::vector<PcmLoop>& loops, double chance_to_go_on, const Answer& answer,
+          const MergeCheckConfig& config = by_places()) {
+  MergeChecker checker = a_check(loops, chance_to_go_on, config);
   const MergeCheck check = run(checker, answer);
   return {check, checker.undecided().has_value()};
 }
@@ -516,17 +532,20 @@ TEST(MergeRefusal, ThingsAloneMayKeepMapsApart) {
 
 // Walls of another relief, and all of them farther off by what an error of range may be.
 Told told_of_walls(double range_error_m) {
-  return told(kTrueLoops, 0.5, [=](const PlannedComparison& asked) {
-    ComparedPlace place = kAgrees;
-    for (int i = 0; i < 100; ++i) {
-      const double metres = i % 2 == 0 ? 0.01 : -0.01;
-      for (const double offset : {metres, i % 10 < 7 ? metres : -metres}) {
-        place.offsets.push_back({{static_cast<int>(asked.theirs), i, 0, 0}, offset + range_error_m});
-        place.offsets.back().terms[0] = 1.0;
-      }
-    }
-    return place;
-  });
+  return told(
+      kTrueLoops, 0.5,
+      [=](const PlannedComparison& asked) {
+        ComparedPlace place = kAgrees;
+        for (int i = 0; i < 100; ++i) {
+          const double metres = i % 2 == 0 ? 0.01 : -0.01;
+          for (const double offset : {metres, i % 10 < 7 ? metres : -metres}) {
+            place.offsets.push_back({{static_cast<int>(asked.theirs), i, 0, 0}, offset + range_error_m});
+            place.offsets.back().terms[0] = 1.0;
+          }
+        }
+        return place;
+      },
+      MergeCheckConfig());
 }
 
 TEST(MergeRefusal, WallsThatSensorsMayMoveAreNotSaidToBeOfAnotherTunnel) {

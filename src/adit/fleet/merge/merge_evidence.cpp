@@ -33,6 +33,10 @@ std::vector<double> evidence_at_places(const std::vector<TestedPlace>& places, c
   return evidence;
 }
 
+double unless_copied(double of_places, double num) {
+  return -std::log((1.0 - kCopied) * std::exp(-of_places) + kCopied * std::pow(kCopyGoesOn, num));
+}
+
 double poisson_tail(std::size_t k, double mean) {
   double fewer = 0.0;
   double term = std::exp(-mean);

@@ -11,8 +11,9 @@
 namespace adit {
 
 /// P(a place shows no change of structure that none before has shown | the alignment is true): one place in 3
-/// m and five changes in a kilometre (doors, blocked, lined or widened tunnels). Constant, not a setting: the
-/// evidence of several robots is added up, so that all have to weigh alike.
+/// m. True pairs of the tuning worlds show one at 3 to 6 places in a hundred (doors, blocked, lined or
+/// widened tunnels, vehicles that look like walls). Constant, not a setting: the evidence of several robots
+/// is added up, so that all have to weigh alike.
 inline constexpr double kAgreementIfTrue = 0.95;
 
 /// Look-alikes go on at least this often, however seldom a robot has seen it: places 3 m apart see in part
@@ -31,6 +32,16 @@ inline constexpr double kLeastChance = 0.2;
 /// anew; zero where a place agrees and is not distinctive.
 [[nodiscard]] std::vector<double> evidence_at_places(const std::vector<TestedPlace>& places,
                                                      const ChancesToGoOn& chances);
+
+/// P(a tunnel that looks alike was built to the same plan), and P(one that was goes on to be for one more
+/// distinctive place). No site was counted: parallel tubes and standard drifts exist, and long likenesses of
+/// all niches and junctions are rare among them.
+inline constexpr double kCopied = 0.001;
+inline constexpr double kCopyGoesOn = 0.95;
+/// What evidence `of_places` is worth, the sum over all, of which `num` are distinctive and agree: tunnels
+/// built to the same plan agree wherever the true one does, whatever look-alikes do. Walls or a long stretch
+/// have to add the rest.
+[[nodiscard]] double unless_copied(double of_places, double num);
 
 /// P(`k` or more events, of which `mean` are expected), by Poisson's distribution.
 [[nodiscard]] double poisson_tail(std::size_t k, double mean);
