@@ -79,8 +79,8 @@ Fields fields_of(ReliefConfig& c) {
       {"prior_sigma", &c.prior_sigma, "", 0.0, 5.0,
        "prior of the log share's standard deviation over look-alikes"},
       {"prior_moulded", &c.prior_moulded, "", 0.0, 1.0,
-       "share of look-alikes whose walls were cast in one mould, where the own map has none to measure it "
-       "on"},
+       "share of the tunnels that agree, but are others, whose walls were cast in one mould,"},
+      {"moulded", &c.moulded, "", 0.0, 1.0, "and where other walls of the own map were found to differ"},
       {"prior_stretches", &c.prior_stretches, "", 0.0, 1000.0,
        "number of look-alikes that the prior counts as"},
       {"may_be_same", &c.may_be_same, "", 0.0, 1.0,

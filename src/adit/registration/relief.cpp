@@ -84,11 +84,12 @@ double weight_of(const std::vector<OfStretch>& stretches) {
 
 /// The number below which half of the weight lies; `value` of each stretch.
 template <class Value>
-double weighted_median(std::vector<OfStretch> stretches, const Value& value) {
-  std::ranges::stable_sort(stretches, {}, value);
-  const double half = 0.5 * weight_of(stretches);
+double weighted_median(const std::vector<OfStretch>& stretches, const Value& value) {
+  std::vector<OfStretch> sorted = stretches;
+  std::ranges::stable_sort(sorted, {}, value);
+  const double half = 0.5 * weight_of(sorted);
   double below = 0.0;
-  for (const OfStretch& one : stretches)
+  for (const OfStretch& one : sorted)
     if ((below += one.weight) >= half) return value(one);
   return kChance;
 }
@@ -254,7 +255,11 @@ double WallOffsets::evidence(const EqualSignShares& shares) const {
   if (found.num_patches < static_cast<std::size_t>(shares.config().min_patches)) return 0.0;
   found.share = std::max(found.share, kChance);  // less than chance is chance
   constexpr double kLeast = 1e-300;              // for the logarithm
-  const double of_same = density(found, shares.same());
+  // The share on the own map only bounds what one wall gives: what makes signs equal there, leaves and edges,
+  // may be missing between two maps.
+  SameWalls same = shares.same();
+  same.mean = std::clamp(found.share, std::min(shares.config().same_share, same.mean), same.mean);
+  const double of_same = density(found, same);
   const double moulded = other ? shares.config().moulded : shares.config().prior_moulded;
   const double of_other =
       moulded * of_same + (1.0 - moulded) * density(found, other.value_or(shares.believed(found.noise_m)));

@@ -289,6 +289,13 @@ TEST(EqualSignShares, MoreLookAlikesSharpenThePredictionForOtherWalls) {
   EXPECT_GT(uneven.other()->sigma_log, where_others_agree(0.65, 4).other()->sigma_log);
 }
 
+TEST(WallOffsets, FewerEqualSignsThanOnTheOwnMapSpeakForOneWall) {
+  EqualSignShares cluttered;
+  cluttered.set_same(found(0.59));
+  EXPECT_GE(of_a_thousand(500).evidence(cluttered), of_a_thousand(500).evidence({}) - 1e-9);
+  EXPECT_GT(of_a_thousand(500).evidence(cluttered), 2.0);
+}
+
 TEST(EqualSignShares, UnderMoreNoiseOtherWallsShowLess) {
   EqualSignShares shares;
   EqualSignShare other = found(0.7);
