@@ -113,15 +113,18 @@ FitShift fit_shift(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b
 Eigen::VectorXd explained_by_sensors(const Eigen::MatrixXd& terms, const Eigen::VectorXd& offsets,
                                      const SensorPrior& prior) {
   constexpr int kRounds = 5;
-  constexpr double kHuber = 1.345;  // sigmas: 95 % efficient where errors are normal
+  constexpr double kHuber = 1.345;  // sigmas: 95 % efficient where errors are normal,
+  constexpr double kTukey = 4.685;  // and so is the biweight, to which walls that were moved are nothing
   if (offsets.size() == 0) return offsets;
   const Eigen::VectorXd known_before = prior_weights(prior);
   Eigen::VectorXd errors = Eigen::VectorXd::Zero(kSensorErrors);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < 2 * kRounds; ++round) {
     const Eigen::VectorXd residuals = offsets - terms * errors;
     const double sigma = robust_sigma(residuals);
-    const Eigen::VectorXd weights =
-        (kHuber * sigma * residuals.array().abs().max(1e-12).inverse()).min(1.0) / (sigma * sigma);
+    const Eigen::ArrayXd off = residuals.array().abs() / sigma;
+    const Eigen::ArrayXd huber = (kHuber * off.max(1e-12).inverse()).min(1.0);
+    const Eigen::ArrayXd tukey = (1.0 - (off / kTukey).square()).max(0.0).square();
+    const Eigen::VectorXd weights = (round < kRounds ? huber : tukey) / (sigma * sigma);
     const Eigen::MatrixXd weighted = terms.transpose() * weights.asDiagonal();
     Eigen::MatrixXd H = weighted * terms;
     H.diagonal() += known_before;

@@ -57,8 +57,9 @@ struct SensorPrior {
   double ring_m = 0.01;
 };
 
-/// The part of `offsets`, metres, that the sensors explain: a robust fit (Huber) of their errors with the
-/// prior. `terms` has a row for each.
+/// The part of `offsets`, metres, that the sensors explain: a robust fit of their errors with the prior, by
+/// Huber's weights and then by Tukey's (Beaton and Tukey, "The fitting of power series", 1974), to which
+/// walls that were moved between two visits are nothing. `terms` has a row for each.
 [[nodiscard]] Eigen::VectorXd explained_by_sensors(const Eigen::MatrixXd& terms,
                                                    const Eigen::VectorXd& offsets, const SensorPrior& prior);
 
