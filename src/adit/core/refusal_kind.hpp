@@ -16,7 +16,7 @@ enum class RefusalKind : std::uint8_t {
   other_tunnel,      ///< Scans or walls differ as those of two tunnels do.
   changed_place,     ///< Scans differ at some places; those around them speak for the same stretch.
   changed_or_other,  ///< Scans differ at so many places that changes and another tunnel cannot be told apart.
-  sensor,            ///< All places agree; walls stand off, and errors of sensors explain most of that.
+  sensor,            ///< All places agree; walls lie apart, mostly by what errors of range would make.
   taken_back,        ///< Merges with further robots contradict it.
   unknown,           ///< No decision gave one.
 };

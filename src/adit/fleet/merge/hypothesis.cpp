@@ -97,7 +97,7 @@ bool Changes::add(const std::vector<Vector3>& seen) {
   return places_.size() > num_before;
 }
 
-bool Hypothesis::is_explained(const std::vector<Vector3>& differing) {
+bool Hypothesis::note_changes(const std::vector<Vector3>& differing) {
   if (differing.empty()) ++num_unlocated;
   return structures.know(differing);
 }
@@ -110,7 +110,7 @@ void Hypothesis::add(const ComparedPlace& place) {
   compared.back().things.clear();
   // What a second look confirms counts then.
   if (place.differs() && !second_looks[compared.size() - 1])
-    compared.back().is_explained = is_explained(place.structures);
+    compared.back().is_explained = note_changes(place.structures);
 }
 
 void Hypothesis::add_second_look(std::size_t which, const ComparedPlace& place) {
@@ -135,7 +135,7 @@ void Hypothesis::add_second_look(std::size_t which, const ComparedPlace& place) 
     first.signs.clear();
     return;
   }
-  first.is_explained = is_explained(seen_again);
+  first.is_explained = note_changes(seen_again);
 }
 
 bool Hypothesis::is_finished() const { return compared.size() == plan.size() && to_look_at_again().empty(); }

@@ -81,7 +81,8 @@ struct Hypothesis {
  private:
   [[nodiscard]] PlaceOutcome outcome(const ComparedPlace& place, bool distinctive_only) const;
   [[nodiscard]] bool shows_beside_changes(const ComparedPlace& place) const;
-  [[nodiscard]] bool is_explained(const std::vector<Vector3>& differing);
+  /// Counts what differs at a place; true if there is something and all of it had been counted before.
+  bool note_changes(const std::vector<Vector3>& differing);
 };
 
 /// Two maps and the loops between them. With the same chain given twice: a map and its revisits.

@@ -76,8 +76,8 @@ RefusalKind MergeChecker::kind_where_scans_differ(const Hypothesis& h) const {
              : RefusalKind::changed_or_other;
 }
 
-/// Scans that agree at every place, and walls that stand off for the larger part as errors of range would
-/// have it: then what is left may be an error that the model of sensors does not have.
+/// Where scans agree at every place, and errors of range explain the larger part of the distance between both
+/// robots' walls, what is left may be an error that the model of sensors does not have.
 RefusalKind MergeChecker::kind_where_walls_differ(const Hypothesis& h) const {
   constexpr double kLargerPart = 0.5;
   return h.num_differing() == 0 && h.offsets.share_of_sensors() > kLargerPart ? RefusalKind::sensor
