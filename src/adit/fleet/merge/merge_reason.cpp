@@ -48,14 +48,14 @@ std::string why_walls_differ(const Hypothesis& h, RefusalKind kind) {
 }  // namespace
 
 std::string MergeChecker::what_is_missing(const Hypothesis& h) const {
-  constexpr double kFarthest = 1000.0;  // metres that it makes sense to ask for
+  constexpr double kFarthestDrive = 1000.0;  // metres that it makes sense to ask for
   constexpr double kRounding = 10.0;    // metres
   const std::size_t num_distinctive = h.num_distinctive();
   const double num_places =
       std::ceil((needed() - evidence(h)) / evidence_of_agreement(chances(), num_distinctive));
   const double share = static_cast<double>(num_distinctive) / static_cast<double>(h.compared.size());
   const double metres = kRounding * std::ceil(num_places * config_.spacing_m / share / kRounding);
-  if (!(metres <= kFarthest))
+  if (!(metres <= kFarthestDrive))
     return "tunnels here look alike for too long; drive the same stretch past a junction or a niche";
   return format("drive the same stretch for about another {:.0f} m", metres);
 }

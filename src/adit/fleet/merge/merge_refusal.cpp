@@ -85,9 +85,9 @@ RefusalKind MergeChecker::kind_where_walls_differ(const Hypothesis& h) const {
 }
 
 double MergeChecker::metres_for_changes(const Hypothesis& h) const {
-  constexpr double kFarthest = 10'000.0;  // metres: so many changes are none
+  constexpr double kFarthestPath = 10'000.0;  // metres: so many changes are none
   double metres = 0.0;
-  while (metres < kFarthest &&
+  while (metres < kFarthestPath &&
          poisson_tail(h.num_changes(), config_.changes_at_worst_per_km * (compared_km(h) + metres / 1000.0)) <
              config_.refusal_rate)
     metres += config_.spacing_m;
