@@ -280,6 +280,10 @@ SameWalls EqualSignShares::same() const {
   return walls;
 }
 
+double EqualSignShares::most_evidence() const {
+  return are_moulded() ? 0.0 : std::log(1.0 / (others_.empty() ? config_.prior_moulded : config_.moulded));
+}
+
 bool EqualSignShares::are_moulded() const {
   return std::ranges::any_of(others_, [&](const EqualSignShare& one) {
     return chance_of_at_least(one, same()) > config_.may_be_same;

@@ -79,6 +79,8 @@ class EqualSignShares {
   [[nodiscard]] OtherWalls believed(double noise_m) const;
   /// Whether walls of one of the own look-alikes may be the same: cast in one mould.
   [[nodiscard]] bool are_moulded() const;
+  /// That walls of one stretch can give: the logarithm of 1 / P(other walls were cast in one mould).
+  [[nodiscard]] double most_evidence() const;
   [[nodiscard]] const ReliefConfig& config() const { return config_; }
 
  private:

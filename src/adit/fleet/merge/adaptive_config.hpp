@@ -36,6 +36,8 @@ struct MergeCheckConfig {
   double refusal_rate = 0.01;
   double spacing_m = 3.0;
   int max_checks = 200;
+  double wall_spacing_m = 1.0;
+  int max_wall_checks = 96;
   int first_checks = 8;
   int max_hypotheses = 12;
   int min_loops = 1;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "adit/fleet/search/path.hpp"
 
@@ -60,6 +61,32 @@ std::optional<PlannedComparison> ComparisonPlanner::second_look(const PlannedCom
     if (const auto j = keyframe_at(their_path_m_, their_path_m_[first.theirs] + metres))
       if (const std::optional<PlannedComparison> other = at(*j)) return other;
   return {};
+}
+
+std::vector<PlannedComparison> ComparisonPlanner::between(const std::vector<PlannedComparison>& plan,
+                                                          std::size_t max_pairs) const {
+  constexpr double kRounding = 1e-6;  // metres
+  std::set<std::uint32_t> own;
+  std::set<std::uint32_t> theirs;
+  for (const PlannedComparison& place : plan) {
+    own.insert(place.own);
+    theirs.insert(place.theirs);
+  }
+  std::vector<PlannedComparison> out;
+  for (const PlannedComparison& place : plan) {
+    for (double metres = spacing_.wall_spacing_m; metres < spacing_.spacing_m - kRounding;
+         metres += spacing_.wall_spacing_m) {
+      if (out.size() == max_pairs) return out;
+      const auto j = keyframe_at(their_path_m_, their_path_m_[place.theirs] + metres);
+      const auto pair = j ? at(*j) : std::nullopt;
+      if (pair && !own.contains(pair->own) && !theirs.contains(pair->theirs)) {
+        own.insert(pair->own);
+        theirs.insert(pair->theirs);
+        out.push_back(*pair);
+      }
+    }
+  }
+  return out;
 }
 
 std::optional<PlannedComparison> ComparisonPlanner::at(std::uint32_t j) const {

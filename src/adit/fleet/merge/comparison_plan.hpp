@@ -21,10 +21,11 @@ struct PlannedComparison {
 
 /// Lengths along the path, metres.
 struct ComparisonSpacing {
-  double spacing_m = 3.0;      ///< From one place to the next.
-  double reach_m = 50.0;       ///< No place is farther from the nearest loop.
-  double revisit_m = 40.0;     ///< Within one map: between the two keyframes (RevisitConfig::path_m).
-  double second_look_m = 1.0;  ///< From a place to where it is looked at again.
+  double spacing_m = 3.0;       ///< From one place to the next.
+  double reach_m = 50.0;        ///< No place is farther from the nearest loop.
+  double revisit_m = 40.0;      ///< Within one map: between the two keyframes (RevisitConfig::path_m).
+  double second_look_m = 1.0;   ///< From a place to where it is looked at again.
+  double wall_spacing_m = 1.0;  ///< From one pair of scans to the next where walls have to decide.
 };
 
 class ComparisonPlanner {
@@ -39,6 +40,10 @@ class ComparisonPlanner {
   [[nodiscard]] std::vector<PlannedComparison> plan(std::size_t max_places) const;
   /// The same place by two other keyframes.
   [[nodiscard]] std::optional<PlannedComparison> second_look(const PlannedComparison& first) const;
+  /// Pairs of scans between the places of a plan, in its order: at most `max_pairs`, of keyframes that are in
+  /// no other pair.
+  [[nodiscard]] std::vector<PlannedComparison> between(const std::vector<PlannedComparison>& plan,
+                                                       std::size_t max_pairs) const;
 
  private:
   /// Their keyframe j beside the own one that is nearest.

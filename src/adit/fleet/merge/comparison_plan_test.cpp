@@ -64,6 +64,26 @@ TEST(ComparisonPlanner, WithinOneMapAKeyframeIsNotComparedWithItselfOrItsNeighbo
   }
 }
 
+TEST(ComparisonPlanner, PairsBetweenThePlacesAreOfKeyframesThatNoOtherPairHas) {
+  const OdometryChain drive = along_x(kNum);
+  const OdometryChain other = along_x(kNum);
+  const ComparisonPlanner planner(drive, other, kTrueLoops, {.reach_m = 50.0});
+  const std::vector<PlannedComparison> plan = planner.plan(200);
+  const std::vector<PlannedComparison> between = planner.between(plan, 1000);
+  EXPECT_NEAR(static_cast<double>(between.size()), 2.0 * static_cast<double>(plan.size()), 2.0);
+  std::set<std::uint32_t> own;
+  std::set<std::uint32_t> theirs;
+  for (const auto& pairs : {plan, between}) {
+    for (const PlannedComparison& pair : pairs) {
+      EXPECT_TRUE(own.insert(pair.own).second) << pair.own;
+      EXPECT_TRUE(theirs.insert(pair.theirs).second) << pair.theirs;
+      EXPECT_LT((pair.T_own_theirs.inverse() * T_a_b_true(pair.own, pair.theirs)).log().norm(), 1e-9);
+    }
+  }
+  EXPECT_EQ(planner.between(plan, 7).size(), 7U);
+  EXPECT_TRUE(planner.between({}, 7).empty());
+}
+
 TEST(ComparisonPlanner, TheSecondLookIsAMetreOnAndAtTheEndAMetreBack) {
   const OdometryChain drive = along_x(kNum);
   const OdometryChain other = along_x(kNum);

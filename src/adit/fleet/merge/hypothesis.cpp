@@ -72,13 +72,14 @@ void plan_comparisons(Hypothesis& hypothesis, const LoopsBetween& between, doubl
                       const AdaptiveConfig& config) {
   const MergeCheckConfig& check = config.merge_check;
   const std::vector<PcmLoop> agreeing = picked(between.loops, hypothesis.loops);
-  const ComparisonPlanner planner(
-      between.own, between.theirs, agreeing,
-      {check.spacing_m, reach_m, config.search.revisit.path_m, check.discernment.second_look_m});
+  const ComparisonPlanner planner(between.own, between.theirs, agreeing,
+                                  {check.spacing_m, reach_m, config.search.revisit.path_m,
+                                   check.discernment.second_look_m, check.wall_spacing_m});
   hypothesis.plan = planner.plan(static_cast<std::size_t>(check.max_checks));
   for (const PlannedComparison& place : hypothesis.plan)
     hypothesis.second_looks.push_back(check.discernment.second_looks ? planner.second_look(place)
                                                                      : std::nullopt);
+  hypothesis.wall_plan = planner.between(hypothesis.plan, static_cast<std::size_t>(check.max_wall_checks));
 }
 
 }  // namespace
@@ -116,9 +117,13 @@ void Hypothesis::add(const ComparedPlace& place) {
 void Hypothesis::add_second_look(std::size_t which, const ComparedPlace& place) {
   constexpr double kSameObject = 5.0;  // metres between its middles, as seen from two places
   constexpr double kGross = 5.0;       // times the limit: no chance meeting of beams and edges
-  second_looks[which].reset();
+  const PlannedComparison look = *std::exchange(second_looks[which], std::nullopt);
   ComparedPlace& first = compared[which];
   if (!place.differs()) {
+    // Offsets of one pair that count twice would have equal signs.
+    std::erase_if(wall_plan, [&](const PlannedComparison& pair) {
+      return pair.own == look.own || pair.theirs == look.theirs;
+    });
     offsets.add(place.offsets);
     things.add(place.things);
     first = {place.difference, place.is_distinctive, {}, {}, {}, place.signs, false};

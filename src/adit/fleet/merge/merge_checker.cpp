@@ -13,6 +13,15 @@
 #include "adit/fleet/merge/merge_evidence.hpp"
 
 namespace adit {
+namespace {
+
+std::vector<PlannedComparison> part_of(const std::vector<PlannedComparison>& plan, std::size_t from,
+                                       std::size_t num) {
+  const auto first = plan.begin() + static_cast<std::ptrdiff_t>(from);
+  return {first, first + static_cast<std::ptrdiff_t>(std::min(num, plan.size() - from))};
+}
+
+}  // namespace
 
 MergeChecker::MergeChecker(LoopsBetween between, OwnMeasurements own, const AdaptiveConfig& config)
     : hypotheses_(hypotheses_of(between, own.reach_m, config)),
@@ -126,9 +135,23 @@ std::optional<std::size_t> MergeChecker::to_go_on_with() const {
   return found;
 }
 
+std::optional<std::size_t> MergeChecker::whose_walls_to_compare() const {
+  const std::vector<std::size_t> order = best_first();
+  if (!config_.relief || decide(order) != MergeDecision::too_little_evidence) return {};
+  const Hypothesis& best = hypotheses_[order.front()];
+  const double possible = own_.measured().walls.most_evidence() - evidence_of_walls(best);
+  const bool is_left = best.num_walls_compared < best.wall_plan.size();
+  if (!is_left || evidence(best) + possible < needed()) return {};
+  return order.front();
+}
+
 std::vector<PlannedComparison> MergeChecker::next(std::size_t num) const {
   const auto which = to_go_on_with();
-  if (!which) return {};
+  if (!which) {
+    const auto closer = whose_walls_to_compare();
+    if (!closer) return {};
+    return part_of(hypotheses_[*closer].wall_plan, hypotheses_[*closer].num_walls_compared, num);
+  }
   const Hypothesis& h = hypotheses_[*which];
   const std::size_t from = h.compared.size();
   if (from == h.plan.size()) {
@@ -138,18 +161,26 @@ std::vector<PlannedComparison> MergeChecker::next(std::size_t num) const {
     return again;
   }
   const std::size_t at_once = from == 0 ? std::min(num, static_cast<std::size_t>(config_.first_checks)) : num;
-  const std::size_t to = std::min(h.plan.size(), from + at_once);
-  return {h.plan.begin() + static_cast<std::ptrdiff_t>(from),
-          h.plan.begin() + static_cast<std::ptrdiff_t>(to)};
+  return part_of(h.plan, from, at_once);
 }
 
 void MergeChecker::add(const std::vector<ComparedPlace>& places) {
   const auto which = to_go_on_with();
-  ADIT_CHECK(which, "only what was asked for is added");
+  if (!which) return add_walls(places);
   Hypothesis& h = hypotheses_[*which];
   if (h.compared.size() == h.plan.size()) return add_second_looks(h, places);
   ADIT_CHECK(h.compared.size() + places.size() <= h.plan.size(), "only what was asked for is added");
   for (const ComparedPlace& place : places) h.add(place);
+}
+
+/// Their places have been seen from beside: of these pairs only the walls count.
+void MergeChecker::add_walls(const std::vector<ComparedPlace>& places) {
+  const auto which = whose_walls_to_compare();
+  ADIT_CHECK(which, "only what was asked for is added");
+  Hypothesis& h = hypotheses_[*which];
+  ADIT_CHECK(h.num_walls_compared + places.size() <= h.wall_plan.size(), "only what was asked for is added");
+  for (const ComparedPlace& place : places) h.offsets.add(place.offsets);
+  h.num_walls_compared += places.size();
 }
 
 void MergeChecker::add_second_looks(Hypothesis& h, const std::vector<ComparedPlace>& places) {

@@ -84,6 +84,9 @@ class MergeChecker {
   [[nodiscard]] ChancesToGoOn chances() const { return own_.measured().look_alikes.chances(); }
 
   [[nodiscard]] std::optional<std::size_t> to_go_on_with() const;
+  /// The best hypothesis, where all have been compared and more pairs of its walls could decide.
+  [[nodiscard]] std::optional<std::size_t> whose_walls_to_compare() const;
+  void add_walls(const std::vector<ComparedPlace>& places);
   static void add_second_looks(Hypothesis& hypothesis, const std::vector<ComparedPlace>& places);
   [[nodiscard]] std::vector<std::size_t> best_first() const;
   [[nodiscard]] double apart_m(std::size_t one, std::size_t other) const;

@@ -177,6 +177,40 @@ TEST(MergeChecker, WallsCountWhereOwnLookAlikesHaveOthers) {
   EXPECT_FALSE(check(60, 0.65).accepted);
 }
 
+// Few patches for each pair of scans: half of them, or all, on one side in both offsets.
+ComparedPlace with_few_offsets(std::uint32_t theirs, bool all_equal) {
+  ComparedPlace place = kAgrees;
+  for (int i = 0; i < 6; ++i)
+    for (const double metres : {0.01, all_equal || i % 2 == 0 ? 0.01 : -0.01})
+      place.offsets.push_back({{static_cast<int>(theirs), i, 0, 0}, metres});
+  return place;
+}
+
+TEST(MergeChecker, WhereLittleIsMissingMorePairsOfTheWallsDecide) {
+  EqualSignShares shares;
+  for (int i = 0; i < 10; ++i) shares.add_other({1000, 0.6, 0.015});
+  MergeCheckConfig places_only;
+  places_only.max_wall_checks = 0;
+  std::size_t num_pairs = 0;
+  const auto check = [&](const MergeCheckConfig& config, bool all_equal) {
+    MergeChecker checker = checker_of(kTrueLoops, measured(look_alikes(0.865), shares), config);
+    num_pairs = 0;
+    return run(checker, [&](const PlannedComparison& c) {
+      ++num_pairs;
+      return with_few_offsets(c.theirs, all_equal && num_pairs > 33);
+    });
+  };
+  const MergeCheck short_of_evidence = check(places_only, false);
+  EXPECT_EQ(short_of_evidence.refused_kind, RefusalKind::too_little) << short_of_evidence.reason;
+  EXPECT_EQ(num_pairs, short_of_evidence.num_checked);
+  const MergeCheck decided = check({}, false);
+  EXPECT_TRUE(decided.accepted) << decided.reason;
+  EXPECT_GT(num_pairs, decided.num_checked);
+  EXPECT_EQ(decided.num_checked, short_of_evidence.num_checked) << "the places stay the same";
+  EXPECT_LT(num_pairs, 3U * decided.num_checked) << "no more than were needed";
+  EXPECT_FALSE(check({}, true).accepted) << "other walls";
+}
+
 TEST(MergeEvidence, PlacesAloneDoNotTellATunnelFromOneBuiltToTheSamePlan) {
   EXPECT_NEAR(unless_copied(2.0, 5.0), 2.0, 0.1);
   EXPECT_NEAR(unless_copied(-20.0, 5.0), -20.0, 0.1);
@@ -268,6 +302,17 @@ TEST(MergeChecker, AChangeThatIsSeenFromManyPlacesCountsOnce) {
   const MergeCheck one = check_with_structures(4, 0.0);
   EXPECT_TRUE(one.accepted) << one.reason;
   EXPECT_EQ(one.num_checked, one.num_passed + 1);
+}
+
+TEST(Hypothesis, ASecondLookThatAgreesIsNoSecondPairForTheWalls) {
+  Hypothesis h;
+  h.plan = {{10, 20, Pose()}};
+  h.second_looks = {PlannedComparison{12, 22, Pose()}};
+  h.wall_plan = {{12, 22, Pose()}, {14, 22, Pose()}, {14, 24, Pose()}};
+  h.add(kDiffers);
+  h.add_second_look(0, kAgrees);
+  ASSERT_EQ(h.wall_plan.size(), 1U);
+  EXPECT_EQ(h.wall_plan.front().theirs, 24U);
 }
 
 // A hypothesis of which one place differs, and what a second look at it showed.

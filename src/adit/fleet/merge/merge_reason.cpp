@@ -49,7 +49,7 @@ std::string why_walls_differ(const Hypothesis& h, RefusalKind kind) {
 
 std::string MergeChecker::what_is_missing(const Hypothesis& h) const {
   constexpr double kFarthestDrive = 1000.0;  // metres that it makes sense to ask for
-  constexpr double kRounding = 10.0;    // metres
+  constexpr double kRounding = 10.0;         // metres
   const std::size_t num_distinctive = h.num_distinctive();
   const double num_places =
       std::ceil((needed() - evidence(h)) / evidence_of_agreement(chances(), num_distinctive));
