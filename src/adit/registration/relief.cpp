@@ -260,7 +260,7 @@ double WallOffsets::evidence(const EqualSignShares& shares) const {
   SameWalls same = shares.same();
   same.mean = std::clamp(found.share, std::min(shares.config().same_share, same.mean), same.mean);
   const double of_same = density(found, same);
-  const double moulded = other ? shares.config().moulded : shares.config().prior_moulded;
+  const double moulded = shares.chance_of_one_mould();
   const double of_other =
       moulded * of_same + (1.0 - moulded) * density(found, other.value_or(shares.believed(found.noise_m)));
   const double ratio = std::log(std::max(of_same, kLeast)) - std::log(std::max(of_other, kLeast));
@@ -280,8 +280,12 @@ SameWalls EqualSignShares::same() const {
   return walls;
 }
 
+double EqualSignShares::chance_of_one_mould() const {
+  return others_.empty() || are_moulded() ? config_.prior_moulded : config_.moulded;
+}
+
 double EqualSignShares::most_evidence() const {
-  return are_moulded() ? 0.0 : std::log(1.0 / (others_.empty() ? config_.prior_moulded : config_.moulded));
+  return are_moulded() ? 0.0 : std::log(1.0 / chance_of_one_mould());
 }
 
 bool EqualSignShares::are_moulded() const {

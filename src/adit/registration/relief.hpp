@@ -79,7 +79,9 @@ class EqualSignShares {
   [[nodiscard]] OtherWalls believed(double noise_m) const;
   /// Whether walls of one of the own look-alikes may be the same: cast in one mould.
   [[nodiscard]] bool are_moulded() const;
-  /// That walls of one stretch can give: the logarithm of 1 / P(other walls were cast in one mould).
+  /// P(walls of another tunnel were cast in one mould with those of the first).
+  [[nodiscard]] double chance_of_one_mould() const;
+  /// The most that WallOffsets::evidence can be, a log likelihood ratio; 0 where nothing speaks for a merge.
   [[nodiscard]] double most_evidence() const;
   [[nodiscard]] const ReliefConfig& config() const { return config_; }
 

@@ -1,0 +1,137 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include "adit/fleet/merge/merge_checker.hpp"
+#include "support/merge_checks.hpp"
+
+namespace adit {
+namespace {
+
+using test::a_check;
+using test::by_places;
+using test::kAgrees;
+using test::kDiffers;
+using test::kHasANiche;
+using test::kSilent;
+using test::kTrueLoops;
+using test::loop_at;
+using test::run;
+
+// The kind of difference, and whether more evidence would decide.
+struct Told {
+  MergeCheck check;
+  bool is_undecided;
+};
+template <class Answer>
+Told told(const std::vector<PcmLoop>& loops, double chance_to_go_on, const Answer& answer,
+          const MergeCheckConfig& config = by_places()) {
+  MergeChecker checker = a_check(loops, chance_to_go_on, config);
+  const MergeCheck check = run(checker, answer);
+  return {check, checker.undecided().has_value()};
+}
+
+TEST(MergeRefusal, SaysWhatKindOfDifferenceItIs) {
+  const auto expect = [](const Told& found, RefusalKind kind, bool is_undecided) {
+    EXPECT_FALSE(found.check.accepted);
+    EXPECT_EQ(found.check.refused_kind, kind) << found.check.reason;
+    EXPECT_EQ(found.is_undecided, is_undecided) << found.check.reason;
+    EXPECT_NE(found.check.reason.find("; "), std::string::npos) << "a remedy: " << found.check.reason;
+  };
+  const auto always = [](const ComparedPlace& place) {
+    return [=](const PlannedComparison&) { return place; };
+  };
+  expect(told({}, 0.5, always(kAgrees)), RefusalKind::no_loop, false);
+  expect(told(kTrueLoops, 0.5, always(kDiffers)), RefusalKind::other_tunnel, false);
+  expect(told(kTrueLoops, 0.9, always(kAgrees)), RefusalKind::too_little, true);
+  expect(told(kTrueLoops, 0.5, always(kSilent)), RefusalKind::too_little, true);
+  std::vector<PcmLoop> loops = kTrueLoops;
+  for (const std::size_t a : {70U, 120U, 130U}) loops.push_back(loop_at(a, 20.0));
+  expect(told(loops, 0.5, always(kAgrees)), RefusalKind::rival, true);
+  const Told merged = told(kTrueLoops, 0.5, always(kAgrees));
+  EXPECT_EQ(merged.check.refused_kind, RefusalKind::unknown);
+  EXPECT_FALSE(merged.is_undecided);
+}
+
+// Structure of its own at every so many-th place, by both looks.
+MergeCheck check_of_changes(std::uint32_t every, double chance_to_go_on) {
+  MergeCheckConfig config;
+  config.error_rate = 0.05;  // the stretch is short
+  MergeChecker checker = a_check(kTrueLoops, chance_to_go_on, config);
+  const std::uint32_t first = checker.next(1).front().own % 6;
+  return run(checker, [&](const PlannedComparison& asked) {
+    const std::uint32_t place_number = (asked.own + 3 - first) / 6;
+    if (place_number % every != 0) return kAgrees;
+    ComparedPlace place = kHasANiche;
+    place.structures = {{20.0 * place_number, 0.0, 0.0}};
+    return place;
+  });
+}
+
+TEST(MergeRefusal, ChangesAmongPlacesThatAgreeAreNoOtherTunnel) {
+  EXPECT_EQ(check_of_changes(1, 0.5).refused_kind, RefusalKind::other_tunnel);
+  EXPECT_EQ(check_of_changes(2, 0.5).refused_kind, RefusalKind::changed_or_other);
+  const MergeCheck often = check_of_changes(4, 0.5);
+  EXPECT_NE(often.reason.find("scans differ at 9 of 34 places"), std::string::npos) << often.reason;
+  EXPECT_NE(often.reason.find("the others speak for one tunnel"), std::string::npos) << often.reason;
+  const MergeCheck seldom = check_of_changes(5, 0.5);
+  EXPECT_NE(seldom.reason.find("evidence"), std::string::npos) << seldom.reason;
+  EXPECT_NE(seldom.reason.find("which speaks for one tunnel that has changed"), std::string::npos)
+      << seldom.reason;
+  for (const MergeCheck& changed : {often, seldom}) {
+    EXPECT_FALSE(changed.accepted);
+    EXPECT_EQ(changed.refused_kind, RefusalKind::changed_place);
+  }
+  EXPECT_EQ(check_of_changes(4, 0.8).refused_kind, RefusalKind::changed_or_other)
+      << "where own look-alikes agree as often, too";
+  EXPECT_EQ(check_of_changes(6, 0.85).refused_kind, RefusalKind::changed_or_other);
+  EXPECT_TRUE(check_of_changes(12, 0.5).accepted);
+}
+
+TEST(MergeRefusal, ThingsAloneMayKeepMapsApart) {
+  const auto things_everywhere = [](const PlannedComparison& asked) {
+    ComparedPlace place = kAgrees;
+    place.things.emplace_back(9.0 * asked.theirs, 0.0, 0.0);
+    return place;
+  };
+  // Look-alikes that go on so often that things tip the scales, whatever number of places there is.
+  bool is_found = false;
+  for (double chance = 0.5; chance < 0.95; chance += 0.01) {
+    const Told with = told(kTrueLoops, chance, things_everywhere);
+    const Told without = told(kTrueLoops, chance, [](const PlannedComparison&) { return kAgrees; });
+    if (with.check.accepted) continue;
+    EXPECT_EQ(with.check.refused_kind,
+              without.check.accepted ? RefusalKind::changed_place : RefusalKind::too_little)
+        << with.check.reason;
+    is_found |= without.check.accepted;
+  }
+  EXPECT_TRUE(is_found);
+}
+
+// Walls of another relief, and all of them farther off by what an error of range may be.
+Told told_of_walls(double range_error_m) {
+  return told(
+      kTrueLoops, 0.5,
+      [=](const PlannedComparison& asked) {
+        ComparedPlace place = kAgrees;
+        for (int i = 0; i < 100; ++i) {
+          const double metres = i % 2 == 0 ? 0.01 : -0.01;
+          for (const double offset : {metres, i % 10 < 7 ? metres : -metres}) {
+            place.offsets.push_back({{static_cast<int>(asked.theirs), i, 0, 0}, offset + range_error_m});
+            place.offsets.back().terms[0] = 1.0;
+          }
+        }
+        return place;
+      },
+      MergeCheckConfig());
+}
+
+TEST(MergeRefusal, WallsThatSensorsMayMoveAreNotSaidToBeOfAnotherTunnel) {
+  EXPECT_EQ(told_of_walls(0.0).check.refused_kind, RefusalKind::other_tunnel);
+  const MergeCheck off = told_of_walls(0.03).check;
+  EXPECT_EQ(off.refused_kind, RefusalKind::sensor);
+  EXPECT_NE(off.reason.find("it may be the sensors"), std::string::npos) << off.reason;
+}
+
+}  // namespace
+}  // namespace adit

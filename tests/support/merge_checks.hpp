@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Merge checks of two robots in one straight tunnel, whose comparisons a test answers.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <utility>
+#include <vector>
+
+#include "adit/fleet/merge/merge_checker.hpp"
+#include "support/opposite_drives.hpp"
+
+namespace adit::test {
+
+/// That go on with this chance, however long they have.
+inline LookAlikes look_alikes(double chance_to_go_on) {
+  constexpr int kSteps = 100'000;  // the prior of one half no longer shows
+  LookAlikes out;
+  if (chance_to_go_on != 0.5)
+    for (int i = 0; i < kSteps; ++i) i < chance_to_go_on* kSteps ? out.add_agreed(0) : out.add_differed(0);
+  return out;
+}
+
+/// What was measured beforehand.
+inline MeasuredWhenAsked measured(const LookAlikes& look_alikes, const EqualSignShares& walls = {}) {
+  return [all = Measured{look_alikes, walls}]() -> const Measured& { return all; };
+}
+
+/// Without walls, and no tunnel was built to the plan of another.
+inline MergeCheckConfig by_places() {
+  MergeCheckConfig config;
+  config.relief = false;
+  return config;
+}
+
+inline MergeChecker checker_of(const std::vector<PcmLoop>& loops, MeasuredWhenAsked measured,
+                               const MergeCheckConfig& config = by_places(),
+                               const OdometryChain& chain = along_x(kNum)) {
+  AdaptiveConfig all;
+  all.merge_check = config;
+  const OdometryChain other = chain;  // another robot: the same chain twice would mean revisits
+  return {{chain, other, loops}, {50.0, std::move(measured), {}}, all};
+}
+
+inline MergeChecker a_check(const std::vector<PcmLoop>& loops, double chance_to_go_on = 0.5,
+                            const MergeCheckConfig& config = by_places()) {
+  return checker_of(loops, measured(look_alikes(chance_to_go_on)), config);
+}
+
+/// Answers all that the test asks for.
+template <class Answer>
+MergeCheck run(MergeChecker& checker, const Answer& answer) {
+  for (std::vector<PlannedComparison> asked = checker.next(16); !asked.empty(); asked = checker.next(16)) {
+    EXPECT_LE(asked.size(), 16U);
+    std::vector<ComparedPlace> places;
+    for (const PlannedComparison& check : asked) places.push_back(answer(check));
+    checker.add(places);
+  }
+  return checker.verdict({0}, {1});
+}
+
+inline constexpr ComparedPlace kAgrees{0.5, true};
+inline constexpr ComparedPlace kDiffers{1.5, true};
+inline constexpr ComparedPlace kSilent{0.5, false};
+inline constexpr ComparedPlace kHasANiche{5.0, true};
+
+}  // namespace adit::test
