@@ -15,11 +15,7 @@ namespace adit::test {
 
 /// That go on with this chance, however long they have.
 inline LookAlikes look_alikes(double chance_to_go_on) {
-  constexpr int kSteps = 100'000;  // the prior of one half no longer shows
-  LookAlikes out;
-  if (chance_to_go_on != 0.5)
-    for (int i = 0; i < kSteps; ++i) i < chance_to_go_on* kSteps ? out.add_agreed(0) : out.add_differed(0);
-  return out;
+  return LookAlikes({.prior_chance = chance_to_go_on});
 }
 
 /// What was measured beforehand.
@@ -40,7 +36,7 @@ inline MergeChecker checker_of(const std::vector<PcmLoop>& loops, MeasuredWhenAs
   AdaptiveConfig all;
   all.merge_check = config;
   const OdometryChain other = chain;  // another robot: the same chain twice would mean revisits
-  return {{chain, other, loops}, {50.0, std::move(measured), {}}, all};
+  return {{chain, other, loops}, {50.0, std::move(measured)}, all};
 }
 
 inline MergeChecker a_check(const std::vector<PcmLoop>& loops, double chance_to_go_on = 0.5,

@@ -345,7 +345,6 @@ MergeChecker Agent::checker_of(const std::vector<LoopClosure>& loops, const Odom
           odometry_evidence(own, between.loops.back(), config_.adaptive.search.revisit));
   }
   OwnMeasurements measurements;
-  measurements.relief = config_.adaptive.registration.relief;
   if (!loops.empty()) {  // without one there is nothing to check
     measurements.reach_m = discernment().reach_m();
     measurements.measured = [&on_own_map = discernment()]() -> const Measured& {

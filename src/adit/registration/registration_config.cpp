@@ -58,24 +58,26 @@ Fields verdict_fields(RegistrationConfig& c) {
 std::string_view to_string(Pruning pruning) { return pruning == Pruning::k_core ? "k_core" : "clique"; }
 
 Fields fields_of(ReliefConfig& c) {
+  return {{"patch_m", &c.patch_m, "m", 0.1, 10.0, "edge of the cells that cut walls into patches"},
+          {"max_range_m", &c.max_range_m, "m", 1.0, 100.0,
+           "points farther from the sensor are left out: beams are too far apart there"},
+          {"pairing_distance_m", &c.pairing_distance_m, "m", 0.01, 1.0,
+           "largest distance from a point of one scan to the nearest of the other"},
+          {"max_offset_m", &c.max_offset_m, "m", 0.01, 1.0,
+           "largest offset between the two walls; more is another object, not relief"},
+          {"min_offset_m", &c.min_offset_m, "m", 0.0, 0.1,
+           "smaller mean offsets of a patch are left out: they depend on where the beams fall"},
+          {"min_normal_cosine", &c.min_normal_cosine, "", 0.0, 1.0,
+           "smallest cosine between the normals of a pair of points"},
+          {"min_points", &c.min_points, "", 1, 1000, "points needed per patch and pair of scans"}};
+}
+
+Fields fields_of(ReliefModel& c) {
   return {
-      {"patch_m", &c.patch_m, "m", 0.1, 10.0, "edge of the cells that cut walls into patches"},
-      {"max_range_m", &c.max_range_m, "m", 1.0, 100.0,
-       "points farther from the sensor are left out: beams are too far apart there"},
-      {"pairing_distance_m", &c.pairing_distance_m, "m", 0.01, 1.0,
-       "largest distance from a point of one scan to the nearest of the other"},
-      {"max_offset_m", &c.max_offset_m, "m", 0.01, 1.0,
-       "largest offset between the two walls; more is another object, not relief"},
-      {"min_offset_m", &c.min_offset_m, "m", 0.0, 0.1,
-       "smaller mean offsets of a patch are left out: they depend on where the beams fall"},
-      {"min_normal_cosine", &c.min_normal_cosine, "", 0.0, 1.0,
-       "smallest cosine between the normals of a pair of points"},
-      {"min_points", &c.min_points, "", 1, 1000, "points needed per patch and pair of scans"},
-      {"same_share", &c.same_share, "", 0.5, 1.0,
-       "share of equal signs on one wall, from three tuning worlds (decision 0015)"},
+      {"same_share", &c.same_share, "", 0.5, 1.0, "share of equal signs on one wall"},
       {"same_sigma", &c.same_sigma, "", 0.0, 0.5, "its standard deviation from stretch to stretch"},
       {"prior_other_share", &c.prior_other_share, "", 0.51, 1.0,
-       "share of equal signs on other walls, where the own map has none to measure it on (decision 0013)"},
+       "share of equal signs on other walls, where the own map has none to measure it on"},
       {"prior_sigma", &c.prior_sigma, "", 0.0, 5.0,
        "prior of the log share's standard deviation over look-alikes"},
       {"prior_moulded", &c.prior_moulded, "", 0.0, 1.0,

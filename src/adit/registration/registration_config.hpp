@@ -18,18 +18,23 @@ struct ReliefConfig {
   double min_offset_m = 0.002;
   double min_normal_cosine = 0.95;
   int min_points = 6;
+};
+[[nodiscard]] Fields fields_of(ReliefConfig& config);
+
+/// How often walls that are the same, and others, are found on the same side (EqualSignShares).
+struct ReliefModel {
   double same_share = 0.52;
   double same_sigma = 0.015;
   double prior_other_share = 0.62;
   double prior_sigma = 0.5;
+  double prior_stretches = 4.0;
   double prior_moulded = 0.02;
   double moulded = 0.002;
-  double prior_stretches = 4.0;
   double may_be_same = 0.05;
   int min_patches = 100;
   int min_patches_to_refute = 200;
 };
-[[nodiscard]] Fields fields_of(ReliefConfig& config);
+[[nodiscard]] Fields fields_of(ReliefModel& model);
 
 /// What is left of the consistency graph: its innermost k-core, or its maximum clique.
 enum class Pruning { k_core, clique };

@@ -245,20 +245,20 @@ EqualSignShare WallOffsets::count() const {
 
 bool WallOffsets::are_of_other_walls(const EqualSignShares& shares, double rate) const {
   const EqualSignShare found = counted();
-  const auto needed = static_cast<std::size_t>(shares.config().min_patches_to_refute);
+  const auto needed = static_cast<std::size_t>(shares.model().min_patches_to_refute);
   return found.num_patches >= needed && chance_of_at_least(found, shares.same()) < rate;
 }
 
 double WallOffsets::evidence(const EqualSignShares& shares) const {
   EqualSignShare found = counted();
   const std::optional<OtherWalls> other = shares.other(found.noise_m);
-  if (found.num_patches < static_cast<std::size_t>(shares.config().min_patches)) return 0.0;
+  if (found.num_patches < static_cast<std::size_t>(shares.model().min_patches)) return 0.0;
   found.share = std::max(found.share, kChance);  // less than chance is chance
   constexpr double kLeast = 1e-300;              // for the logarithm
   // The share on the own map only bounds what one wall gives: what makes signs equal there, leaves and edges,
   // may be missing between two maps.
   SameWalls same = shares.same();
-  same.mean = std::clamp(found.share, std::min(shares.config().same_share, same.mean), same.mean);
+  same.mean = std::clamp(found.share, std::min(shares.model().same_share, same.mean), same.mean);
   const double of_same = density(found, same);
   const double moulded = shares.chance_of_one_mould();
   const double of_other =
@@ -270,18 +270,18 @@ double WallOffsets::evidence(const EqualSignShares& shares) const {
 void EqualSignShares::set_same(const EqualSignShare& share) { same_ = share; }
 
 void EqualSignShares::add_other(const EqualSignShare& share) {
-  if (share.num_patches >= static_cast<std::size_t>(config_.min_patches)) others_.push_back(share);
+  if (share.num_patches >= static_cast<std::size_t>(model_.min_patches)) others_.push_back(share);
 }
 
 SameWalls EqualSignShares::same() const {
-  SameWalls walls{config_.same_share, config_.same_sigma};
-  if (same_.num_patches >= static_cast<std::size_t>(config_.min_patches_to_refute))
+  SameWalls walls{model_.same_share, model_.same_sigma};
+  if (same_.num_patches >= static_cast<std::size_t>(model_.min_patches_to_refute))
     walls.mean = std::max(walls.mean, same_.share);
   return walls;
 }
 
 double EqualSignShares::chance_of_one_mould() const {
-  return others_.empty() || are_moulded() ? config_.prior_moulded : config_.moulded;
+  return others_.empty() || are_moulded() ? model_.prior_moulded : model_.moulded;
 }
 
 double EqualSignShares::most_evidence() const {
@@ -290,13 +290,13 @@ double EqualSignShares::most_evidence() const {
 
 bool EqualSignShares::are_moulded() const {
   return std::ranges::any_of(others_, [&](const EqualSignShare& one) {
-    return chance_of_at_least(one, same()) > config_.may_be_same;
+    return chance_of_at_least(one, same()) > model_.may_be_same;
   });
 }
 
 OtherWalls EqualSignShares::believed(double noise_m) const {
-  return {std::log(under_noise(config_.prior_other_share, same_.noise_m, noise_m) - kChance),
-          config_.prior_sigma};
+  return {std::log(under_noise(model_.prior_other_share, same_.noise_m, noise_m) - kChance),
+          model_.prior_sigma};
 }
 
 std::optional<OtherWalls> EqualSignShares::other(double noise_m) const {
@@ -306,13 +306,13 @@ std::optional<OtherWalls> EqualSignShares::other(double noise_m) const {
   for (const EqualSignShare& one : others_) {
     mean += std::log(under_noise(one.share, one.noise_m, noise_m) - kChance) / num;
   }
-  double beyond_chance = config_.prior_stretches * config_.prior_sigma * config_.prior_sigma;
+  double beyond_chance = model_.prior_stretches * model_.prior_sigma * model_.prior_sigma;
   for (const EqualSignShare& one : others_) {
     const double beyond_half = under_noise(one.share, one.noise_m, noise_m) - kChance;
     beyond_chance +=
         std::max(0.0, std::pow(std::log(beyond_half) - mean, 2) - std::pow(one.sigma / beyond_half, 2));
   }
-  const double variance = beyond_chance / (config_.prior_stretches + num - 1.0);
+  const double variance = beyond_chance / (model_.prior_stretches + num - 1.0);
   return OtherWalls{mean, std::sqrt(variance * (1.0 + 1.0 / num))};
 }
 

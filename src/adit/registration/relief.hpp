@@ -62,7 +62,7 @@ struct OtherWalls {
 class EqualSignShares {
  public:
   EqualSignShares() = default;
-  explicit EqualSignShares(const ReliefConfig& config) : config_(config) {}
+  explicit EqualSignShares(const ReliefModel& model) : model_(model) {}
 
   /// The share of the robot's own walls, seen twice.
   void set_same(const EqualSignShare& share);
@@ -83,10 +83,10 @@ class EqualSignShares {
   [[nodiscard]] double chance_of_one_mould() const;
   /// The most that WallOffsets::evidence can be, a log likelihood ratio; 0 where nothing speaks for a merge.
   [[nodiscard]] double most_evidence() const;
-  [[nodiscard]] const ReliefConfig& config() const { return config_; }
+  [[nodiscard]] const ReliefModel& model() const { return model_; }
 
  private:
-  ReliefConfig config_;
+  ReliefModel model_;
   EqualSignShare same_;
   std::vector<EqualSignShare> others_;  ///< Of each stretch that was seen well.
 };

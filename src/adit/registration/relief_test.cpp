@@ -342,7 +342,7 @@ TEST(EqualSignShares, WhereOneLookAlikeMayHaveTheSameWallsNothingSpeaksForAMerge
   shares.add_other(found(0.53));  // cast in one mould
   EXPECT_FALSE(shares.other());
   EXPECT_EQ(of_a_thousand(500).evidence(shares), 0.0);
-  EXPECT_LE(of_a_thousand(500).evidence(where_others_agree(0.65)), std::log(1.0 / ReliefConfig().moulded));
+  EXPECT_LE(of_a_thousand(500).evidence(where_others_agree(0.65)), std::log(1.0 / ReliefModel().moulded));
   EXPECT_LT(of_a_thousand(650).evidence(shares), -4.0) << "believed walls speak against, too";
 }
 

@@ -216,7 +216,7 @@ Result<std::vector<JudgedHypothesis>> hypotheses_between(const CalibrationStudy&
 
 std::vector<Table> calibration_tables(const std::vector<JudgedHypothesis>& hypotheses) {
   const double needed =
-      hypotheses.empty() ? -std::log(MergeCheckConfig{}.error_rate) : hypotheses.front().needed;
+      hypotheses.empty() ? -std::log(EvidenceModel{}.error_rate) : hypotheses.front().needed;
   return {rates_table(hypotheses, needed), bins_table(hypotheses, needed)};
 }
 

@@ -19,7 +19,8 @@ using test::true_pose;
 
 constexpr double kNeeded = 6.9;
 constexpr double kGoesOn = 0.3;
-const double kOfAPlace = std::log(kAgreementIfTrue / kGoesOn);  // five are too few, ten enough
+const double kOfAPlace =
+    std::log(kFleetEvidence.agreement_if_true / kGoesOn);  // five are too few, ten enough
 
 constexpr double kOfWalls = 1.2;
 

@@ -12,11 +12,6 @@ Fields fields_of(DiscernmentConfig& c) {
        "stretches of its own map that look most like others of it, on which it measures how long they agree"},
       {"displacement_m", &c.displacement_m, "m", 0.5, 1000.0,
        "a place is distinctive when scans displaced by this along the path differ"},
-      {"usual_share", &c.usual_share, "", 0.0, 1.0,
-       "share of pairs of scans of one place that differ less than usual"},
-      {"allowance", &c.allowance, "", 1.0, 100.0, "scans differ beyond this times the usual difference"},
-      {"least_difference_m2", &c.least_difference_m2, "m2", 0.0, 100.0,
-       "smaller differences are none, as small as the usual one may be: beams that meet an edge elsewhere"},
       {"second_looks", &c.second_looks, "", 0, 0,
        "a place differs only if a second pair of scans, nearby, differs too: one fit in many fails"},
       {"second_look_m", &c.second_look_m, "m", 0.1, 100.0,
@@ -24,9 +19,6 @@ Fields fields_of(DiscernmentConfig& c) {
       {"followed_m", &c.followed_m, "m", 1.0, 10000.0, "path along which look-alikes are followed, each way"},
       {"starts_per_look_alike", &c.starts_per_look_alike, "", 1, 1000,
        "candidates of a stretch that are tried until one can be followed"},
-      {"prior_chance", &c.prior_chance, "", 0.0, 1.0,
-       "prior chance that look-alikes agree at one more place"},
-      {"prior_steps", &c.prior_steps, "", 0.0, 1e6, "number of measured places that this prior counts as"},
       {"shortest_reach_m", &c.shortest_reach_m, "m", 1.0, 10000.0,
        "maps are compared at least this far from a loop"},
       {"longest_reach_m", &c.longest_reach_m, "m", 1.0, 10000.0,
@@ -37,9 +29,6 @@ Fields fields_of(DiscernmentConfig& c) {
 
 Fields fields_of(MergeCheckConfig& c) {
   Fields fields = {
-      {"error_rate", &c.error_rate, "", 1e-12, 0.5, "chance that a wrong merge passes"},
-      {"refusal_rate", &c.refusal_rate, "", 1e-12, 0.5,
-       "chance that a true merge is refused because scans differ"},
       {"spacing_m", &c.spacing_m, "m", 0.1, 1000.0, "path between two places where maps are compared"},
       {"max_checks", &c.max_checks, "", 1, 10000, "places that are compared at most, per hypothesis"},
       {"wall_spacing_m", &c.wall_spacing_m, "m", 0.1, 1000.0,
@@ -52,15 +41,6 @@ Fields fields_of(MergeCheckConfig& c) {
       {"min_loops", &c.min_loops, "", 1, 1000, "loops that have to agree in a hypothesis that joins maps"},
       {"same_alignment_m", &c.same_alignment_m, "m", 0.0, 1000.0,
        "hypotheses are one if they put the other robot within this distance of one another"},
-      {"changes_at_worst_per_km", &c.changes_at_worst_per_km, "1/km", 0.1, 1000.0,
-       "changes of structure between two visits of one stretch, at worst: doors, blocked, lined or widened "
-       "tunnels"},
-      {"things_per_km", &c.things_per_km, "1/km", 0.1, 1e4,
-       "vehicles and the like that one robot meets on a shared stretch and the other does not"},
-      {"things_elsewhere_per_km", &c.things_elsewhere_per_km, "1/km", 0.1, 1e4,
-       "the same, where the robots drove in different tunnels"},
-      {"things_speak_at_most", &c.things_speak_at_most, "", 0.0, 100.0,
-       "evidence that such things take away at most: they come and go"},
       {"misplaced_m", &c.misplaced_m, "m", 0.0, 1000.0,
        "a loop contradicts another one nearby if they disagree by more"},
       {"misplaced_keyframes", &c.misplaced_keyframes, "", 0, 1e6,
@@ -73,6 +53,7 @@ Fields fields_of(MergeCheckConfig& c) {
       {"relief", &c.relief, "", 0, 0,
        "compare the relief of walls, too: walls that stay apart in the same direction in all scans are "
        "others"}};
+  append(fields, "evidence", fields_of(c.evidence));
   append(fields, "discernment", fields_of(c.discernment));
   return fields;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "adit/core/config.hpp"
+#include "adit/fleet/merge/evidence_model.hpp"
 #include "adit/fleet/search/candidate_search.hpp"
 #include "adit/registration/registration_config.hpp"
 #include "adit/robot/submap.hpp"
@@ -15,15 +16,10 @@ struct DiscernmentConfig {
   int samples = 32;
   int look_alikes = 16;
   double displacement_m = 5.0;
-  double usual_share = 0.9;
-  double allowance = 1.5;
-  double least_difference_m2 = 0.9;
   bool second_looks = true;
   double second_look_m = 1.0;
   double followed_m = 60.0;
   int starts_per_look_alike = 4;
-  double prior_chance = 0.4;
-  double prior_steps = 4.0;
   double shortest_reach_m = 50.0;
   double longest_reach_m = 150.0;
   double reach_off_m = 0.5;
@@ -32,8 +28,6 @@ Fields fields_of(DiscernmentConfig& config);
 
 /// When loops between two robots may join their maps (MergeChecker, decision 0010).
 struct MergeCheckConfig {
-  double error_rate = 1e-3;
-  double refusal_rate = 0.01;
   double spacing_m = 3.0;
   int max_checks = 200;
   double wall_spacing_m = 1.0;
@@ -42,16 +36,13 @@ struct MergeCheckConfig {
   int max_hypotheses = 12;
   int min_loops = 1;
   double same_alignment_m = 3.0;
-  double changes_at_worst_per_km = 20.0;
-  double things_per_km = 40.0;
-  double things_elsewhere_per_km = 120.0;
-  double things_speak_at_most = 1.0;
   double misplaced_m = 0.75;
   int misplaced_keyframes = 60;
   int misplaced_neighbours = 5;
   int misplaced_quorum = 3;
   bool distinctive_only = true;
   bool relief = true;
+  EvidenceModel evidence;
   DiscernmentConfig discernment;
 };
 Fields fields_of(MergeCheckConfig& config);

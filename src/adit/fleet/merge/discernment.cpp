@@ -22,17 +22,16 @@ Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryCha
       find_look_alikes_(std::move(find_look_alikes)),
       features_(std::move(features)),
       surfaces_(map, config.registration) {
-  const double usual = config_.merge_check.discernment.allowance * usual_difference();
+  const double usual = config_.merge_check.evidence.allowance * usual_difference();
   const double voxel = config_.registration.voxel_size;
   if (usual > 0.0)
-    limit_ = std::max(usual, config_.merge_check.discernment.least_difference_m2 / (voxel * voxel));
+    limit_ = std::max(usual, config_.merge_check.evidence.least_difference_m2 / (voxel * voxel));
 }
 
 const Measured& Discernment::measured() {
   if (measured_) return *measured_;
-  const DiscernmentConfig& config = config_.merge_check.discernment;
-  Measured measured{LookAlikes(config.prior_chance, config.prior_steps),
-                    EqualSignShares(config_.registration.relief)};
+  const EvidenceModel& model = config_.merge_check.evidence;
+  Measured measured{LookAlikes(model), EqualSignShares(model.walls)};
   measured.walls.set_same(compare_own_walls().counted());
   LookAlikeWalks walks(*this, chain_, *features_, config_);
   walks.start(find_look_alikes_());
@@ -78,7 +77,7 @@ double Discernment::usual_difference() {
   for (const LocalFit& fit : compare(pairs, FitFrom::guess, std::numeric_limits<double>::infinity()))
     if (fit.agreement.is_comparable()) differences.push_back(fit.agreement.largest_difference);
   if (differences.empty()) return 0.0;
-  const double share = config_.merge_check.discernment.usual_share;
+  const double share = config_.merge_check.evidence.usual_share;
   const auto usual = std::lround(share * static_cast<double>(differences.size() - 1));
   std::ranges::nth_element(differences, differences.begin() + usual);
   return differences[static_cast<std::size_t>(usual)];

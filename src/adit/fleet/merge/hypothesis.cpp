@@ -115,8 +115,6 @@ void Hypothesis::add(const ComparedPlace& place) {
 }
 
 void Hypothesis::add_second_look(std::size_t which, const ComparedPlace& place) {
-  constexpr double kSameObject = 5.0;  // metres between its middles, as seen from two places
-  constexpr double kGross = 5.0;       // times the limit: no chance meeting of beams and edges
   const PlannedComparison look = *std::exchange(second_looks[which], std::nullopt);
   ComparedPlace& first = compared[which];
   if (!place.differs()) {
@@ -132,10 +130,10 @@ void Hypothesis::add_second_look(std::size_t which, const ComparedPlace& place) 
   std::vector<Vector3> seen_again;
   for (const Vector3& one : first.structures)
     if (std::ranges::any_of(place.structures,
-                            [&](const Vector3& other) { return (other - one).norm() < kSameObject; }))
+                            [&](const Vector3& other) { return (other - one).norm() < model.same_object_m; }))
       seen_again.push_back(one);
   const bool has_moved = seen_again.empty() && !first.structures.empty() && !place.structures.empty();
-  if (has_moved && std::min(first.difference, place.difference) < kGross) {
+  if (has_moved && std::min(first.difference, place.difference) < model.gross) {
     first.is_explained = true;  // by chance: the place says nothing
     first.signs.clear();
     return;
@@ -197,8 +195,7 @@ std::vector<Hypothesis> hypotheses_of(const LoopsBetween& between, double reach_
   std::vector<std::size_t> rest(between.loops.size());
   std::iota(rest.begin(), rest.end(), std::size_t{0});
   while (!rest.empty() && hypotheses.size() < static_cast<std::size_t>(check.max_hypotheses)) {
-    Hypothesis hypothesis;
-    hypothesis.offsets = WallOffsets(config.registration.relief);
+    Hypothesis hypothesis(config);
     for (const std::size_t l : pcm(between.own, between.theirs, picked(between.loops, rest)).largest)
       hypothesis.loops.push_back(rest[l]);
     std::erase_if(rest, [&](std::size_t l) { return std::ranges::binary_search(hypothesis.loops, l); });

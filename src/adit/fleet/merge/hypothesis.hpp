@@ -48,15 +48,20 @@ class Changes {
 };
 
 struct Hypothesis {
+  Hypothesis() = default;
+  explicit Hypothesis(const AdaptiveConfig& config)
+      : model(config.merge_check.evidence), offsets(config.registration.relief) {}
+
+  EvidenceModel model;
   std::vector<std::size_t> loops;                              ///< Indices, ascending.
   std::vector<PlannedComparison> plan;                         ///< Places of the claimed overlap.
   std::vector<std::optional<PlannedComparison>> second_looks;  ///< Of each place of the plan, until taken.
-  std::vector<PlannedComparison> wall_plan;  ///< Pairs between the places, where walls have to decide.
-  std::size_t num_walls_compared = 0;        ///< Of the first pairs of that plan.
-  std::vector<ComparedPlace> compared;       ///< Of the first places of the plan, without their offsets.
-  WallOffsets offsets;                       ///< Of all compared walls.
-  Changes structures{10.0};  ///< Doors, blocked or worked tunnels: half of 20 m of fresh lining to each side.
-  Changes things{5.0};       ///< The length of a vehicle, whose middle looks elsewhere from either side.
+  std::vector<PlannedComparison> wall_plan;     ///< Pairs between the places, where walls have to decide.
+  std::size_t num_walls_compared = 0;           ///< Of the first pairs of that plan.
+  std::vector<ComparedPlace> compared;          ///< Of the first places of the plan, without their offsets.
+  WallOffsets offsets;                          ///< Of all compared walls.
+  Changes structures{model.structure_reach_m};  ///< Doors, blocked or worked tunnels.
+  Changes things{model.thing_reach_m};          ///< Vehicles and the like.
   std::vector<double> apart_m;    ///< To each hypothesis before this one: where they put the other robot.
   double known_before = 0.0;      ///< Evidence that does not come from comparing scans.
   std::size_t num_unlocated = 0;  ///< Places that differ as a whole, by a second look, too.

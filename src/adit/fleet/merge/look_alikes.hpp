@@ -7,6 +7,7 @@
 #include <functional>
 #include <tuple>
 
+#include "adit/fleet/merge/evidence_model.hpp"
 #include "adit/fleet/sync/protocol.hpp"
 #include "adit/registration/relief.hpp"
 
@@ -19,9 +20,9 @@ namespace adit {
 class LookAlikes {
  public:
   /// Before anything is measured look-alikes agree at one more place with `prior_chance`, a belief that is
-  /// worth `prior_steps` measured places (DiscernmentConfig).
-  explicit LookAlikes(double prior_chance = 0.5, double prior_steps = 8.0)
-      : prior_chance_(prior_chance), prior_steps_(prior_steps) {}
+  /// worth `prior_steps` measured places.
+  explicit LookAlikes(const EvidenceModel& model = {})
+      : prior_chance_(model.prior_chance), prior_steps_(model.prior_steps) {}
 
   /// Look-alikes that had agreed at `passed` distinctive places agreed at the next one, or differed.
   void add_agreed(std::size_t passed) { add(passed, 0); }

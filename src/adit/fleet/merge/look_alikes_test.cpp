@@ -9,9 +9,9 @@
 namespace adit {
 namespace {
 
-TEST(LookAlikes, GoOnHalfTheTimeUntilSomethingIsKnown) {
+TEST(LookAlikes, GoOnAsBelievedUntilSomethingIsKnown) {
   for (const std::size_t passed : {0U, 1U, 2U, 100U})
-    EXPECT_EQ(chance_to_go_on(LookAlikes().chances(), passed), 0.5);
+    EXPECT_DOUBLE_EQ(chance_to_go_on(LookAlikes({.prior_chance = 0.5}).chances(), passed), 0.5);
 }
 
 TEST(LookAlikes, ThatHaveGoneOnForLongAreTrustedToGoOn) {
@@ -19,8 +19,8 @@ TEST(LookAlikes, ThatHaveGoneOnForLongAreTrustedToGoOn) {
   for (int i = 0; i < 80; ++i) i < 8 ? seen.add_agreed(0) : seen.add_differed(0);  // nine of ten end at once,
   for (int i = 0; i < 80; ++i)
     i < 76 ? seen.add_agreed(7) : seen.add_differed(7);  // and those that passed seven go on
-  EXPECT_EQ(chance_to_go_on(seen.chances(), 0), kLeastChance);
-  EXPECT_EQ(chance_to_go_on(seen.chances(), 6), kLeastChance);
+  EXPECT_EQ(chance_to_go_on(seen.chances(), 0), kFleetEvidence.least_chance);
+  EXPECT_EQ(chance_to_go_on(seen.chances(), 6), kFleetEvidence.least_chance);
   EXPECT_GT(chance_to_go_on(seen.chances(), 7), 0.8);
   EXPECT_EQ(chance_to_go_on(seen.chances(), 14), chance_to_go_on(seen.chances(), 7));  // one phase
   EXPECT_EQ(chance_to_go_on(seen.chances(), 1000), chance_to_go_on(seen.chances(), 7));

@@ -177,7 +177,8 @@ TEST(MergeAdvice, BetweenRivalsOnlyPlacesThatLookDifferentCount) {
   const std::optional<MergeAdvice> advice = met.advice([](double m) { return m > 80.0; });
   ASSERT_TRUE(advice);
   EXPECT_NEAR(advice->to_m, 110.0, kSpacing) << "where the rival would show the niche";
-  const double loss = std::log((1.0 - chance_to_go_on(kChances, 0)) / (1.0 - kAgreementIfTrue));
+  const double loss =
+      std::log((1.0 - chance_to_go_on(kChances, 0)) / (1.0 - kFleetEvidence.agreement_if_true));
   EXPECT_NEAR(advice->gain, loss + gain_of(1, met.num_passed()), 1e-12);
 }
 

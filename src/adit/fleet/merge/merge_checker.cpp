@@ -53,11 +53,11 @@ MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first) c
 
 bool MergeChecker::has_other_walls(const Hypothesis& h) const {
   // Asked again after every comparison: before the end only what leaves little doubt counts.
-  constexpr double kStricterBeforeTheEnd = 100.0;
-  const double rate = h.is_finished() ? config_.refusal_rate : config_.refusal_rate / kStricterBeforeTheEnd;
+  const EvidenceModel& model = config_.evidence;
+  const double rate = h.is_finished() ? model.refusal_rate : model.refusal_rate_before_the_end;
   // What was measured only raises the share that one wall may have: without it the answer is often known
   // already.
-  return config_.relief && h.offsets.are_of_other_walls(EqualSignShares(own_.relief), rate) &&
+  return config_.relief && h.offsets.are_of_other_walls(EqualSignShares(model.walls), rate) &&
          h.offsets.are_of_other_walls(own_.measured().walls, rate);
 }
 
@@ -65,14 +65,13 @@ bool MergeChecker::differs_too_often(const Hypothesis& h) const {
   const std::size_t num = h.compared.size();
   if (num >= static_cast<std::size_t>(config_.first_checks) && h.num_differing() == num) return true;
   // One change is seen from many places: the places themselves are no independent trials.
-  return poisson_tail(h.num_changes(), config_.changes_at_worst_per_km * compared_km(h)) <
-         config_.refusal_rate;
+  return poisson_tail(h.num_changes(), config_.evidence.changes_at_worst_per_km * compared_km(h)) <
+         config_.evidence.refusal_rate;
 }
 
 double MergeChecker::compared_km(const Hypothesis& h) const {
-  constexpr double kSight = 20.0;  // metres of a tunnel that a pair of scans shows
-  const double by_places = static_cast<double>(h.compared.size()) * kSight;
-  const double whole = static_cast<double>(h.plan.size()) * config_.spacing_m + kSight;
+  const double by_places = static_cast<double>(h.compared.size()) * config_.evidence.sight_m;
+  const double whole = static_cast<double>(h.plan.size()) * config_.spacing_m + config_.evidence.sight_m;
   return std::min(by_places, whole) / 1000.0;
 }
 
@@ -84,7 +83,7 @@ bool MergeChecker::are_rivals(const Hypothesis& best, const Hypothesis& other) c
   return !is_refuted(other) && evidence(best) - evidence(other) < needed();
 }
 
-double MergeChecker::needed() const { return std::log(1.0 / config_.error_rate); }
+double MergeChecker::needed() const { return std::log(1.0 / config_.evidence.error_rate); }
 
 double MergeChecker::evidence(const Hypothesis& h) const {
   return evidence_of_scans(h) + evidence_of_walls(h) + evidence_of_things(h);
@@ -104,11 +103,11 @@ double MergeChecker::evidence_of_walls(const Hypothesis& h) const {
 
 double MergeChecker::evidence_of_things(const Hypothesis& h) const {
   const auto num = static_cast<double>(h.things.num());
-  const double same = config_.things_per_km;
-  const double other = config_.things_elsewhere_per_km;
+  const double same = config_.evidence.things_per_km;
+  const double other = config_.evidence.things_elsewhere_per_km;
   // Few things are no evidence: there may be none at all.
   return std::clamp(num * std::log(same / other) + (other - same) * compared_km(h),
-                    -config_.things_speak_at_most, 0.0);
+                    -config_.evidence.things_speak_at_most, 0.0);
 }
 
 std::optional<std::size_t> MergeChecker::to_go_on_with() const {

@@ -34,7 +34,6 @@ namespace adit {
 struct OwnMeasurements {
   double reach_m = 0.0;        ///< Discernment::reach_m.
   MeasuredWhenAsked measured;  ///< Called only where scans leave a hypothesis to be weighed.
-  ReliefConfig relief;         ///< Of what `measured` returns.
 };
 
 /// Why maps are joined or not.

@@ -75,7 +75,7 @@ TEST(MergeChecker, ThingsComeAndGo) {
   const MergeCheck none = check_with_things(1'000'000);
   const MergeCheck many = check_with_things(1);
   EXPECT_TRUE(many.accepted) << many.reason;
-  EXPECT_NEAR(none.evidence - many.evidence, MergeCheckConfig().things_speak_at_most, 1e-9);
+  EXPECT_NEAR(none.evidence - many.evidence, EvidenceModel().things_speak_at_most, 1e-9);
   EXPECT_EQ(check_with_things(40).evidence, none.evidence) << "a few are no evidence";
 }
 
@@ -168,10 +168,12 @@ TEST(MergeChecker, AfterAPlaceThatDiffersTheCountStartsAnew) {
   const double never = evidence(1000);
   const double in_the_middle = evidence(15);
   // One place differs instead of going on, and the next one begins anew.
-  const double begins = std::log(kAgreementIfTrue / chance_to_go_on(rarely_begin.chances(), 0));
-  const double goes_on = std::log(kAgreementIfTrue / chance_to_go_on(rarely_begin.chances(), 1));
+  const double begins =
+      std::log(kFleetEvidence.agreement_if_true / chance_to_go_on(rarely_begin.chances(), 0));
+  const double goes_on =
+      std::log(kFleetEvidence.agreement_if_true / chance_to_go_on(rarely_begin.chances(), 1));
   const double differs =
-      std::log((1.0 - kAgreementIfTrue) / (1.0 - chance_to_go_on(rarely_begin.chances(), 1)));
+      std::log((1.0 - kFleetEvidence.agreement_if_true) / (1.0 - chance_to_go_on(rarely_begin.chances(), 1)));
   EXPECT_NEAR(in_the_middle - never, differs - goes_on + begins - goes_on, 0.05);
 }
 
@@ -190,7 +192,7 @@ TEST(MergeChecker, APlaceDiffersOnlyIfItDoesByASecondLook) {
   };
   const MergeCheck agrees = checked(false);
   EXPECT_EQ(agrees.num_passed, agrees.num_checked);
-  EXPECT_NEAR(agrees.evidence, agrees.num_checked * std::log(kAgreementIfTrue / 0.5), 1e-9);
+  EXPECT_NEAR(agrees.evidence, agrees.num_checked * std::log(kFleetEvidence.agreement_if_true / 0.5), 1e-9);
   const MergeCheck differs = checked(true);
   EXPECT_EQ(differs.num_passed + 1, differs.num_checked);
 }
@@ -200,7 +202,7 @@ TEST(MergeChecker, PlacesThatAgreeJoinTheMaps) {
   const MergeCheck check = run(checker, [](const PlannedComparison&) { return kAgrees; });
   EXPECT_TRUE(check.accepted) << check.reason;
   EXPECT_EQ(check.num_passed, check.num_checked);
-  EXPECT_NEAR(check.evidence, check.num_checked * std::log(kAgreementIfTrue / 0.5), 1e-9);
+  EXPECT_NEAR(check.evidence, check.num_checked * std::log(kFleetEvidence.agreement_if_true / 0.5), 1e-9);
   EXPECT_NEAR(check.needed, std::log(1e3), 1e-9);
   const std::vector<std::pair<std::uint32_t, std::uint32_t>> loops = {{80, 119}, {90, 109}, {100, 99}};
   EXPECT_EQ(check.loops, loops);
@@ -279,7 +281,8 @@ TEST(MergeChecker, WhereLookAlikesGoOnForLongALongerStretchIsNeeded) {
   EXPECT_FALSE(check.accepted);
   EXPECT_EQ(check.hypotheses.at(0).outcome, HypothesisOutcome::unsure);
   // Every further 3 m bring log(0.99 / 0.9); what is missing, rounded up to 10 m.
-  const double metres = 3.0 * std::ceil((check.needed - check.evidence) / std::log(kAgreementIfTrue / 0.9));
+  const double metres =
+      3.0 * std::ceil((check.needed - check.evidence) / std::log(kFleetEvidence.agreement_if_true / 0.9));
   const std::string asked =
       "drive the same stretch for about another " + std::to_string(10 * std::lround(std::ceil(metres / 10)));
   EXPECT_NE(check.reason.find(asked + " m"), std::string::npos) << check.reason;
@@ -379,7 +382,7 @@ TEST(MergeChecker, ChanceJoinsMapsNoMoreOftenThanTheErrorRateSays) {
   // counted.
   const double kEachLook = 1.0 - std::sqrt(0.5);
   MergeCheckConfig config;
-  config.error_rate = 0.02;
+  config.evidence.error_rate = 0.02;
   Rng rng(5);
   int num_wrong = 0;
   constexpr int kTrials = 2000;

@@ -11,11 +11,11 @@ namespace adit {
 
 double chance_to_go_on(const ChancesToGoOn& chances, std::size_t passed) {
   const std::size_t phase = std::min<std::size_t>(std::bit_width(passed + 1), chances.size()) - 1;
-  return std::clamp(chances[phase], kLeastChance, kAgreementIfTrue);
+  return std::clamp(chances[phase], kFleetEvidence.least_chance, kFleetEvidence.agreement_if_true);
 }
 
 double evidence_of_agreement(const ChancesToGoOn& chances, std::size_t passed) {
-  return std::log(kAgreementIfTrue / chance_to_go_on(chances, passed));
+  return std::log(kFleetEvidence.agreement_if_true / chance_to_go_on(chances, passed));
 }
 
 std::vector<double> evidence_at_places(const std::vector<TestedPlace>& places, const ChancesToGoOn& chances) {
@@ -24,8 +24,8 @@ std::vector<double> evidence_at_places(const std::vector<TestedPlace>& places, c
   for (const TestedPlace& place : places) {
     double of_place = 0.0;
     if (place.outcome == PlaceOutcome::differs)
-      of_place =
-          std::log((1.0 - kAgreementIfTrue) / (1.0 - chance_to_go_on(chances, std::exchange(passed, 0))));
+      of_place = std::log((1.0 - kFleetEvidence.agreement_if_true) /
+                          (1.0 - chance_to_go_on(chances, std::exchange(passed, 0))));
     else if (place.outcome == PlaceOutcome::distinctive)
       of_place = evidence_of_agreement(chances, passed++);
     evidence.push_back(of_place);
@@ -34,7 +34,8 @@ std::vector<double> evidence_at_places(const std::vector<TestedPlace>& places, c
 }
 
 double unless_copied(double of_places, double num) {
-  return -std::log((1.0 - kCopied) * std::exp(-of_places) + kCopied * std::pow(kCopyGoesOn, num));
+  const auto [agreement_if_true, least_chance, copied, copy_goes_on] = kFleetEvidence;
+  return -std::log((1.0 - copied) * std::exp(-of_places) + copied * std::pow(copy_goes_on, num));
 }
 
 double poisson_tail(std::size_t k, double mean) {

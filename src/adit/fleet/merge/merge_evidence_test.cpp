@@ -19,7 +19,7 @@ TEST(MergeEvidence, PoissonTail) {
 TEST(MergeEvidence, PlacesAloneDoNotTellATunnelFromOneBuiltToTheSamePlan) {
   EXPECT_NEAR(unless_copied(2.0, 5.0), 2.0, 0.1);
   EXPECT_NEAR(unless_copied(-20.0, 5.0), -20.0, 0.1);
-  EXPECT_LT(unless_copied(30.0, 10.0), std::log(1.0 / kCopied) + 0.6);
+  EXPECT_LT(unless_copied(30.0, 10.0), std::log(1.0 / kFleetEvidence.copied) + 0.6);
   EXPECT_GT(unless_copied(100.0, 150.0), std::log(1e3)) << "but no plan was built twice all over";
 }
 

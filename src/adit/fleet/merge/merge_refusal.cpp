@@ -22,8 +22,8 @@ double evidence_of_changes(const std::vector<TestedPlace>& places, const Chances
   if (differ == 0.0 || agree == 0.0) return 0.0;
   const std::vector<double> at_places = evidence_at_places(places, chances);
   return std::accumulate(at_places.begin(), at_places.end(), 0.0) +
-         differ * std::log(differ / (differ + agree) / (1.0 - kAgreementIfTrue)) +
-         agree * std::log(agree / (differ + agree) / kAgreementIfTrue);
+         differ * std::log(differ / (differ + agree) / (1.0 - kFleetEvidence.agreement_if_true)) +
+         agree * std::log(agree / (differ + agree) / kFleetEvidence.agreement_if_true);
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ RefusalKind MergeChecker::kind_where_evidence_is_missing(const Hypothesis& h) co
 /// is measured only where what was believed before leaves the question open.
 RefusalKind MergeChecker::kind_where_scans_differ(const Hypothesis& h) const {
   if (2 * h.num_differing() > h.compared.size()) return RefusalKind::other_tunnel;
-  const LookAlikes before(config_.discernment.prior_chance, config_.discernment.prior_steps);
+  const LookAlikes before(config_.evidence);
   const std::vector<TestedPlace> places = h.places(config_.distinctive_only);
   return evidence_of_changes(places, before.chances()) >= needed() &&
                  evidence_of_changes(places, chances()) >= needed()
@@ -87,9 +87,9 @@ RefusalKind MergeChecker::kind_where_walls_differ(const Hypothesis& h) const {
 double MergeChecker::metres_for_changes(const Hypothesis& h) const {
   constexpr double kFarthestPath = 10'000.0;  // metres: so many changes are none
   double metres = 0.0;
-  while (metres < kFarthestPath &&
-         poisson_tail(h.num_changes(), config_.changes_at_worst_per_km * (compared_km(h) + metres / 1000.0)) <
-             config_.refusal_rate)
+  while (metres < kFarthestPath && poisson_tail(h.num_changes(), config_.evidence.changes_at_worst_per_km *
+                                                                     (compared_km(h) + metres / 1000.0)) <
+                                       config_.evidence.refusal_rate)
     metres += config_.spacing_m;
   return metres;
 }

@@ -56,7 +56,7 @@ TEST(MergeRefusal, SaysWhatKindOfDifferenceItIs) {
 // Structure of its own at every so many-th place, by both looks.
 MergeCheck check_of_changes(std::uint32_t every, double chance_to_go_on) {
   MergeCheckConfig config;
-  config.error_rate = 0.05;  // the stretch is short
+  config.evidence.error_rate = 0.05;  // the stretch is short
   MergeChecker checker = a_check(kTrueLoops, chance_to_go_on, config);
   const std::uint32_t first = checker.next(1).front().own % 6;
   return run(checker, [&](const PlannedComparison& asked) {

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/merge/evidence_model.hpp"
+
+#include <array>
+#include <utility>
+#include <variant>
+
+#include "adit/core/check.hpp"
+
+namespace adit {
+namespace {
+
+struct Origin {
+  std::string_view key;
+  std::string_view source;
+  std::string_view date;
+};
+
+constexpr std::string_view kChosen = "chosen: the rate that is aimed at";
+constexpr std::string_view kTrueOfFive = "true pairs of five tuning worlds (decision 0043)";
+constexpr std::string_view kWalksOfFifteen =
+    "106 first steps of look-alikes on 15 maps of five tuning worlds (decision 0043)";
+constexpr std::string_view kJudgement = "judgement: no site was counted (decision 0043)";
+constexpr std::string_view kObjects = "sizes of vehicles and of fresh lining (decision 0041)";
+constexpr std::string_view kThings = "16 worlds (decision 0041)";
+constexpr std::string_view kOfScans = "pairs of scans of the tuning worlds (decision 0010)";
+constexpr std::string_view kOfWalls = "three tuning worlds (decision 0015)";
+
+constexpr std::array kOrigins = {
+    Origin{"fleet.agreement_if_true", kTrueOfFive, "2026-11-25"},
+    Origin{"fleet.least_chance", "places 3 m apart see in part the same (decision 0043)", "2026-11-25"},
+    Origin{"fleet.copied", kJudgement, "2026-11-25"},
+    Origin{"fleet.copy_goes_on", kJudgement, "2026-11-25"},
+    Origin{"error_rate", kChosen, "2026-11-21"},
+    Origin{"refusal_rate", kChosen, "2026-11-21"},
+    Origin{"refusal_rate_before_the_end", "chosen: asked some 100 times per check", "2026-11-21"},
+    Origin{"usual_share", kOfScans, "2026-11-21"},
+    Origin{"allowance", kOfScans, "2026-11-21"},
+    Origin{"least_difference_m2", kOfScans, "2026-11-21"},
+    Origin{"gross", kOfScans, "2026-11-25"},
+    Origin{"prior_chance", kWalksOfFifteen, "2026-11-25"},
+    Origin{"prior_steps", kWalksOfFifteen, "2026-11-25"},
+    Origin{"sight_m", "reach of scans in a bent tunnel (decision 0041)", "2026-11-24"},
+    Origin{"same_object_m", kObjects, "2026-11-24"},
+    Origin{"structure_reach_m", kObjects, "2026-11-24"},
+    Origin{"thing_reach_m", kObjects, "2026-11-24"},
+    Origin{"changes_at_worst_per_km", kThings, "2026-11-24"},
+    Origin{"things_per_km", kThings, "2026-11-24"},
+    Origin{"things_elsewhere_per_km", kThings, "2026-11-24"},
+    Origin{"things_speak_at_most", "chosen: they come and go (decision 0043)", "2026-11-25"},
+    Origin{"walls.same_share", kOfWalls, "2026-11-22"},
+    Origin{"walls.same_sigma", kOfWalls, "2026-11-22"},
+    Origin{"walls.prior_other_share", "tuning worlds (decision 0013)", "2026-11-21"},
+    Origin{"walls.prior_sigma", kOfWalls, "2026-11-22"},
+    Origin{"walls.prior_stretches", kOfWalls, "2026-11-22"},
+    Origin{"walls.prior_moulded", kJudgement, "2026-11-25"},
+    Origin{"walls.moulded", kJudgement, "2026-11-25"},
+    Origin{"walls.may_be_same", "chosen: a rate of error", "2026-11-22"},
+    Origin{"walls.min_patches", kOfWalls, "2026-11-22"},
+    Origin{"walls.min_patches_to_refute", kOfWalls, "2026-11-22"},
+};
+
+Fields fields_of(FleetEvidence& c) {
+  return {{"agreement_if_true", &c.agreement_if_true, "", 0.0, 1.0,
+           "chance that a place shows no change of structure that none before has shown, if the alignment is "
+           "true"},
+          {"least_chance", &c.least_chance, "", 0.0, 1.0,
+           "look-alikes agree at one more place at least this often, however seldom a robot has seen it"},
+          {"copied", &c.copied, "", 0.0, 1.0,
+           "share of the tunnels that look alike that were built to the same plan"},
+          {"copy_goes_on", &c.copy_goes_on, "", 0.0, 1.0,
+           "chance that one built to the same plan agrees at one more distinctive place"}};
+}
+
+double number_of(const Field& field) {
+  if (const auto* whole = std::get_if<int*>(&field.target)) return **whole;
+  const auto* number = std::get_if<double*>(&field.target);
+  ADIT_CHECK(number, "all values of the evidence model are numbers");
+  return **number;
+}
+
+}  // namespace
+
+Fields fields_of(EvidenceModel& c) {
+  Fields fields = {
+      {"error_rate", &c.error_rate, "", 1e-12, 0.5, "chance that a wrong merge passes"},
+      {"refusal_rate", &c.refusal_rate, "", 1e-12, 0.5,
+       "chance that a true merge is refused because scans or walls differ"},
+      {"refusal_rate_before_the_end", &c.refusal_rate_before_the_end, "", 1e-12, 0.5,
+       "the same for walls, asked after every comparison before the last"},
+      {"usual_share", &c.usual_share, "", 0.0, 1.0,
+       "share of pairs of scans of one place that differ less than usual"},
+      {"allowance", &c.allowance, "", 1.0, 100.0, "scans differ beyond this times the usual difference"},
+      {"least_difference_m2", &c.least_difference_m2, "m2", 0.0, 100.0,
+       "smaller differences are none, as small as the usual one may be: beams that meet an edge elsewhere"},
+      {"gross", &c.gross, "", 1.0, 100.0,
+       "what differs by more than this times the limit is no chance meeting of beams and edges"},
+      {"prior_chance", &c.prior_chance, "", 0.0, 1.0,
+       "prior chance that look-alikes agree at one more place"},
+      {"prior_steps", &c.prior_steps, "", 0.0, 1e6, "number of measured places that this prior counts as"},
+      {"sight_m", &c.sight_m, "m", 1.0, 200.0, "length of tunnel that a pair of scans shows"},
+      {"same_object_m", &c.same_object_m, "m", 0.1, 100.0,
+       "distance between the middles of one object, as seen from two places, at most"},
+      {"structure_reach_m", &c.structure_reach_m, "m", 0.1, 100.0,
+       "what differs within this of where a change of structure was first seen belongs to it: half of 20 m "
+       "of fresh lining to each side"},
+      {"thing_reach_m", &c.thing_reach_m, "m", 0.1, 100.0,
+       "the same for what may come and go: the length of a vehicle"},
+      {"changes_at_worst_per_km", &c.changes_at_worst_per_km, "1/km", 0.1, 1000.0,
+       "changes of structure between two visits of one stretch, at worst: doors, blocked, lined or widened "
+       "tunnels"},
+      {"things_per_km", &c.things_per_km, "1/km", 0.1, 1e4,
+       "vehicles and the like that one robot meets on a shared stretch and the other does not"},
+      {"things_elsewhere_per_km", &c.things_elsewhere_per_km, "1/km", 0.1, 1e4,
+       "the same, where the robots drove in different tunnels"},
+      {"things_speak_at_most", &c.things_speak_at_most, "", 0.0, 100.0,
+       "evidence that such things take away at most: they come and go"}};
+  append(fields, "walls", fields_of(c.walls));
+  return fields;
+}
+
+std::vector<EvidenceEntry> evidence_entries(EvidenceModel model) {
+  FleetEvidence fleet;
+  Fields fields;
+  append(fields, "fleet", fields_of(fleet));
+  for (Field& field : fields_of(model)) fields.push_back(std::move(field));
+  ADIT_CHECK(fields.size() == kOrigins.size(), "every value of the evidence model has an origin");
+  std::vector<EvidenceEntry> entries;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const Field& field = fields[i];
+    ADIT_CHECK(field.key == kOrigins[i].key, "values and origins come in the same order");
+    entries.push_back(
+        {field.key, number_of(field), field.unit, field.meaning, kOrigins[i].source, kOrigins[i].date});
+  }
+  return entries;
+}
+
+}  // namespace adit

@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Every probability and scale by which evidence for and against a merge is weighed: one struct, and beside
+/// it where each value comes from (`evidence_entries`). What is not here decides nothing: other settings say
+/// what is compared and how it is measured. `adit merge-calibration` fits what can be fitted and prints the
+/// old values beside the new ones (docs/decisions/0045).
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adit/core/config.hpp"
+#include "adit/registration/registration_config.hpp"
+
+namespace adit {
+
+/// What all robots of a fleet share, because the evidence of several is added up: constants, no settings.
+struct FleetEvidence {
+  double agreement_if_true = 0.95;
+  double least_chance = 0.2;
+  double copied = 0.001;
+  double copy_goes_on = 0.95;
+};
+inline constexpr FleetEvidence kFleetEvidence;
+
+struct EvidenceModel {
+  double error_rate = 1e-3;
+  double refusal_rate = 0.01;
+  double refusal_rate_before_the_end = 1e-4;
+
+  double usual_share = 0.9;
+  double allowance = 1.5;
+  double least_difference_m2 = 0.9;
+  double gross = 5.0;
+
+  double prior_chance = 0.4;
+  double prior_steps = 4.0;
+
+  double sight_m = 20.0;
+  double same_object_m = 5.0;
+  double structure_reach_m = 10.0;
+  double thing_reach_m = 5.0;
+  double changes_at_worst_per_km = 20.0;
+  double things_per_km = 40.0;
+  double things_elsewhere_per_km = 120.0;
+  double things_speak_at_most = 1.0;
+
+  ReliefModel walls = {};
+};
+/// Keys carry the units and meanings; those of `walls` begin with "walls.".
+[[nodiscard]] Fields fields_of(EvidenceModel& model);
+
+/// One value of the model and its origin.
+struct EvidenceEntry {
+  std::string key;
+  double value = 0.0;
+  std::string unit;
+  std::string meaning;
+  std::string_view source;  ///< What it was fitted to or chosen by.
+  std::string_view date;    ///< Of that, year-month-day.
+};
+/// All values, those of kFleetEvidence first, with keys that begin with "fleet.".
+[[nodiscard]] std::vector<EvidenceEntry> evidence_entries(EvidenceModel model);
+
+}  // namespace adit
