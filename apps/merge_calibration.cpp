@@ -8,6 +8,7 @@
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/folders.hpp"
 #include "adit/report/text_tables.hpp"
+#include "adit/study/evidence_fit.hpp"
 #include "adit/study/merge_study.hpp"
 #include "adit/study/page_tables.hpp"
 #include "command_line.hpp"
@@ -57,7 +58,9 @@ Result<> merge_calibration(const CalibrationOptions& options, const Common& comm
   const Result<std::vector<JudgedHypothesis>> all =
       measure({*config, folder}, chosen->worlds, options.partners.front());
   if (!all) return tl::unexpected(all.error());
-  const std::vector<Table> tables = calibration_tables(*all);
+  const EvidenceModel& model = config->slam.loops.adaptive.merge_check.evidence;
+  std::vector<Table> tables = calibration_tables(*all);
+  tables.push_back(evidence_table(model, fitted_values(*all, model)));
   const std::string json = calibration_json(*all);
   Result<> done = write_bytes(folder / "calibration.json", json);
   if (done && !options.page.empty()) done = write_tables(options.page, kCalibrationSection, tables);
@@ -72,10 +75,11 @@ Result<> merge_calibration(const CalibrationOptions& options, const Common& comm
 
 void add_merge_calibration(Program& program) {
   const auto options = std::make_shared<CalibrationOptions>();
-  const Command command = program.add_command(
-      "merge-calibration",
-      "Measure whether merge checks are wrong as rarely as they state, over a list of worlds",
-      [options](const Common& common) { return merge_calibration(*options, common); });
+  const Command command =
+      program.add_command("merge-calibration",
+                          "Measure whether merge checks are wrong as rarely as they state, and fit the "
+                          "evidence model, over a list of worlds",
+                          [options](const Common& common) { return merge_calibration(*options, common); });
   command.add_option("--worlds", options->worlds, "The list (TOML, as bench/merge/worlds.toml)").required();
   command.add_option("--out", options->out, "Folder that keeps the robots' maps and takes calibration.json")
       .required();

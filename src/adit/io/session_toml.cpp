@@ -34,12 +34,20 @@ toml::table merge_table(const FleetGraph& fleet, const MergeCheck& check) {
     toml::array loops;
     for (const auto& [a, b] : h.loops)
       loops.push_back(toml::array{static_cast<std::int64_t>(a), static_cast<std::int64_t>(b)});
-    hypotheses.push_back(toml::table{{"outcome", std::string(to_string(h.outcome))},
-                                     {"evidence", rounded(h.evidence)},
-                                     {"places_compared", static_cast<std::int64_t>(h.num_checked)},
-                                     {"places_differing", static_cast<std::int64_t>(h.num_differing())},
-                                     {"from_best_m", rounded(h.from_best_m)},
-                                     {"loops", loops}});
+    hypotheses.push_back(
+        toml::table{{"outcome", std::string(to_string(h.outcome))},
+                    {"evidence", rounded(h.evidence)},
+                    {"places_compared", static_cast<std::int64_t>(h.num_checked)},
+                    {"places_differing", static_cast<std::int64_t>(h.num_differing())},
+                    {"from_best_m", rounded(h.from_best_m)},
+                    {"compared_m", rounded(h.counts.compared_m)},
+                    {"places_distinctive", static_cast<std::int64_t>(h.counts.num_distinctive)},
+                    {"changes", static_cast<std::int64_t>(h.counts.num_changes)},
+                    {"things", static_cast<std::int64_t>(h.counts.num_things)},
+                    {"wall_patches", static_cast<std::int64_t>(h.counts.num_wall_patches)},
+                    {"equal_signs", rounded(h.counts.equal_signs)},
+                    {"evidence_of_walls", rounded(h.walls)},
+                    {"loops", loops}});
   }
   toml::table out{{"robots", toml::array{name_of(fleet, check.a), name_of(fleet, check.b)}},
                   {"accepted", check.accepted},

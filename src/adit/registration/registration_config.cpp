@@ -85,8 +85,6 @@ Fields fields_of(ReliefModel& c) {
       {"moulded", &c.moulded, "", 0.0, 1.0, "and where other walls of the own map were found to differ"},
       {"prior_stretches", &c.prior_stretches, "", 0.0, 1000.0,
        "number of look-alikes that the prior counts as"},
-      {"may_be_same", &c.may_be_same, "", 0.0, 1.0,
-       "a look-alike whose share is this likely for one wall says nothing about different walls"},
       {"min_patches", &c.min_patches, "", 1, 1000000, "patches needed before a share counts as evidence"},
       {"min_patches_to_refute", &c.min_patches_to_refute, "", 1, 1000000,
        "patches needed before a share refutes a merge by itself; among fewer, a few bad fits would decide"}};

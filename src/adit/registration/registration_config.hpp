@@ -30,7 +30,6 @@ struct ReliefModel {
   double prior_stretches = 4.0;
   double prior_moulded = 0.02;
   double moulded = 0.002;
-  double may_be_same = 0.05;
   int min_patches = 100;
   int min_patches_to_refute = 200;
 };

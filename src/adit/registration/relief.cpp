@@ -263,8 +263,7 @@ double WallOffsets::evidence(const EqualSignShares& shares) const {
   const double moulded = shares.chance_of_one_mould();
   const double of_other =
       moulded * of_same + (1.0 - moulded) * density(found, other.value_or(shares.believed(found.noise_m)));
-  const double ratio = std::log(std::max(of_same, kLeast)) - std::log(std::max(of_other, kLeast));
-  return shares.are_moulded() ? std::min(ratio, 0.0) : ratio;
+  return std::log(std::max(of_same, kLeast)) - std::log(std::max(of_other, kLeast));
 }
 
 void EqualSignShares::set_same(const EqualSignShare& share) { same_ = share; }
@@ -280,19 +279,20 @@ SameWalls EqualSignShares::same() const {
   return walls;
 }
 
+double EqualSignShares::chance_to_be_the_same(const EqualSignShare& share) const {
+  const double same = model_.prior_moulded * density(share, this->same());
+  const double other = (1.0 - model_.prior_moulded) * density(share, believed(share.noise_m));
+  return same > 0.0 ? same / (same + other) : 0.0;
+}
+
 double EqualSignShares::chance_of_one_mould() const {
-  return others_.empty() || are_moulded() ? model_.prior_moulded : model_.moulded;
+  if (others_.empty()) return model_.prior_moulded;
+  double num_same = 0.0;
+  for (const EqualSignShare& one : others_) num_same += chance_to_be_the_same(one);
+  return std::min(1.0, model_.moulded + num_same / (1.0 + static_cast<double>(others_.size())));
 }
 
-double EqualSignShares::most_evidence() const {
-  return are_moulded() ? 0.0 : std::log(1.0 / chance_of_one_mould());
-}
-
-bool EqualSignShares::are_moulded() const {
-  return std::ranges::any_of(others_, [&](const EqualSignShare& one) {
-    return chance_of_at_least(one, same()) > model_.may_be_same;
-  });
-}
+double EqualSignShares::most_evidence() const { return std::log(1.0 / chance_of_one_mould()); }
 
 OtherWalls EqualSignShares::believed(double noise_m) const {
   return {std::log(under_noise(model_.prior_other_share, same_.noise_m, noise_m) - kChance),
@@ -300,19 +300,29 @@ OtherWalls EqualSignShares::believed(double noise_m) const {
 }
 
 std::optional<OtherWalls> EqualSignShares::other(double noise_m) const {
-  if (others_.empty() || are_moulded()) return {};
-  const auto num = static_cast<double>(others_.size());
+  constexpr double kHalfALookAlike = 0.5;  // less than that is none
+  struct Beyond {
+    double weight;  // P(the walls are others)
+    double log;     // of the share beyond one half
+    double sigma;   // of that logarithm
+  };
+  std::vector<Beyond> all;
+  double num = 0.0;
   double mean = 0.0;
   for (const EqualSignShare& one : others_) {
-    mean += std::log(under_noise(one.share, one.noise_m, noise_m) - kChance) / num;
+    const double share =
+        under_noise(kChance + std::max(one.share - kChance, one.sigma), one.noise_m, noise_m);
+    all.push_back(
+        {1.0 - chance_to_be_the_same(one), std::log(share - kChance), one.sigma / (share - kChance)});
+    num += all.back().weight;
+    mean += all.back().weight * all.back().log;
   }
+  if (num < kHalfALookAlike) return {};
+  mean /= num;
   double beyond_chance = model_.prior_stretches * model_.prior_sigma * model_.prior_sigma;
-  for (const EqualSignShare& one : others_) {
-    const double beyond_half = under_noise(one.share, one.noise_m, noise_m) - kChance;
-    beyond_chance +=
-        std::max(0.0, std::pow(std::log(beyond_half) - mean, 2) - std::pow(one.sigma / beyond_half, 2));
-  }
-  const double variance = beyond_chance / (model_.prior_stretches + num - 1.0);
+  for (const Beyond& one : all)
+    beyond_chance += one.weight * std::max(0.0, std::pow(one.log - mean, 2) - one.sigma * one.sigma);
+  const double variance = beyond_chance / std::max(model_.prior_stretches + num - 1.0, num);
   return OtherWalls{mean, std::sqrt(variance * (1.0 + 1.0 / num))};
 }
 

@@ -72,20 +72,22 @@ class EqualSignShares {
   /// A little more than half even for one wall, because where the beams fall on an edge is not random.
   [[nodiscard]] SameWalls same() const;
   /// Predicted share for different walls where offsets have the noise `noise_m`, from the robot's own
-  /// look-alikes; 0: the noise of each. None if none of them has `min_patches` patches, or if the walls of
-  /// one of them may be the same (cast in one mould).
+  /// look-alikes of `min_patches` patches or more, each by how likely its walls are others; 0: the noise of
+  /// each. None if there are none such.
   [[nodiscard]] std::optional<OtherWalls> other(double noise_m = 0.0) const;
   /// What is believed where none was measured.
   [[nodiscard]] OtherWalls believed(double noise_m) const;
-  /// Whether walls of one of the own look-alikes may be the same: cast in one mould.
-  [[nodiscard]] bool are_moulded() const;
-  /// P(walls of another tunnel were cast in one mould with those of the first).
+  /// P(walls of another tunnel were cast in one mould with those of the first): that share of the own
+  /// look-alikes, counted by how likely the walls of each are the same.
   [[nodiscard]] double chance_of_one_mould() const;
   /// The most that WallOffsets::evidence can be, a log likelihood ratio; 0 where nothing speaks for a merge.
   [[nodiscard]] double most_evidence() const;
   [[nodiscard]] const ReliefModel& model() const { return model_; }
 
  private:
+  /// P(the walls of a look-alike with this share are the same), by Bayes' rule.
+  [[nodiscard]] double chance_to_be_the_same(const EqualSignShare& share) const;
+
   ReliefModel model_;
   EqualSignShare same_;
   std::vector<EqualSignShare> others_;  ///< Of each stretch that was seen well.
@@ -109,9 +111,8 @@ class WallOffsets {
   /// True if P(share >= observed, same wall) < `rate`; needs `min_patches_to_refute` patches.
   [[nodiscard]] bool are_of_other_walls(const EqualSignShares& shares, double rate) const;
   /// Log likelihood ratio, same walls to different ones; 0 if fewer than `min_patches` patches were seen.
-  /// At most log(1 / moulded): other walls may have been cast in one mould. Where their share was not
-  /// measured, the one believed before counts; where the own map has walls that are, nothing speaks for a
-  /// merge.
+  /// At most log(1 / chance_of_one_mould). Where the share of other walls was not measured, the one believed
+  /// before counts.
   [[nodiscard]] double evidence(const EqualSignShares& shares) const;
   /// The share of the sum of squared offsets that the sensors explain; 0 without offsets.
   [[nodiscard]] double share_of_sensors() const;

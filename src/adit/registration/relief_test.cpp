@@ -334,16 +334,31 @@ TEST(WallOffsets, TheNoiseOfAnOffsetIsMeasured) {
   EXPECT_NEAR(offsets.counted().noise_m, 0.01, 0.001);
 }
 
-TEST(EqualSignShares, WhereOneLookAlikeMayHaveTheSameWallsNothingSpeaksForAMerge) {
+TEST(EqualSignShares, TheMoreLookAlikesHaveTheSameWallsTheLessSpeaksForAMerge) {
   EqualSignShares shares = where_others_agree(0.65);
-  EXPECT_GT(of_a_thousand(500).evidence(shares), 5.0);
+  const double none = of_a_thousand(500).evidence(shares);
+  EXPECT_GT(none, 5.0);
+  EXPECT_LE(none, std::log(1.0 / ReliefModel().moulded));
   shares.add_other(found(0.9, 50));  // hardly seen: not counted
-  EXPECT_GT(of_a_thousand(500).evidence(shares), 5.0);
-  shares.add_other(found(0.53));  // cast in one mould
-  EXPECT_FALSE(shares.other());
-  EXPECT_EQ(of_a_thousand(500).evidence(shares), 0.0);
-  EXPECT_LE(of_a_thousand(500).evidence(where_others_agree(0.65)), std::log(1.0 / ReliefModel().moulded));
-  EXPECT_LT(of_a_thousand(650).evidence(shares), -4.0) << "believed walls speak against, too";
+  EXPECT_EQ(of_a_thousand(500).evidence(shares), none);
+  shares.add_other(found(0.51));  // cast in one mould
+  EXPECT_LT(of_a_thousand(500).evidence(shares), 0.5 * none);
+  EXPECT_LT(of_a_thousand(650).evidence(shares), -1.0) << "other walls still speak against";
+  for (int i = 0; i < 20; ++i) shares.add_other(found(0.51));
+  EXPECT_LT(of_a_thousand(500).evidence(shares), 0.5);
+}
+
+TEST(EqualSignShares, ALookAlikeSeenTooShortlyToTellHardlyCounts) {
+  EqualSignShares shares = where_others_agree(0.8, 3);
+  const double none = of_a_thousand(500).evidence(shares);
+  shares.add_other(found(0.56, 110));  // as likely by the same walls as by others
+  EXPECT_GT(of_a_thousand(500).evidence(shares), 0.7 * none);
+}
+
+TEST(EqualSignShares, WhereAllLookAlikesHaveTheSameWallsNothingSpeaksForAMerge) {
+  const EqualSignShares shares = where_others_agree(0.5, 10);
+  EXPECT_GT(shares.chance_of_one_mould(), 0.7);
+  EXPECT_LT(of_a_thousand(500).evidence(shares), 0.4);
 }
 
 }  // namespace

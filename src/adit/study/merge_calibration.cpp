@@ -66,7 +66,7 @@ void judge_check(const CheckedPair& pair, const TrueRuns& runs, std::vector<Judg
     out.push_back({runs.empty() ? HypothesisTruth::wrong : truth_of(hypothesis, pair, runs),
                    hypothesis.outcome == HypothesisOutcome::refuted,
                    hypothesis.outcome == HypothesisOutcome::accepted && pair.check.accepted,
-                   hypothesis.evidence, pair.check.needed});
+                   hypothesis.evidence, pair.check.needed, hypothesis.counts});
 }
 
 std::vector<std::shared_ptr<const RobotMap>> adaptive_maps(const std::vector<RobotRun>& runs) {

@@ -27,6 +27,7 @@ struct JudgedHypothesis {
   bool accepted = false;  ///< The check joined the maps by it.
   double evidence = 0.0;
   double needed = 0.0;
+  HypothesisCounts counts{};
 };
 
 struct CalibrationStudy {

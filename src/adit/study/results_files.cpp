@@ -226,7 +226,14 @@ std::string calibration_json(const std::vector<JudgedHypothesis>& hypotheses) {
                    {"refuted", h.refuted},
                    {"accepted", h.accepted},
                    {"evidence", h.evidence},
-                   {"needed", h.needed}});
+                   {"needed", h.needed},
+                   {"compared_m", h.counts.compared_m},
+                   {"distinctive", h.counts.num_distinctive},
+                   {"changes", h.counts.num_changes},
+                   {"things", h.counts.num_things},
+                   {"wall_patches", h.counts.num_wall_patches},
+                   {"equal_signs", h.counts.equal_signs},
+                   {"equal_signs_sigma", h.counts.equal_signs_sigma}});
   return Json{{"version", 1}, {"hypotheses", all}}.dump(1) + "\n";
 }
 

@@ -308,6 +308,23 @@ void get(Reader& in, TestedPlace& place) {
   if (place.outcome > PlaceOutcome::distinctive) in.refuse();
 }
 
+void put(Writer& out, const HypothesisCounts& counts) {
+  for (const std::uint32_t value :
+       {counts.num_distinctive, counts.num_changes, counts.num_things, counts.num_wall_patches})
+    out.scalar(value);
+  for (const double value : {counts.compared_m, counts.equal_signs, counts.equal_signs_sigma})
+    out.scalar(value);
+}
+void get(Reader& in, HypothesisCounts& counts) {
+  for (std::uint32_t* value :
+       {&counts.num_distinctive, &counts.num_changes, &counts.num_things, &counts.num_wall_patches})
+    *value = in.scalar<std::uint32_t>();
+  for (double* value : {&counts.compared_m, &counts.equal_signs, &counts.equal_signs_sigma}) {
+    *value = in.scalar<double>();
+    if (!std::isfinite(*value)) in.refuse();
+  }
+}
+
 void put(Writer& out, const MergeHypothesis& hypothesis) {
   out.scalar(hypothesis.outcome);
   out.scalar(hypothesis.evidence);
@@ -317,6 +334,7 @@ void put(Writer& out, const MergeHypothesis& hypothesis) {
   out.vector(hypothesis.loops);
   out.vector(hypothesis.places);
   out.scalar(hypothesis.walls);
+  put(out, hypothesis.counts);
 }
 void get(Reader& in, MergeHypothesis& hypothesis) {
   hypothesis.outcome = in.scalar<HypothesisOutcome>();
@@ -327,6 +345,7 @@ void get(Reader& in, MergeHypothesis& hypothesis) {
   in.vector(hypothesis.loops);
   in.vector(hypothesis.places);
   hypothesis.walls = in.scalar<double>();
+  get(in, hypothesis.counts);
   if (hypothesis.outcome > HypothesisOutcome::behind || !std::isfinite(hypothesis.evidence) ||
       !std::isfinite(hypothesis.walls) || !std::isfinite(hypothesis.from_best_m) ||
       hypothesis.num_passed > hypothesis.num_checked)

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "adit/fleet/merge/evidence_model.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <variant>
@@ -56,7 +57,6 @@ constexpr std::array kOrigins = {
     Origin{"walls.prior_stretches", kOfWalls, "2026-11-22"},
     Origin{"walls.prior_moulded", kJudgement, "2026-11-25"},
     Origin{"walls.moulded", kJudgement, "2026-11-25"},
-    Origin{"walls.may_be_same", "chosen: a rate of error", "2026-11-22"},
     Origin{"walls.min_patches", kOfWalls, "2026-11-22"},
     Origin{"walls.min_patches_to_refute", kOfWalls, "2026-11-22"},
 };
@@ -125,13 +125,11 @@ std::vector<EvidenceEntry> evidence_entries(EvidenceModel model) {
   Fields fields;
   append(fields, "fleet", fields_of(fleet));
   for (Field& field : fields_of(model)) fields.push_back(std::move(field));
-  ADIT_CHECK(fields.size() == kOrigins.size(), "every value of the evidence model has an origin");
   std::vector<EvidenceEntry> entries;
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    const Field& field = fields[i];
-    ADIT_CHECK(field.key == kOrigins[i].key, "values and origins come in the same order");
-    entries.push_back(
-        {field.key, number_of(field), field.unit, field.meaning, kOrigins[i].source, kOrigins[i].date});
+  for (const Field& field : fields) {
+    const auto* origin = std::ranges::find(kOrigins, field.key, &Origin::key);
+    ADIT_CHECK(origin != kOrigins.end(), "every value of the evidence model has an origin");
+    entries.push_back({field.key, number_of(field), field.unit, field.meaning, origin->source, origin->date});
   }
   return entries;
 }

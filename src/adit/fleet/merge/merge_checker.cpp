@@ -204,12 +204,24 @@ std::vector<std::size_t> MergeChecker::best_first() const {
   return order;
 }
 
+HypothesisCounts MergeChecker::counts(const Hypothesis& h) const {
+  const EqualSignShare walls = h.offsets.counted();
+  return {static_cast<std::uint32_t>(h.num_distinctive()),
+          static_cast<std::uint32_t>(h.num_changes()),
+          static_cast<std::uint32_t>(h.things.num()),
+          static_cast<std::uint32_t>(walls.num_patches),
+          1000.0 * compared_km(h),
+          walls.share,
+          walls.sigma};
+}
+
 MergeHypothesis MergeChecker::described(std::size_t which, std::size_t best) const {
   const Hypothesis& h = hypotheses_[which];
   MergeHypothesis out;
   out.num_checked = static_cast<std::uint32_t>(h.compared.size());
   out.num_passed = static_cast<std::uint32_t>(h.num_agreeing());
   out.from_best_m = apart_m(which, best);
+  out.counts = counts(h);
   for (const std::size_t l : h.loops)
     out.loops.emplace_back(static_cast<std::uint32_t>(loops_[l].a), static_cast<std::uint32_t>(loops_[l].b));
   if (is_refuted(h)) return out;

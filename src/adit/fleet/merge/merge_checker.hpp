@@ -89,6 +89,7 @@ class MergeChecker {
   static void add_second_looks(Hypothesis& hypothesis, const std::vector<ComparedPlace>& places);
   [[nodiscard]] std::vector<std::size_t> best_first() const;
   [[nodiscard]] double apart_m(std::size_t one, std::size_t other) const;
+  [[nodiscard]] HypothesisCounts counts(const Hypothesis& hypothesis) const;
   [[nodiscard]] MergeHypothesis described(std::size_t hypothesis, std::size_t best) const;
   /// merge_refusal.cpp has the rules.
   [[nodiscard]] RefusalKind refused_kind(MergeDecision decision,

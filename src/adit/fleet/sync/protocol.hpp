@@ -18,7 +18,7 @@
 
 namespace adit {
 
-inline constexpr std::uint8_t kProtocolVersion = 7;
+inline constexpr std::uint8_t kProtocolVersion = 8;
 inline constexpr std::size_t kPlacesPerMessage = 64;
 inline constexpr std::size_t kCloudsPerMessage = 16;
 inline constexpr std::size_t kNodesPerMessage = 512;
@@ -121,6 +121,18 @@ struct TestedPlace {
   PlaceOutcome outcome = PlaceOutcome::differs;
 };
 
+/// What was counted while the places of a hypothesis were compared; its evidence comes from this.
+struct HypothesisCounts {
+  std::uint32_t num_distinctive = 0;  ///< Places that agree and where a displacement would have shown.
+  std::uint32_t num_changes = 0;      ///< Of structure, each once.
+  std::uint32_t num_things = 0;       ///< That stand on the floor and only one robot met, each once.
+  std::uint32_t num_wall_patches = 0;
+  double compared_m = 0.0;  ///< Length of tunnel that the compared scans show.
+  /// Of the relief of walls: the share of equal signs and its standard deviation, 0.5 without patches.
+  double equal_signs = 0.5;
+  double equal_signs_sigma = 0.5;
+};
+
 /// One alignment of two maps, put forward by loops that agree with one another, and what testing it has
 /// shown.
 struct MergeHypothesis {
@@ -132,6 +144,7 @@ struct MergeHypothesis {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> loops;  ///< Keyframes of a and b.
   std::vector<TestedPlace> places{};  ///< In the order driven by a; left out where it is refuted.
   double walls = 0.0;                 ///< The part of the evidence that comes from the relief of walls.
+  HypothesisCounts counts{};
 
   [[nodiscard]] std::uint32_t num_differing() const { return num_checked - num_passed; }
 };
