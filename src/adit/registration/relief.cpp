@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 namespace adit {
 namespace {
@@ -279,17 +280,32 @@ SameWalls EqualSignShares::same() const {
   return walls;
 }
 
-double EqualSignShares::chance_to_be_the_same(const EqualSignShare& share) const {
-  const double same = model_.prior_moulded * density(share, this->same());
-  const double other = (1.0 - model_.prior_moulded) * density(share, believed(share.noise_m));
-  return same > 0.0 ? same / (same + other) : 0.0;
+std::vector<double> EqualSignShares::chances_to_be_the_same() const {
+  constexpr int kRounds = 50;  // of expectation and maximisation, which settle within ten or so
+  std::vector<double> ratios;  // of likelihoods, the same walls to others
+  for (const EqualSignShare& one : others_) {
+    const double of_same = density(one, same());
+    ratios.push_back(of_same > 0.0 ? of_same / density(one, believed(one.noise_m)) : 0.0);
+  }
+  std::vector<double> chances(others_.size());
+  double rate = model_.prior_moulded;
+  for (int round = 0; round < kRounds; ++round) {
+    double num_same = model_.prior_moulded;
+    for (std::size_t i = 0; i < ratios.size(); ++i) {
+      const double odds = ratios[i] * rate / (1.0 - rate);
+      chances[i] = std::isfinite(odds) ? odds / (1.0 + odds) : 1.0;
+      num_same += chances[i];
+    }
+    rate = num_same / (1.0 + static_cast<double>(ratios.size()));
+  }
+  return chances;
 }
 
 double EqualSignShares::chance_of_one_mould() const {
   if (others_.empty()) return model_.prior_moulded;
-  double num_same = 0.0;
-  for (const EqualSignShare& one : others_) num_same += chance_to_be_the_same(one);
-  return std::min(1.0, model_.moulded + num_same / (1.0 + static_cast<double>(others_.size())));
+  const std::vector<double> chances = chances_to_be_the_same();
+  const double num_same = std::accumulate(chances.begin(), chances.end(), 0.0);
+  return std::min(1.0, model_.moulded + num_same / (1.0 + static_cast<double>(chances.size())));
 }
 
 double EqualSignShares::most_evidence() const { return std::log(1.0 / chance_of_one_mould()); }
@@ -300,7 +316,7 @@ OtherWalls EqualSignShares::believed(double noise_m) const {
 }
 
 std::optional<OtherWalls> EqualSignShares::other(double noise_m) const {
-  constexpr double kHalfALookAlike = 0.5;  // less than that is none
+  constexpr double kFewest = 0.5;  // look-alikes that were seen to be others, in expectation
   struct Beyond {
     double weight;  // P(the walls are others)
     double log;     // of the share beyond one half
@@ -309,20 +325,23 @@ std::optional<OtherWalls> EqualSignShares::other(double noise_m) const {
   std::vector<Beyond> all;
   double num = 0.0;
   double mean = 0.0;
-  for (const EqualSignShare& one : others_) {
-    const double share =
-        under_noise(kChance + std::max(one.share - kChance, one.sigma), one.noise_m, noise_m);
-    all.push_back(
-        {1.0 - chance_to_be_the_same(one), std::log(share - kChance), one.sigma / (share - kChance)});
-    num += all.back().weight;
-    mean += all.back().weight * all.back().log;
+  const std::vector<double> chances = chances_to_be_the_same();
+  for (std::size_t i = 0; i < others_.size(); ++i) {
+    const EqualSignShare& one = others_[i];
+    // No share is known to be nearer to one half than its error.
+    const double least = kChance + std::max(one.share - kChance, one.sigma);
+    const double beyond = under_noise(least, one.noise_m, noise_m) - kChance;
+    const double weight = 1.0 - chances[i];
+    all.push_back({weight, std::log(beyond), one.sigma / beyond});
+    num += weight;
+    mean += weight * all.back().log;
   }
-  if (num < kHalfALookAlike) return {};
+  if (num < kFewest) return {};
   mean /= num;
   double beyond_chance = model_.prior_stretches * model_.prior_sigma * model_.prior_sigma;
   for (const Beyond& one : all)
     beyond_chance += one.weight * std::max(0.0, std::pow(one.log - mean, 2) - one.sigma * one.sigma);
-  const double variance = beyond_chance / std::max(model_.prior_stretches + num - 1.0, num);
+  const double variance = beyond_chance / std::max(model_.prior_stretches + num - 1.0, kFewest);
   return OtherWalls{mean, std::sqrt(variance * (1.0 + 1.0 / num))};
 }
 

@@ -80,13 +80,16 @@ class EqualSignShares {
   /// P(walls of another tunnel were cast in one mould with those of the first): that share of the own
   /// look-alikes, counted by how likely the walls of each are the same.
   [[nodiscard]] double chance_of_one_mould() const;
-  /// The most that WallOffsets::evidence can be, a log likelihood ratio; 0 where nothing speaks for a merge.
+  /// The most that WallOffsets::evidence can be, a log likelihood ratio.
   [[nodiscard]] double most_evidence() const;
   [[nodiscard]] const ReliefModel& model() const { return model_; }
 
  private:
-  /// P(the walls of a look-alike with this share are the same), by Bayes' rule.
-  [[nodiscard]] double chance_to_be_the_same(const EqualSignShare& share) const;
+  /// P(the walls of each look-alike are the same), and with them the share of those that are, from the prior
+  /// `prior_moulded` worth one look-alike: a mixture, by expectation and maximisation (Dempster, Laird,
+  /// Rubin, "Maximum likelihood from incomplete data via the EM algorithm", 1977). Many that may be the same
+  /// are.
+  [[nodiscard]] std::vector<double> chances_to_be_the_same() const;
 
   ReliefModel model_;
   EqualSignShare same_;

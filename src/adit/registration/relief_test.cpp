@@ -355,6 +355,16 @@ TEST(EqualSignShares, ALookAlikeSeenTooShortlyToTellHardlyCounts) {
   EXPECT_GT(of_a_thousand(500).evidence(shares), 0.7 * none);
 }
 
+TEST(EqualSignShares, LookAlikesThatEachMayHaveTheSameWallsTogetherDo) {
+  const auto chance = [](int num_ambiguous) {
+    EqualSignShares shares = where_others_agree(0.8, 3);
+    for (int i = 0; i < num_ambiguous; ++i) shares.add_other(found(0.54, 110));
+    return shares.chance_of_one_mould();
+  };
+  EXPECT_LT(chance(1), ReliefModel().prior_moulded);
+  EXPECT_GT(chance(15), 0.5);
+}
+
 TEST(EqualSignShares, WhereAllLookAlikesHaveTheSameWallsNothingSpeaksForAMerge) {
   const EqualSignShares shares = where_others_agree(0.5, 10);
   EXPECT_GT(shares.chance_of_one_mould(), 0.7);

@@ -8,6 +8,7 @@
 #include "adit/core/format.hpp"
 #include "adit/evaluation/statistics.hpp"
 #include "adit/fleet/merge/merge_evidence.hpp"
+#include "adit/registration/relief.hpp"
 
 namespace adit {
 namespace {
@@ -65,9 +66,10 @@ class Fit {
   }
   void fit_places() {
     add("fleet.agreement_if_true", chance_to_agree(right_), right_);
-    add("prior_chance", chance_to_agree(wrong_), wrong_);
-    // By chance alone as many places agree once in a thousand times.
-    const double long_run = std::log(1000.0) / -std::log(model_.prior_chance);
+    const double goes_on = chance_to_agree(wrong_);
+    add("prior_chance", goes_on, wrong_);
+    // Look-alikes agree as often as here for as long once in a thousand times.
+    const double long_run = std::log(1000.0) / -std::log(std::clamp(goes_on, 0.01, 0.99));
     const auto is_copy = [&](const HypothesisCounts& counts) {
       return counts.num_changes == 0 && counts.num_distinctive >= long_run;
     };
@@ -123,11 +125,10 @@ class Fit {
     }
     add_spread("walls.prior_other_share", "walls.prior_sigma", logs, counting, seen,
                [](double m) { return 0.5 + std::exp(m); });
-    const auto is_same = [&](const HypothesisCounts& counts) {
-      const double sigma = std::hypot(model_.walls.same_sigma, counts.equal_signs_sigma);
-      return counts.equal_signs - model_.walls.same_share < sigma;
-    };
-    add_share("walls.prior_moulded", static_cast<std::size_t>(std::ranges::count_if(seen, is_same)), seen);
+    EqualSignShares shares(model_.walls);
+    for (const HypothesisCounts& counts : seen)
+      shares.add_other({counts.num_wall_patches, counts.equal_signs, counts.equal_signs_sigma});
+    add("walls.prior_moulded", shares.chance_of_one_mould(), seen);
   }
   /// Median, and standard deviation beyond the error of counting, by the median of deviations: some walls
   /// were lined anew.

@@ -64,7 +64,7 @@ TEST(EvidenceFit, SharesHaveAnUpperLimit) {
   std::vector<JudgedHypothesis> all = drawn(400);
   for (std::size_t i = 1; i < 5; i += 2) {  // false ones that agree all along
     all[i].counts.num_changes = 0;
-    all[i].counts.num_distinctive = 20;
+    all[i].counts.num_distinctive = 40;
   }
   const std::vector<FittedValue> fitted = fitted_values(all, {});
   const auto copied = std::ranges::find(fitted, "fleet.copied", &FittedValue::key);

@@ -155,10 +155,10 @@ std::vector<Table> curve_tables(const std::vector<MergeEffect>& effects,
   Table each{
       "Outcome against amplitude",
       "Each effect alone, the other errors being none; the first row of each is the ideal sensor. Merged, "
-      "refused: of the mergeable pairs, each by itself, and merged where all robots met. Wrong: of all "
-      "pairs.",
+      "refused: of the mergeable pairs, each by itself, and merged where all robots met. Bent: of the "
+      "merged ones, with an ATE of 1 % of the path or more. Wrong: of all pairs.",
       {},
-      {"Effect", "Amplitude", "Of what is stated", "Merged", "Refused", "Wrong", "Joint: merged",
+      {"Effect", "Amplitude", "Of what is stated", "Merged", "Bent", "Refused", "Wrong", "Joint: merged",
        "Joint: wrong"},
       {}};
   Table first{
@@ -173,10 +173,11 @@ std::vector<Table> curve_tables(const std::vector<MergeEffect>& effects,
       const auto point = point_of(points, effect.name, amplitude);
       if (!point) continue;
       const MergeCounts& c = point->counts;
-      each.rows.push_back(
-          {effect.name, amplitude_text(effect, amplitude), format("{:g}", amplitude / effect.stated),
-           format("{} of {}", merged_of(c), c.mergeable), format("{}", c.refused), format("{}", c.wrong),
-           format("{} of {}", c.joint_merged, c.mergeable), format("{}", c.joint_wrong)});
+      each.rows.push_back({effect.name, amplitude_text(effect, amplitude),
+                           format("{:g}", amplitude / effect.stated),
+                           format("{} of {}", merged_of(c), c.mergeable), format("{}", c.bent),
+                           format("{}", c.refused), format("{}", c.wrong),
+                           format("{} of {}", c.joint_merged, c.mergeable), format("{}", c.joint_wrong)});
     }
     const auto without = point_of(points, effect.name, 0.0);
     if (!without) continue;

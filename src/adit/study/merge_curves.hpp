@@ -18,7 +18,7 @@ struct MergeEffect {
   std::string field;  ///< A key of RunConfig.
   std::string unit;
   double stated = 0.0;  ///< What data sheets or a working mine have; amplitudes go to twice this.
-  int steps = 4;
+  int steps = 2;
   std::string set;  ///< Further "key=value", separated by commas, at every amplitude but 0.
 
   /// From 0 to twice `stated`.

@@ -61,7 +61,7 @@ TEST(MergeCurves, TablesSayWhereMergesBeginToBeRefused) {
   ASSERT_EQ(tables.size(), 2U);
   EXPECT_EQ(tables[0].rows[0], (std::vector<std::string>{"bias", "0.03 m", "0.06 m", "none", "none"}));
   EXPECT_EQ(tables[1].rows[2],
-            (std::vector<std::string>{"bias", "0.06 m", "2", "2 of 4", "2", "0", "0 of 4", "0"}));
+            (std::vector<std::string>{"bias", "0.06 m", "2", "2 of 4", "0", "2", "0", "0 of 4", "0"}));
   EXPECT_NE(curves_plot({kBias}, points).find("<svg"), std::string::npos);
 }
 

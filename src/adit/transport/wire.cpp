@@ -3,76 +3,20 @@
 #include "adit/transport/wire.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <string>
 
 #include "adit/core/format.hpp"
 #include "adit/core/rng.hpp"
+#include "adit/transport/wire_bytes.hpp"
 
 namespace adit {
-namespace {
-
-static_assert(std::endian::native == std::endian::little,
-              "the wire is little-endian, as all machines that adit runs on");
+namespace wire {
 
 constexpr float kPointStep = 0.005F;  // metres
 constexpr float kPointReach = kPointStep * 32767.0F;
-
-class Writer {
- public:
-  template <class T>
-  void scalar(T value) {
-    const auto* begin = reinterpret_cast<const std::byte*>(&value);
-    bytes_.insert(bytes_.end(), begin, begin + sizeof(T));
-  }
-  template <class T>
-  void vector(const std::vector<T>& items) {
-    scalar(static_cast<std::uint32_t>(items.size()));
-    for (const T& item : items) put(*this, item);
-  }
-  std::vector<std::byte> take() { return std::move(bytes_); }
-
- private:
-  std::vector<std::byte> bytes_;
-};
-
-/// Reads until the bytes end; from then on every value is zero and `ok` is false.
-class Reader {
- public:
-  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
-  template <class T>
-  T scalar() {
-    T value{};
-    if (bytes_.size() - at_ < sizeof(T)) {
-      ok_ = false;
-      at_ = bytes_.size();
-      return value;
-    }
-    std::memcpy(&value, bytes_.data() + at_, sizeof(T));
-    at_ += sizeof(T);
-    return value;
-  }
-  template <class T>
-  void vector(std::vector<T>& items, std::size_t max_items = std::numeric_limits<std::size_t>::max()) {
-    const auto size = scalar<std::uint32_t>();
-    // Every item takes at least a byte: a damaged count must not make us allocate gigabytes.
-    if (size > max_items || size > bytes_.size() - at_) return refuse();
-    for (std::uint32_t i = 0; i < size && ok_; ++i) get(*this, items.emplace_back());
-  }
-  void refuse() { ok_ = false; }
-  [[nodiscard]] bool ok() const { return ok_; }
-  [[nodiscard]] std::size_t at() const { return at_; }
-  [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
-
- private:
-  std::span<const std::byte> bytes_;
-  std::size_t at_ = 0;
-  bool ok_ = true;
-};
 
 // One `put` and one `get` a type, side by side.
 
@@ -429,10 +373,10 @@ std::optional<Body> body_of(Reader& in, std::size_t kind) {
   }
 }
 
-}  // namespace
+}  // namespace wire
 
 std::vector<std::byte> encode(const Message& message) {
-  Writer out;
+  wire::Writer out;
   out.scalar(kProtocolVersion);
   out.scalar(message.from.value);
   out.scalar(message.to.value);
@@ -463,15 +407,15 @@ Result<Message> decode(std::span<const std::byte> bytes) {
   }
   constexpr std::size_t kTail = sizeof(std::uint64_t);
   const std::span<const std::byte> content = bytes.first(bytes.size() - std::min(bytes.size(), kTail));
-  if (content.empty() || Reader(bytes.last(kTail)).scalar<std::uint64_t>() != checksum(content)) {
+  if (content.empty() || wire::Reader(bytes.last(kTail)).scalar<std::uint64_t>() != checksum(content)) {
     return fail(format("message of {} bytes is cut or damaged: its checksum does not fit", bytes.size()));
   }
-  Reader in(content.subspan(1));
+  wire::Reader in(content.subspan(1));
   Message message;
   message.from.value = in.scalar<std::uint8_t>();
   message.to.value = in.scalar<std::uint8_t>();
   const std::size_t kind = in.scalar<std::uint8_t>();
-  std::optional<Body> body = body_of(in, kind);
+  std::optional<wire::Body> body = wire::body_of(in, kind);
   if (!body) return fail(format("message of unknown kind {}", kind));
   if (!in.ok()) return fail(format("message of kind {} is malformed near byte {}", kind, in.at() + 1));
   if (!in.at_end()) return fail(format("message of kind {} has more bytes than it needs", kind));

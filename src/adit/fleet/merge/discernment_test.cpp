@@ -73,8 +73,8 @@ TEST(Discernment, BlocksThatRepeatGoOnLongerThanBlocksThatDoNot) {
     EXPECT_GT(chance_to_go_on(with_tiles.chances(), passed), 0.7);
     EXPECT_LT(chance_to_go_on(without.chances(), passed), 0.6);
   }
-  // All of them were cast in one mould: walls say no more than where none were compared.
-  EXPECT_GT(tiles.discernment.measured().walls.chance_of_one_mould(), ReliefModel().prior_moulded);
+  // All of them were cast in one mould: their walls say little.
+  EXPECT_LT(tiles.discernment.measured().walls.most_evidence(), 2.5);
 }
 
 TEST(Discernment, AHeadingThatWandersLeadsLessFar) {

@@ -23,7 +23,8 @@ constexpr std::string_view kTrueOfFive = "true pairs of five tuning worlds (deci
 constexpr std::string_view kWalksOfFifteen =
     "106 first steps of look-alikes on 15 maps of five tuning worlds (decision 0043)";
 constexpr std::string_view kJudgement = "judgement: no site was counted (decision 0043)";
-constexpr std::string_view kObjects = "sizes of vehicles and of fresh lining (decision 0041)";
+constexpr std::string_view kLining = "half of 20 m of fresh lining (decision 0041)";
+constexpr std::string_view kVehicle = "chosen: the length of a vehicle";
 constexpr std::string_view kThings = "16 worlds (decision 0041)";
 constexpr std::string_view kOfScans = "pairs of scans of the tuning worlds (decision 0010)";
 constexpr std::string_view kOfWalls = "three tuning worlds (decision 0015)";
@@ -35,17 +36,17 @@ constexpr std::array kOrigins = {
     Origin{"fleet.copy_goes_on", kJudgement, "2026-11-25"},
     Origin{"error_rate", kChosen, "2026-11-21"},
     Origin{"refusal_rate", kChosen, "2026-11-21"},
-    Origin{"refusal_rate_before_the_end", "chosen: asked some 100 times per check", "2026-11-21"},
+    Origin{"refusal_rate_before_the_end", "chosen: asked after each of some 100 comparisons", "2026-11-21"},
     Origin{"usual_share", kOfScans, "2026-11-21"},
     Origin{"allowance", kOfScans, "2026-11-21"},
     Origin{"least_difference_m2", kOfScans, "2026-11-21"},
     Origin{"gross", kOfScans, "2026-11-25"},
     Origin{"prior_chance", kWalksOfFifteen, "2026-11-25"},
     Origin{"prior_steps", kWalksOfFifteen, "2026-11-25"},
-    Origin{"sight_m", "reach of scans in a bent tunnel (decision 0041)", "2026-11-24"},
-    Origin{"same_object_m", kObjects, "2026-11-24"},
-    Origin{"structure_reach_m", kObjects, "2026-11-24"},
-    Origin{"thing_reach_m", kObjects, "2026-11-24"},
+    Origin{"sight_m", "chosen: not measured", "2026-11-24"},
+    Origin{"same_object_m", kVehicle, "2026-11-24"},
+    Origin{"structure_reach_m", kLining, "2026-11-24"},
+    Origin{"thing_reach_m", kVehicle, "2026-11-24"},
     Origin{"changes_at_worst_per_km", kThings, "2026-11-24"},
     Origin{"things_per_km", kThings, "2026-11-24"},
     Origin{"things_elsewhere_per_km", kThings, "2026-11-24"},

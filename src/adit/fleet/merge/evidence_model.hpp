@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Every probability and scale by which evidence for and against a merge is weighed: one struct, and beside
-/// it where each value comes from (`evidence_entries`). What is not here decides nothing: other settings say
-/// what is compared and how it is measured. `adit merge-calibration` fits what can be fitted and prints the
-/// old values beside the new ones (docs/decisions/0045).
+/// The probabilities and scales by which evidence for and against a merge is weighed: one struct, and beside
+/// it where each value comes from (`evidence_entries`). Other settings say what is compared and how it is
+/// measured: patches, ranges, spacings, and which loops are one hypothesis. `adit merge-calibration` fits
+/// what can be fitted and prints the values in use beside the fitted ones (docs/decisions/0045).
 #pragma once
 
 #include <string>

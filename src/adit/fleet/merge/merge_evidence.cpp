@@ -34,8 +34,9 @@ std::vector<double> evidence_at_places(const std::vector<TestedPlace>& places, c
 }
 
 double unless_copied(double of_places, double num) {
-  const auto [agreement_if_true, least_chance, copied, copy_goes_on] = kFleetEvidence;
-  return -std::log((1.0 - copied) * std::exp(-of_places) + copied * std::pow(copy_goes_on, num));
+  const double copied = kFleetEvidence.copied;
+  return -std::log((1.0 - copied) * std::exp(-of_places) +
+                   copied * std::pow(kFleetEvidence.copy_goes_on, num));
 }
 
 double poisson_tail(std::size_t k, double mean) {

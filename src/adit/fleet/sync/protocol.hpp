@@ -131,6 +131,7 @@ struct HypothesisCounts {
   /// Of the relief of walls: the share of equal signs and its standard deviation, 0.5 without patches.
   double equal_signs = 0.5;
   double equal_signs_sigma = 0.5;
+  bool operator==(const HypothesisCounts&) const = default;
 };
 
 /// One alignment of two maps, put forward by loops that agree with one another, and what testing it has

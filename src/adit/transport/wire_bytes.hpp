@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The bytes of a message, written and read one after the other. Each type of the protocol has a `put` and a
+/// `get` in this namespace (wire.cpp), which `vector` finds by the Writer or Reader that they take.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace adit::wire {
+
+static_assert(std::endian::native == std::endian::little,
+              "the wire is little-endian, as all machines that adit runs on");
+
+class Writer {
+ public:
+  template <class T>
+  void scalar(T value) {
+    const auto* begin = reinterpret_cast<const std::byte*>(&value);
+    bytes_.insert(bytes_.end(), begin, begin + sizeof(T));
+  }
+  template <class T>
+  void vector(const std::vector<T>& items) {
+    scalar(static_cast<std::uint32_t>(items.size()));
+    for (const T& item : items) put(*this, item);
+  }
+  std::vector<std::byte> take() { return std::move(bytes_); }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+/// Reads until the bytes end; from then on every value is zero and `ok` is false.
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  template <class T>
+  T scalar() {
+    T value{};
+    if (bytes_.size() - at_ < sizeof(T)) {
+      ok_ = false;
+      at_ = bytes_.size();
+      return value;
+    }
+    std::memcpy(&value, bytes_.data() + at_, sizeof(T));
+    at_ += sizeof(T);
+    return value;
+  }
+  template <class T>
+  void vector(std::vector<T>& items, std::size_t max_items = std::numeric_limits<std::size_t>::max()) {
+    const auto size = scalar<std::uint32_t>();
+    // Every item takes at least a byte: a damaged count must not make us allocate gigabytes.
+    if (size > max_items || size > bytes_.size() - at_) return refuse();
+    for (std::uint32_t i = 0; i < size && ok_; ++i) get(*this, items.emplace_back());
+  }
+  void refuse() { ok_ = false; }
+  [[nodiscard]] bool ok() const { return ok_; }
+  [[nodiscard]] std::size_t at() const { return at_; }
+  [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
+
+ private:
+  std::span<const std::byte> bytes_;
+  std::size_t at_ = 0;
+  bool ok_ = true;
+};
+
+}  // namespace adit::wire
