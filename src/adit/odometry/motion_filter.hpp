@@ -57,7 +57,8 @@ class MotionFilter {
   /// The next interval begins and ends; `begin` before `end`. Before the first one, nothing can be learned:
   /// what is said of the first scan is ignored. Of `motion`, what was measured in between, the IMU.
   void predict(Stamp begin, Stamp end, const SensedMotion& motion);
-  /// What the wheels say about the interval predicted last.
+  /// What the wheels say about the interval predicted last. Nothing is learned from wheels that slip: metres
+  /// beyond four standard deviations of what is known without them.
   void measure(const WheelDelta& wheel);
 
   /// The motion in the interval predicted last.

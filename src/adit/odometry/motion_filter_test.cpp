@@ -178,6 +178,24 @@ TEST(MotionFilter, WhatNoScanMeasuresStaysUnknown) {
   EXPECT_NEAR(filter.wheel_scale(), 0.0, 1e-3);
 }
 
+// Along a tube, where no scan measures the way ahead.
+TEST(MotionFilter, WheelsThatSlipAreLeftOutAndBelievedAgainOnceTheRestKnowsNoBetter) {
+  Filter filter({.speed = 0.1});
+  const auto drive = [&](double counted_m, int num) {
+    for (int i = 0; i < num; ++i) {
+      filter.predict(kScanPeriod, sensed(wheels(Pose::translation_of(counted_m, 0, 0))));
+      const MotionPrior prior = filter.prior();
+      filter.registered(prior.T_ref_now, prior.covariance);
+    }
+    filter.predict(kScanPeriod);
+    return filter.prior().T_ref_now.translation().x();
+  };
+  EXPECT_NEAR(drive(0.15, 30), 0.15, 1e-3);
+  EXPECT_NEAR(drive(0.21, 5), 0.15, 1e-3);
+  EXPECT_NEAR(drive(0.21, 100), 0.21, 5e-3);
+  EXPECT_NEAR(filter.wheel_scale(), 0.0, 2.0 * WheelNoise().scale);
+}
+
 // Along a tube that scans leave open, what lasts counts: an error of the scale is the same in every step.
 double open_variance(const WheelNoise& noise, int num_scans) {
   Filter filter({}, noise);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "adit/odometry/plane_icp.hpp"
 
+#include <cmath>
+
 #include "adit/core/decompositions.hpp"
 #include "adit/odometry/fixed_directions.hpp"
 #include "adit/odometry/preprocess.hpp"
@@ -90,7 +92,7 @@ void PlaneIcp::judge_wheels(const SensedMotion& motion, OdometryStep& step) {
   step.slip.reset();
   if (!motion.wheel) return;
   const double counted_m = motion.wheel->T_base0_base1.translation().x();
-  wheels_.compare(counted_m, driven_m);
+  wheels_.compare(counted_m, driven_m, std::sqrt(covariance_(0, 0)));
   if (wheels_.are_slipping()) step.slip = counted_m - driven_m;
 }
 

@@ -9,13 +9,15 @@ namespace adit {
 /// agree again.
 class WheelTrust {
  public:
-  /// Of the interval before a scan; `driven_m` as the odometry has it in the end.
-  void compare(double counted_m, double driven_m);
+  /// Of the interval before a scan; `driven_m` as the odometry has it in the end, with its standard
+  /// deviation: where neither scans nor wheels hold it, wheels are not to be judged by it.
+  void compare(double counted_m, double driven_m, double sigma_m);
   [[nodiscard]] bool are_slipping() const { return are_slipping_; }
 
  private:
   double counted_m_ = 0.0;  ///< Over the last scans, the latest ones weighing most.
   double driven_m_ = 0.0;
+  double sigma_m_ = 0.0;  ///< Of `driven_m_`; errors of a velocity last.
   bool are_slipping_ = false;
 };
 

@@ -174,6 +174,12 @@ void add_imu(Recording& recording, const Robot& robot, const ImuConfig& imu) {
   std::ranges::stable_sort(recording.faults, {}, &SensorFault::begin);
 }
 
+/// A recording begins at 0: earlier stamps, of clocks that are early, no file of ROS holds.
+void drop_before(Recording& recording, Stamp begin) {
+  std::erase_if(recording.wheel, [&](const StampedPose& pose) { return pose.stamp < begin; });
+  std::erase_if(recording.imu, [&](const ImuSample& sample) { return sample.stamp < begin; });
+}
+
 Recording recording_of(Robot robot, const ScenarioConfig& config) {
   Recording recording;
   recording.name = robot.name;
@@ -182,6 +188,7 @@ Recording recording_of(Robot robot, const ScenarioConfig& config) {
   recording.mount_source = "simulation";
   add_wheels(recording, robot, config.wheels);
   add_imu(recording, robot, config.imu);
+  drop_before(recording, robot.truth.front().stamp);
   const Stamp last = last_heard_of_all(robot);
   robot.sweep_ends = sweep_ends(robot.truth, robot.lidar, last);
   robot.scan_stamps =
