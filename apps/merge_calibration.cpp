@@ -12,6 +12,7 @@
 #include "adit/study/merge_study.hpp"
 #include "adit/study/page_tables.hpp"
 #include "command_line.hpp"
+#include "listed_worlds.hpp"
 
 namespace adit::app {
 namespace {
@@ -19,12 +20,11 @@ namespace {
 constexpr const char* kCalibrationSection = "merge-calibration";
 
 struct CalibrationOptions {
-  std::string worlds;
+  ListedWorldsOptions worlds;
   std::string out;
   std::string page;
   SimulationOptions simulation{.lidar = "os2-32", .conditions = "field"};
   std::vector<int> partners = {1};
-  WorldChoice choice{{"tuning", "check"}, {}};
 };
 
 Result<> add(std::vector<JudgedHypothesis>& all, const Result<std::vector<JudgedHypothesis>>& more) {
@@ -48,15 +48,12 @@ Result<std::vector<JudgedHypothesis>> measure(const CalibrationStudy& study,
 Result<> merge_calibration(const CalibrationOptions& options, const Common& common) {
   const Result<RunConfig> config = configured(common, options.simulation);
   if (!config) return tl::unexpected(config.error());
-  const Result<std::vector<ListedWorld>> list = read_world_list(options.worlds);
-  if (!list) return tl::unexpected(list.error());
-  const Result<ChosenWorlds> chosen = chosen_worlds(options.worlds, *list, options.choice);
-  if (!chosen) return tl::unexpected(chosen.error());
-  print_notes("merge-calibration", chosen->notes);
+  const Result<ListedWorlds> worlds = listed_worlds(options.worlds, "merge-calibration");
+  if (!worlds) return tl::unexpected(worlds.error());
   const std::filesystem::path folder = options.out;
   if (const Result<> made = make_folder(folder / "maps"); !made) return made;
   const Result<std::vector<JudgedHypothesis>> all =
-      measure({*config, folder}, chosen->worlds, options.partners.front());
+      measure({*config, folder}, worlds->chosen, options.partners.front());
   if (!all) return tl::unexpected(all.error());
   const EvidenceModel& model = config->slam.loops.adaptive.merge_check.evidence;
   std::vector<Table> tables = calibration_tables(*all);
@@ -80,16 +77,9 @@ void add_merge_calibration(Program& program) {
                           "Measure whether merge checks are wrong as rarely as they state, and fit the "
                           "evidence model, over a list of worlds",
                           [options](const Common& common) { return merge_calibration(*options, common); });
-  command.add_option("--worlds", options->worlds, "The list (TOML, as bench/merge/worlds.toml)").required();
+  add_listed_worlds_options(command, options->worlds);
   command.add_option("--out", options->out, "Folder that keeps the robots' maps and takes calibration.json")
       .required();
-  command
-      .add_option("--groups", options->choice.groups, "Worlds of these groups: tuning, check, field, limit")
-      .separated_by_commas()
-      .one_of({"tuning", "check", "field", "limit"})
-      .default_shown();
-  command.add_option("--only", options->choice.only, "Only the worlds with these names, whatever their group")
-      .separated_by_commas();
   command
       .add_option("--partners", options->partners,
                   "Other worlds with whose robots those of each world are compared, for false hypotheses")

@@ -10,6 +10,7 @@
 #include "adit/report/text_tables.hpp"
 #include "adit/study/page_tables.hpp"
 #include "command_line.hpp"
+#include "listed_worlds.hpp"
 
 namespace adit::app {
 namespace {
@@ -17,12 +18,11 @@ namespace {
 constexpr const char* kCurvesSection = "merge-curves";
 
 struct CurvesOptions {
-  std::string worlds;
+  ListedWorldsOptions worlds{.list = {}, .choice = {{}, {"zab-1", "mine-1"}}};
   std::string effects;
   std::string out;
   std::string page;
   SimulationOptions simulation{.lidar = "os2-32", .conditions = "ideal"};
-  WorldChoice choice{{}, {"zab-1", "mine-1"}};
 };
 
 Result<> write(const CurvesOptions& options, const std::vector<MergeEffect>& effects,
@@ -39,13 +39,10 @@ Result<> write(const CurvesOptions& options, const std::vector<MergeEffect>& eff
 Result<> merge_curves(const CurvesOptions& options, const Common& common) {
   const Result<RunConfig> config = configured(common, options.simulation);
   if (!config) return tl::unexpected(config.error());
-  const Result<std::vector<ListedWorld>> list = read_world_list(options.worlds);
-  if (!list) return tl::unexpected(list.error());
   const Result<std::vector<MergeEffect>> effects = read_effects(options.effects);
   if (!effects) return tl::unexpected(effects.error());
-  const Result<ChosenWorlds> chosen = chosen_worlds(options.worlds, *list, options.choice);
-  if (!chosen) return tl::unexpected(chosen.error());
-  print_notes("merge-curves", chosen->notes);
+  const Result<ListedWorlds> worlds = listed_worlds(options.worlds, "merge-curves");
+  if (!worlds) return tl::unexpected(worlds.error());
   if (const Result<> made = make_folder(options.out); !made) return made;
   Result<std::vector<MergeRun>> runs = read_merge_runs(std::filesystem::path(options.out) / "results.json");
   if (!runs) return tl::unexpected(runs.error());
@@ -53,7 +50,7 @@ Result<> merge_curves(const CurvesOptions& options, const Common& common) {
     std::fprintf(stderr, "%s\n", summary_line(run).c_str());
   };
   const MergeStudy study{*config, {}, "", options.out, print_line};
-  return measure_curves(study, chosen->worlds, *effects, *runs).and_then([&](const auto& points) {
+  return measure_curves(study, worlds->chosen, *effects, *runs).and_then([&](const auto& points) {
     return write(options, *effects, points);
   });
 }
@@ -66,16 +63,13 @@ void add_merge_curves(Program& program) {
       "merge-curves",
       "Measure how much of each error of sensors and places merging bears, over a list of effects",
       [options](const Common& common) { return merge_curves(*options, common); });
-  command.add_option("--worlds", options->worlds, "The list (TOML, as bench/merge/worlds.toml)").required();
+  add_listed_worlds_options(command, options->worlds);
   command.add_option("--effects", options->effects, "The effects (TOML, as bench/merge/effects.toml)")
       .required();
   command
       .add_option("--out", options->out,
                   "Folder that keeps the results of all runs, which are not run again, and takes curves.svg")
       .required();
-  command.add_option("--only", options->choice.only, "The worlds with these names")
-      .separated_by_commas()
-      .default_shown();
   add_simulation_options(command, options->simulation);
   command.add_option("--page", options->page,
                      "Markdown file whose section between 'merge-curves' marks takes the tables");

@@ -10,6 +10,7 @@
 #include "adit/report/text_tables.hpp"
 #include "adit/study/page_tables.hpp"
 #include "command_line.hpp"
+#include "listed_worlds.hpp"
 #include "policies.hpp"
 
 namespace adit::app {
@@ -18,12 +19,11 @@ namespace {
 constexpr const char* kMergeStudySection = "merging";
 
 struct MergeStudyOptions {
-  std::string worlds;
+  ListedWorldsOptions worlds;
   std::string out;
   std::string page;
   SimulationOptions simulation{.lidar = "os2-32", .conditions = "field"};
   std::vector<std::string> keyframes = {"all", "tunnel_filter", "adaptive"};
-  WorldChoice choice{{"tuning", "check"}, {}};
   std::string variant;
 };
 
@@ -51,18 +51,15 @@ Result<MergeStudy> study_of(const MergeStudyOptions& options, const Common& comm
 Result<> merge_study(const MergeStudyOptions& options, const Common& common) {
   const Result<MergeStudy> study = study_of(options, common);
   if (!study) return tl::unexpected(study.error());
-  const Result<std::vector<ListedWorld>> list = read_world_list(options.worlds);
-  if (!list) return tl::unexpected(list.error());
-  const Result<ChosenWorlds> chosen = chosen_worlds(options.worlds, *list, options.choice);
-  if (!chosen) return tl::unexpected(chosen.error());
-  print_notes("merge-study", chosen->notes);
+  const Result<ListedWorlds> worlds = listed_worlds(options.worlds, "merge-study");
+  if (!worlds) return tl::unexpected(worlds.error());
   if (const Result<> made = make_folder(study->folder / "maps"); !made) return made;
   const std::filesystem::path results = study->folder / "results.json";
   Result<std::vector<MergeRun>> runs = read_merge_runs(results);
   if (!runs) return tl::unexpected(runs.error());
-  for (const ListedWorld& world : chosen->worlds)
+  for (const ListedWorld& world : worlds->chosen)
     if (const Result<> done = run_world(*study, world, *runs); !done) return done;
-  sort_by_list(*runs, *list);
+  sort_by_list(*runs, worlds->all);
   const std::vector<Table> tables = merge_tables(*runs);
   Result<> done = write_merge_runs(results, *runs);
   if (done) done = write_merge_csv(study->folder / "results.csv", *runs);
@@ -79,7 +76,7 @@ void add_merge_study(Program& program) {
       "merge-study",
       "Measure which robots' maps are merged, refused or merged wrongly, over a list of worlds",
       [options](const Common& common) { return merge_study(*options, common); });
-  command.add_option("--worlds", options->worlds, "The list (TOML, as bench/merge/worlds.toml)").required();
+  add_listed_worlds_options(command, options->worlds);
   command.add_option("--out", options->out, "Folder that keeps the robots' maps and the results of all runs")
       .required();
   command
@@ -87,13 +84,6 @@ void add_merge_study(Program& program) {
                   "Keyframe policies, separated by commas; all but adaptive run on `paper_odometry`")
       .separated_by_commas()
       .default_shown();
-  command
-      .add_option("--groups", options->choice.groups, "Worlds of these groups: tuning, check, field, limit")
-      .separated_by_commas()
-      .one_of({"tuning", "check", "field", "limit"})
-      .default_shown();
-  command.add_option("--only", options->choice.only, "Only the worlds with these names, whatever their group")
-      .separated_by_commas();
   command.add_option("--variant", options->variant,
                      "Added to the policies' names, so that a run with other settings (--set) stands beside "
                      "the usual one instead of replacing it");

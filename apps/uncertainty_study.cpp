@@ -12,6 +12,7 @@
 #include "adit/study/merge_study.hpp"
 #include "adit/study/page_tables.hpp"
 #include "command_line.hpp"
+#include "listed_worlds.hpp"
 
 namespace adit::app {
 namespace {
@@ -19,13 +20,12 @@ namespace {
 constexpr const char* kUncertaintySection = "uncertainty";
 
 struct UncertaintyOptions {
-  std::string worlds;
+  ListedWorldsOptions worlds;
   std::string out;
   std::vector<std::string> lidars = {"os2-32"};
   std::vector<std::string> imus = {"icm-20948"};
   std::string conditions = "field";
   std::string page;
-  WorldChoice choice{{"tuning", "check"}, {}};
 };
 
 Result<MeasuredUncertainty> measure(const std::filesystem::path& folder, const Result<RunConfig>& config,
@@ -77,13 +77,10 @@ Result<> write(const UncertaintyOptions& options, const Common& common,
 }
 
 Result<> uncertainty_study(const UncertaintyOptions& options, const Common& common) {
-  const Result<std::vector<ListedWorld>> list = read_world_list(options.worlds);
-  if (!list) return tl::unexpected(list.error());
-  const Result<ChosenWorlds> chosen = chosen_worlds(options.worlds, *list, options.choice);
-  if (!chosen) return tl::unexpected(chosen.error());
-  print_notes("uncertainty-study", chosen->notes);
+  const Result<ListedWorlds> worlds = listed_worlds(options.worlds, "uncertainty-study");
+  if (!worlds) return tl::unexpected(worlds.error());
   if (const Result<> made = make_folder(std::filesystem::path(options.out) / "maps"); !made) return made;
-  return measure_all(options, common, chosen->worlds).and_then([&](const auto& all) {
+  return measure_all(options, common, worlds->chosen).and_then([&](const auto& all) {
     return write(options, common, all);
   });
 }
@@ -96,18 +93,11 @@ void add_uncertainty_study(Program& program) {
       program.add_command("uncertainty-study",
                           "Measure whether stated covariances are those of the errors, over a list of worlds",
                           [options](const Common& common) { return uncertainty_study(*options, common); });
-  command.add_option("--worlds", options->worlds, "The list (TOML, as bench/merge/worlds.toml)").required();
+  add_listed_worlds_options(command, options->worlds);
   command
       .add_option("--out", options->out,
                   "Folder that keeps the robots' maps and takes uncertainty.json and .svg")
       .required();
-  command
-      .add_option("--groups", options->choice.groups, "Worlds of these groups: tuning, check, field, limit")
-      .separated_by_commas()
-      .one_of({"tuning", "check", "field", "limit"})
-      .default_shown();
-  command.add_option("--only", options->choice.only, "Only the worlds with these names, whatever their group")
-      .separated_by_commas();
   command.add_option("--lidar", options->lidars, "Simulated LiDARs, each with each of --imu")
       .separated_by_commas()
       .default_shown();
