@@ -250,8 +250,10 @@ bool WallOffsets::are_of_other_walls(const EqualSignShares& shares, double rate)
   return found.num_patches >= needed && chance_of_at_least(found, shares.same()) < rate;
 }
 
-double WallOffsets::evidence(const EqualSignShares& shares) const {
+double WallOffsets::evidence(const EqualSignShares& shares, double times) const {
   EqualSignShare found = counted();
+  found.num_patches = static_cast<std::size_t>(times * static_cast<double>(found.num_patches));
+  found.sigma /= std::sqrt(times);
   const std::optional<OtherWalls> other = shares.other(found.noise_m);
   if (found.num_patches < static_cast<std::size_t>(shares.model().min_patches)) return 0.0;
   found.share = std::max(found.share, kChance);  // less than chance is chance

@@ -115,8 +115,8 @@ class WallOffsets {
   [[nodiscard]] bool are_of_other_walls(const EqualSignShares& shares, double rate) const;
   /// Log likelihood ratio, same walls to different ones; 0 if fewer than `min_patches` patches were seen.
   /// At most log(1 / chance_of_one_mould). Where the share of other walls was not measured, the one believed
-  /// before counts.
-  [[nodiscard]] double evidence(const EqualSignShares& shares) const;
+  /// before counts. `times`: as if so many times the patches had been seen, with the same share.
+  [[nodiscard]] double evidence(const EqualSignShares& shares, double times = 1.0) const;
   /// The share of the sum of squared offsets that the sensors explain; 0 without offsets.
   [[nodiscard]] double share_of_sensors() const;
 

@@ -22,6 +22,7 @@ namespace {
 struct CheckedPair {
   const FleetGraph& known;
   const MergeCheck& check;
+  std::string robots;
 };
 using TrueRuns = std::map<RobotId, const RobotRun*>;
 
@@ -66,7 +67,7 @@ void judge_check(const CheckedPair& pair, const TrueRuns& runs, std::vector<Judg
     out.push_back({runs.empty() ? HypothesisTruth::wrong : truth_of(hypothesis, pair, runs),
                    hypothesis.outcome == HypothesisOutcome::refuted,
                    hypothesis.outcome == HypothesisOutcome::accepted && pair.check.accepted,
-                   hypothesis.evidence, pair.check.needed, hypothesis.counts});
+                   hypothesis.evidence, pair.check.needed, hypothesis.counts, hypothesis.walls, pair.robots});
 }
 
 std::vector<std::shared_ptr<const RobotMap>> adaptive_maps(const std::vector<RobotRun>& runs) {
@@ -82,6 +83,8 @@ std::shared_ptr<const RobotMap> with_id(const RobotMap& map, RobotId id) {
   for (Keyframe& keyframe : copy->keyframes) keyframe.id.robot = id;
   return copy;
 }
+
+std::string named(const ListedWorld& world, const RobotMap& map) { return world.name + "/" + map.name; }
 
 Result<std::vector<RobotRun>> driven(const CalibrationStudy& study, const ListedWorld& world) {
   return driven_robots(world, study.config, {KeyframeSelection::adaptive}, study.folder / "maps");
@@ -176,7 +179,10 @@ Result<std::vector<JudgedHypothesis>> hypotheses_within(const CalibrationStudy& 
   std::vector<JudgedHypothesis> judged;
   const FleetGraph& known = meeting->agents.front().known();
   for (const auto& [robots, check] : known.checks)
-    if (check.a != check.b) judge_check({known, check}, truths, judged);
+    if (check.a != check.b)
+      judge_check({known, check,
+                   named(world, *truths.at(check.a)->map) + ", " + named(world, *truths.at(check.b)->map)},
+                  truths, judged);
   return judged;
 }
 
@@ -208,7 +214,10 @@ Result<std::vector<JudgedHypothesis>> hypotheses_between(const CalibrationStudy&
       if (const Result<> met = bus.meet(maps[a]->id, maps[b]->id); !met) return tl::unexpected(met.error());
       const FleetGraph& known = agents[a].known();
       const auto check = known.checks.find({maps[a]->id, maps[b]->id});
-      if (check != known.checks.end()) judge_check({known, check->second}, {}, judged);
+      if (check != known.checks.end())
+        judge_check({known, check->second,
+                     named(one, *maps[a]) + ", " + format("{}/robot_{}", other.name, b - num_ours)},
+                    {}, judged);
       phase.advance();
     }
   return judged;

@@ -28,6 +28,8 @@ struct JudgedHypothesis {
   double evidence = 0.0;
   double needed = 0.0;
   HypothesisCounts counts{};
+  double walls = 0.0;    ///< The part of the evidence that comes from the relief of walls.
+  std::string robots{};  ///< As in "zab-1/robot_0, zab-1/robot_2".
 };
 
 struct CalibrationStudy {

@@ -222,10 +222,12 @@ std::string calibration_json(const std::vector<JudgedHypothesis>& hypotheses) {
   constexpr std::array kTruths{"right", "near", "wrong"};
   Json all = Json::array();
   for (const JudgedHypothesis& h : hypotheses)
-    all.push_back({{"truth", kTruths[static_cast<std::size_t>(h.truth)]},
+    all.push_back({{"robots", h.robots},
+                   {"truth", kTruths[static_cast<std::size_t>(h.truth)]},
                    {"refuted", h.refuted},
                    {"accepted", h.accepted},
                    {"evidence", h.evidence},
+                   {"of_walls", h.walls},
                    {"needed", h.needed},
                    {"compared_m", h.counts.compared_m},
                    {"distinctive", h.counts.num_distinctive},

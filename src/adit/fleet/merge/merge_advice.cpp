@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "adit/core/format.hpp"
@@ -138,8 +137,7 @@ class DriveSearch {
 
   [[nodiscard]] double evidence_at(std::vector<TestedPlace> places) const {
     std::ranges::stable_sort(places, {}, &TestedPlace::a);
-    const std::vector<double> evidence = evidence_at_places(places, stretch_.chances);
-    return std::accumulate(evidence.begin(), evidence.end(), 0.0);
+    return stretch_.evidence(places);
   }
 
   [[nodiscard]] double loss_where_it_differs() const {

@@ -20,9 +20,11 @@ namespace adit {
 
 /// A hypothesis that more evidence would decide.
 struct UndecidedStretch {
-  std::vector<std::uint32_t> shared;      ///< Own keyframes along the stretch that both drove, by the plan.
-  std::vector<TestedPlace> places;        ///< Hypothesis::places.
-  ChancesToGoOn chances{};                ///< Of look-alikes.
+  std::vector<std::uint32_t> shared;  ///< Own keyframes along the stretch that both drove, by the plan.
+  std::vector<TestedPlace> places;    ///< Hypothesis::places.
+  ChancesToGoOn chances{};            ///< Of look-alikes.
+  /// Of the hypothesis, if these places had been found and as many more walls like those seen.
+  std::function<double(const std::vector<TestedPlace>& places)> evidence;
   std::vector<PcmLoop> loops;             ///< That align the maps; at least one.
   std::vector<PcmLoop> rival_loops = {};  ///< Of the hypothesis that explains as much; empty without one.
   double missing = 0.0;                   ///< Evidence, or lead before the rival.

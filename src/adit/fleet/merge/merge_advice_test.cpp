@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "adit/fleet/merge/merge_evidence.hpp"
@@ -39,6 +40,10 @@ struct Met {
     const std::size_t middle = (first + last) / 2;
     stretch.loops = {{middle, middle - first, Pose(), test::loop_information()}};
     stretch.chances = kChances;
+    stretch.evidence = [](const std::vector<TestedPlace>& places) {
+      const std::vector<double> at_places = evidence_at_places(places, kChances);
+      return std::accumulate(at_places.begin(), at_places.end(), 0.0);
+    };
     stretch.missing = 2.0;
   }
   [[nodiscard]] std::size_t num_passed() const { return stretch.places.size(); }

@@ -90,15 +90,20 @@ double MergeChecker::evidence(const Hypothesis& h) const {
 }
 
 double MergeChecker::evidence_of_scans(const Hypothesis& h) const {
-  const std::vector<double> at_places = evidence_at_places(h.places(config_.distinctive_only), chances());
   const double prior = static_cast<double>(h.loops.size()) / static_cast<double>(loops_.size());
-  const double of_places = std::accumulate(at_places.begin(), at_places.end(), 0.0);
-  return h.known_before + std::log(prior) +
-         (config_.relief ? unless_copied(of_places, static_cast<double>(h.num_distinctive())) : of_places);
+  return h.known_before + std::log(prior) + evidence_of_places(h.places(config_.distinctive_only));
 }
 
-double MergeChecker::evidence_of_walls(const Hypothesis& h) const {
-  return config_.relief ? h.offsets.evidence(own_.measured().walls) : 0.0;
+double MergeChecker::evidence_of_places(const std::vector<TestedPlace>& places) const {
+  const std::vector<double> at_places = evidence_at_places(places, chances());
+  const double sum = std::accumulate(at_places.begin(), at_places.end(), 0.0);
+  if (!config_.relief) return sum;
+  const auto num = std::ranges::count(places, PlaceOutcome::distinctive, &TestedPlace::outcome);
+  return unless_copied(sum, static_cast<double>(num));
+}
+
+double MergeChecker::evidence_of_walls(const Hypothesis& h, double times) const {
+  return config_.relief ? h.offsets.evidence(own_.measured().walls, times) : 0.0;
 }
 
 double MergeChecker::evidence_of_things(const Hypothesis& h) const {

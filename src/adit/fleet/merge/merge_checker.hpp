@@ -63,7 +63,7 @@ class MergeChecker {
   /// half a sentence, or where that is empty with what would help anywhere.
   [[nodiscard]] MergeCheck verdict(RobotId a, RobotId b, const std::string& remedy = {}) const;
   /// What more evidence would decide; none where maps are joined, nothing aligns them, or another tunnel or a
-  /// sensor is taken to be the reason.
+  /// sensor is taken to be the reason. Valid as long as the checker.
   [[nodiscard]] std::optional<UndecidedStretch> undecided() const;
 
  private:
@@ -77,7 +77,10 @@ class MergeChecker {
   [[nodiscard]] double needed() const;
   [[nodiscard]] double evidence(const Hypothesis& hypothesis) const;
   [[nodiscard]] double evidence_of_scans(const Hypothesis& hypothesis) const;
-  [[nodiscard]] double evidence_of_walls(const Hypothesis& hypothesis) const;
+  /// In the order driven by the own robot.
+  [[nodiscard]] double evidence_of_places(const std::vector<TestedPlace>& places) const;
+  /// As if so many times the walls had been seen.
+  [[nodiscard]] double evidence_of_walls(const Hypothesis& hypothesis, double times = 1.0) const;
   /// Poisson's log likelihood ratio of what may come and go; never positive.
   [[nodiscard]] double evidence_of_things(const Hypothesis& hypothesis) const;
   [[nodiscard]] ChancesToGoOn chances() const { return own_.measured().look_alikes.chances(); }

@@ -113,6 +113,9 @@ std::optional<UndecidedStretch> MergeChecker::undecided() const {
   for (const PlannedComparison& place : best.plan) out.shared.push_back(place.own);
   out.places = best.places(config_.distinctive_only);
   out.chances = chances();
+  out.evidence = [this, &best, num = static_cast<double>(out.places.size())](const auto& places) {
+    return evidence_of_places(places) + evidence_of_walls(best, static_cast<double>(places.size()) / num);
+  };
   out.loops = loops_of(best);
   out.missing = std::max(needed() - evidence(best), 0.0);
   if (decision == MergeDecision::scans_differ) out.least_m = metres_for_changes(best);

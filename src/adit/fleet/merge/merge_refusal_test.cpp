@@ -53,6 +53,24 @@ TEST(MergeRefusal, SaysWhatKindOfDifferenceItIs) {
   EXPECT_FALSE(merged.is_undecided);
 }
 
+// What driving on would be worth is counted as the check counts: tunnels built to one plan bound it.
+TEST(MergeRefusal, WhatMorePlacesWouldBeWorthIsWhatTheCheckWouldCount) {
+  MergeCheckConfig with_relief;
+  with_relief.evidence.error_rate = 1e-6;
+  MergeChecker checker = a_check(kTrueLoops, 0.5, with_relief);
+  const MergeCheck check = run(checker, [](const PlannedComparison&) { return kAgrees; });
+  ASSERT_FALSE(check.accepted);
+  const std::optional<UndecidedStretch> undecided = checker.undecided();
+  ASSERT_TRUE(undecided);
+  EXPECT_NEAR(undecided->evidence(undecided->places), check.evidence, 1e-12);
+  std::vector<TestedPlace> more = undecided->places;
+  for (std::uint32_t k = 0; k < 100; ++k) more.push_back({1000 + k, 0, PlaceOutcome::distinctive});
+  const auto num = static_cast<double>(more.size());
+  EXPECT_LT(undecided->evidence(more),
+            -std::log(kFleetEvidence.copied) - num * std::log(kFleetEvidence.copy_goes_on) + 1e-9);
+  EXPECT_GT(undecided->evidence(more), check.evidence);
+}
+
 // Structure of its own at every so many-th place, by both looks.
 MergeCheck check_of_changes(std::uint32_t every, double chance_to_go_on) {
   MergeCheckConfig config;
