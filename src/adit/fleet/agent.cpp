@@ -141,7 +141,7 @@ Agent::Replies Agent::search_when_ready(RobotId peer) {
   if (!session.has_all_places() || !has_path) return {};
   std::vector<LoopCandidate> found = candidates_with(peer);
   if (is_adaptive() && !found.empty()) {
-    RankedCandidates ranked = search_->rank(std::move(found), chain_by(peer));
+    RankedCandidates ranked = search_->rank(std::move(found));
     found = std::move(ranked.first);
     session.keep_for_second_search(std::move(ranked.further));
   }

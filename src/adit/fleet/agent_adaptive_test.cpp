@@ -73,6 +73,7 @@ std::size_t num_tried_between_two_streets(const AgentConfig& config) {
 TEST(AdaptiveAgent, SearchesOnWhereManyLoopsAreAllRefuted) {
   AgentConfig config = adaptive();
   config.adaptive.search.candidates = 4;
+  config.adaptive.search.of_a_place = 100;  // the street is short
   config.adaptive.search.further_candidates = 0;
   EXPECT_EQ(num_tried_between_two_streets(config), 4U);
   config.adaptive.search.further_candidates = 9;

@@ -5,7 +5,7 @@
 namespace adit {
 
 Fields fields_of(DiscernmentConfig& c) {
-  return {
+  Fields fields = {
       {"samples", &c.samples, "", 4, 10000,
        "places of its own map on which a robot measures how much scans of one place differ"},
       {"look_alikes", &c.look_alikes, "", 0, 10000,
@@ -25,6 +25,8 @@ Fields fields_of(DiscernmentConfig& c) {
        "maps are compared at most this far from a loop,"},
       {"reach_off_m", &c.reach_off_m, "m", 0.01, 10.0,
        "and only as far as odometry's sideways error stays below this"}};
+  append(fields, "segment", fields_of(c.segment));
+  return fields;
 }
 
 Fields fields_of(MergeCheckConfig& c) {

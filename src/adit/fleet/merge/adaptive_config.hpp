@@ -5,6 +5,7 @@
 
 #include "adit/core/config.hpp"
 #include "adit/fleet/merge/evidence_model.hpp"
+#include "adit/fleet/merge/segments.hpp"
 #include "adit/fleet/search/candidate_search.hpp"
 #include "adit/registration/registration_config.hpp"
 #include "adit/robot/submap.hpp"
@@ -23,6 +24,7 @@ struct DiscernmentConfig {
   double shortest_reach_m = 50.0;
   double longest_reach_m = 150.0;
   double reach_off_m = 0.5;
+  SegmentConfig segment;
 };
 Fields fields_of(DiscernmentConfig& config);
 

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "adit/core/parallel.hpp"
+#include "adit/fleet/merge/segments.hpp"
 #include "adit/fleet/search/path.hpp"
 #include "adit/fleet/search/revisits.hpp"
-#include "adit/fleet/search/segments.hpp"
 #include "adit/registration/registration.hpp"
 
 namespace adit {
@@ -23,7 +23,7 @@ LookAlikeWalks::LookAlikeWalks(Discernment& discernment, const OdometryChain& ch
 void LookAlikeWalks::start(const std::vector<LoopCandidate>& similar) {
   const DiscernmentConfig& config = config_.merge_check.discernment;
   const std::vector<Segment> stretches = agreeing_segments(
-      chain_, chain_, similar, {static_cast<std::size_t>(config.look_alikes), {}, config_.search.segment});
+      chain_, chain_, similar, {static_cast<std::size_t>(config.look_alikes), config.segment});
   std::vector<std::optional<Walk>> found(stretches.size());
   for (std::size_t attempt = 0; attempt < static_cast<std::size_t>(config.starts_per_look_alike); ++attempt) {
     std::vector<std::size_t> open;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <span>
 #include <tuple>
 #include <utility>
 
@@ -12,29 +11,15 @@
 #include "adit/fleet/search/path.hpp"
 
 namespace adit {
-namespace {
-
-using Ends = std::pair<KeyframeId, KeyframeId>;
-
-Ends ends_of(const LoopCandidate& candidate) { return {candidate.query, candidate.match}; }
-
-}  // namespace
-
 Fields fields_of(SearchConfig& c) {
   Fields fields = {
       {"candidates", &c.candidates, "", 1, 1e6, "candidates that are registered with each peer"},
       {"further_candidates", &c.further_candidates, "", 0, 1e6,
        "further candidates where the first led to many loops, all of which are refuted"},
-      {"segments", &c.segments, "", 0, 1e6,
-       "stretches along which candidates agree, whose best ones are registered first"},
-      {"segments_that_stand_out", &c.segments_that_stand_out, "", 0, 1e6,
-       "the same, weighed by how much a candidate stands out from look-alikes in the robot's own map; taken "
-       "in turns"},
-      {"of_a_segment", &c.of_a_segment, "", 1, 1e6, "candidates registered per segment"},
       {"stand_out", &c.stand_out, "", 0, 0,
-       "rank other candidates by their distance over that to the most similar other place of the own map; "
+       "rank candidates by their distance over that to the most similar other place of the own map; "
        "otherwise by their distance"},
-      {"of_a_place", &c.of_a_place, "", 1, 1e6, "of these, at most this many candidates of one place"},
+      {"of_a_place", &c.of_a_place, "", 1, 1e6, "at most this many candidates of one place"},
       {"place_keyframes", &c.place_keyframes, "", 1, 1e6,
        "keyframes nearer than this in index count as one place"},
       {"lane_m", &c.lane_m, "m", 0.0, 100.0,
@@ -43,7 +28,6 @@ Fields fields_of(SearchConfig& c) {
       {"revisits", &c.revisits, "", 0, 0, "look for loops within the robot's own map"},
       {"revisit_candidates", &c.revisit_candidates, "", 1, 1e6,
        "candidates registered within the robot's own map"}};
-  append(fields, "segment", fields_of(c.segment));
   append(fields, "self_similarity", fields_of(c.self_similarity));
   append(fields, "revisit", fields_of(c.revisit));
   return fields;
@@ -88,55 +72,14 @@ const std::vector<double>& CandidateSearch::self_distances() {
   return self_distances_;
 }
 
-std::vector<CandidateSearch::Ranking> CandidateSearch::rankings_of(const std::vector<LoopCandidate>& found,
-                                                                   const OdometryChain& theirs) {
-  const auto num_further =  // of either ranking
-      static_cast<std::size_t>(config_.further_candidates / (2 * config_.of_a_segment));
-  std::vector<Ranking> rankings;
-  const auto rank_by = [&](int num, const std::vector<double>& self_distances) {
-    const auto num_first = static_cast<std::size_t>(num);
-    rankings.push_back(
-        {num_first, agreeing_segments(chain_, theirs, found,
-                                      {num_first + num_further, self_distances, config_.segment})});
-  };
-  if (config_.segments > 0) rank_by(config_.segments, {});
-  if (config_.segments_that_stand_out > 0) rank_by(config_.segments_that_stand_out, self_distances());
-  return rankings;
-}
-
-RankedCandidates CandidateSearch::of_segments(const std::vector<LoopCandidate>& found,
-                                              const OdometryChain& theirs) {
-  if (found.empty()) return {};
-  const std::vector<Ranking> rankings = rankings_of(found, theirs);
-  std::size_t num_ranks = 0;
-  for (const Ranking& ranking : rankings) num_ranks = std::max(num_ranks, ranking.segments.size());
-  RankedCandidates ranked;
-  std::set<Ends> taken;
-  for (std::size_t rank = 0; rank < num_ranks; ++rank)
-    for (const auto& [num_first, segments] : rankings) {
-      if (rank >= segments.size()) continue;
-      const std::vector<LoopCandidate>& candidates = segments[rank].candidates;
-      const std::size_t num = std::min(static_cast<std::size_t>(config_.of_a_segment), candidates.size());
-      for (const LoopCandidate& candidate : std::span(candidates).first(num))
-        if (taken.insert(ends_of(candidate)).second)
-          (rank < num_first ? ranked.first : ranked.further).push_back(candidate);
-    }
-  return ranked;
-}
-
-RankedCandidates CandidateSearch::rank(std::vector<LoopCandidate> found, const OdometryChain& theirs) {
+RankedCandidates CandidateSearch::rank(std::vector<LoopCandidate> found) {
   const auto num_first = static_cast<std::size_t>(config_.candidates);
   const auto num_further = static_cast<std::size_t>(config_.further_candidates);
-  RankedCandidates ranked = of_segments(found, theirs);
-  ranked.first.resize(std::min(ranked.first.size(), num_first));
-  ranked.further.resize(std::min(ranked.further.size(), num_further));
-  std::set<Ends> taken;
-  for (const std::vector<LoopCandidate>* some : {&ranked.first, &ranked.further})
-    for (const LoopCandidate& candidate : *some) taken.insert(ends_of(candidate));
-  std::erase_if(found, [&](const LoopCandidate& c) { return taken.contains(ends_of(c)); });
-  const std::size_t num_left = num_first + num_further - taken.size();
-  for (const LoopCandidate& candidate : standing_out(std::move(found), num_left))
-    (ranked.first.size() < num_first ? ranked.first : ranked.further).push_back(candidate);
+  RankedCandidates ranked{standing_out(std::move(found), num_first + num_further), {}};
+  if (ranked.first.size() <= num_first) return ranked;
+  const auto further = ranked.first.begin() + static_cast<std::ptrdiff_t>(num_first);
+  ranked.further.assign(further, ranked.first.end());
+  ranked.first.erase(further, ranked.first.end());
   return ranked;
 }
 

@@ -12,7 +12,6 @@
 #include "adit/core/config.hpp"
 #include "adit/fleet/search/lanes.hpp"
 #include "adit/fleet/search/revisits.hpp"
-#include "adit/fleet/search/segments.hpp"
 #include "adit/fleet/search/self_similarity.hpp"
 #include "adit/fleet/sync/protocol.hpp"
 
@@ -21,9 +20,6 @@ namespace adit {
 struct SearchConfig {
   int candidates = 64;
   int further_candidates = 40;
-  int segments = 7;
-  int segments_that_stand_out = 7;
-  int of_a_segment = 4;
   bool stand_out = true;
   int of_a_place = 3;
   int place_keyframes = 6;
@@ -31,7 +27,6 @@ struct SearchConfig {
   int lanes = 2;
   bool revisits = true;
   int revisit_candidates = 32;
-  SegmentConfig segment;
   SelfSimilarityConfig self_similarity;
   RevisitConfig revisit;
 };
@@ -67,23 +62,14 @@ class CandidateSearch {
   [[nodiscard]] Lanes lanes() const { return {config_.lanes, config_.lane_m}; }
   [[nodiscard]] const SelfSimilarity& self_similarity();
 
-  /// Of what `most_similar_places` found with a peer whose odometry is `theirs`: first those of segments that
-  /// agree along both paths, then those that stand out from look-alikes in the own map.
-  [[nodiscard]] RankedCandidates rank(std::vector<LoopCandidate> found, const OdometryChain& theirs);
+  /// Of what `most_similar_places` found, those that stand out from look-alikes in the own map.
+  [[nodiscard]] RankedCandidates rank(std::vector<LoopCandidate> found);
 
   /// Candidates within the own map.
   [[nodiscard]] std::vector<LoopCandidate> revisits();
 
  private:
-  struct Ranking {
-    std::size_t num_first = 0;  ///< Segments whose candidates belong to the first search.
-    std::vector<Segment> segments;
-  };
   [[nodiscard]] const std::vector<double>& self_distances();
-  [[nodiscard]] std::vector<Ranking> rankings_of(const std::vector<LoopCandidate>& found,
-                                                 const OdometryChain& theirs);
-  [[nodiscard]] RankedCandidates of_segments(const std::vector<LoopCandidate>& found,
-                                             const OdometryChain& theirs);
   [[nodiscard]] std::vector<LoopCandidate> standing_out(std::vector<LoopCandidate> found, std::size_t num);
 
   std::shared_ptr<const RobotMap> map_;

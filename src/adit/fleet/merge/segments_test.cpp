@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-#include "adit/fleet/search/segments.hpp"
+#include "adit/fleet/merge/segments.hpp"
 
 #include <gtest/gtest.h>
 
@@ -81,20 +81,6 @@ TEST(AgreeingSegments, AStretchThatAllLooksLikeOnePlaceIsNotLong) {
   std::vector<LoopCandidate> found;
   for (std::uint32_t k = 100; k < 300; ++k) found.push_back(candidate(k, 50));
   EXPECT_LE(agreeing_segments(along_x(), along_x(), found, {1})[0].support_m, 3.0);
-}
-
-TEST(AgreeingSegments, AShortStretchThatStandsOutGoesBeforeALongOneThatDoesNot) {
-  std::vector<LoopCandidate> found;
-  for (std::uint32_t k = 100; k < 200; ++k) found.push_back(candidate(k, k + 90, 0.0, 0.2));
-  for (std::uint32_t k = 240; k < 300; ++k) found.push_back(candidate(k, k - 200, 0.0, 0.2));
-  EXPECT_LT(agreeing_segments(along_x(), along_x(), found, {1})[0].candidates[0].query.index, 200U);
-  // The own map has places as similar beside the long one, and none beside the short one.
-  std::vector<double> self_distances(kKeyframes, 0.2);
-  for (std::size_t k = 240; k < 300; ++k) self_distances[k] = 1.0;
-  const std::vector<Segment> segments = agreeing_segments(along_x(), along_x(), found, {2, self_distances});
-  ASSERT_EQ(segments.size(), 2U);
-  EXPECT_GE(segments[0].candidates[0].query.index, 240U);
-  EXPECT_LT(segments[1].candidates[0].query.index, 200U);
 }
 
 TEST(AgreeingSegments, EachCandidateBelongsToOneAndThreadsDoNotMatter) {

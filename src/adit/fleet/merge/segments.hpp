@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// Sequences of candidates that agree. One keyframe of a tunnel looks like hundreds of others; that one
-/// keyframe after the other, over tens of metres, looks like the one that the other robot's odometry leads to
-/// is rarer. SeqSLAM does the same for images (Milford and Wyeth, "SeqSLAM: Visual route-based navigation for
-/// sunny summer days and stormy winter nights", ICRA 2012), at one speed and in one direction; here odometry
-/// gives both, so that robots may drive to and fro.
+/// Sequences of matches that agree: stretches of tunnel that look alike all along. One keyframe of a tunnel
+/// looks like hundreds of others; that one keyframe after the other, over tens of metres, looks like the one
+/// that odometry leads to is rarer. SeqSLAM does the same for images (Milford and Wyeth, "SeqSLAM: Visual
+/// route-based navigation for sunny summer days and stormy winter nights", ICRA 2012), at one speed and in
+/// one direction; here odometry gives both, so that robots may drive to and fro.
 #pragma once
 
 #include <vector>
@@ -36,8 +36,7 @@ inline Fields fields_of(SegmentConfig& c) {
 
 /// Candidates that align two paths alike, within some tens of metres.
 struct Segment {
-  /// Metres of path that they cover, of the query's or of the match's, whichever is less; each bin counts by
-  /// the weight of its best candidate.
+  /// Metres of path that they cover, of the query's or of the match's, whichever is less.
   double support_m = 0.0;
   /// The most similar one of each bin, most similar first.
   std::vector<LoopCandidate> candidates;
@@ -45,9 +44,6 @@ struct Segment {
 
 struct SegmentQuery {
   std::size_t num = 0;  ///< Segments at most.
-  /// Of each keyframe of the own robot the descriptor distance to the most similar other place of its own
-  /// map: a candidate weighs 1 / (1 + r^2), where r is its distance over that. Empty: all weigh 1.
-  std::vector<double> self_distances = {};
   SegmentConfig config = {};
 };
 

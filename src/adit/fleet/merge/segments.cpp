@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-#include "adit/fleet/search/segments.hpp"
+#include "adit/fleet/merge/segments.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,19 +25,11 @@ struct Match {
   Vector3 own_position;    // in the own odometry's frame
   Vector3 their_position;  // in theirs
   Pose T_own_theirs;       // between those frames, as this match alone says
-  double weight;
 };
-
-double weight_of(const LoopCandidate& candidate, const std::vector<double>& self_distances) {
-  if (self_distances.empty()) return 1.0;
-  const double ratio = candidate.distance / std::max(self_distances[candidate.query.index], 1e-6);
-  return 1.0 / (1.0 + ratio * ratio);
-}
 
 /// In the order of the own path.
 std::vector<Match> matches_of(const OdometryChain& own, const OdometryChain& theirs,
-                              const std::vector<LoopCandidate>& found,
-                              const std::vector<double>& self_distances) {
+                              const std::vector<LoopCandidate>& found) {
   const std::vector<double> own_path_m = path_lengths(own);
   const std::vector<double> their_path_m = path_lengths(theirs);
   std::vector<Match> matches;
@@ -48,8 +40,7 @@ std::vector<Match> matches_of(const OdometryChain& own, const OdometryChain& the
     const Pose T_match_query = Pose::planar(0.0, 0.0, c.yaw);
     matches.push_back({&c, own_path_m[c.query.index], their_path_m[c.match.index], T_own_query.translation(),
                        T_their_match.translation(),
-                       T_own_query * T_match_query.inverse() * T_their_match.inverse(),
-                       weight_of(c, self_distances)});
+                       T_own_query * T_match_query.inverse() * T_their_match.inverse()});
   }
   std::ranges::sort(matches, {},
                     [](const Match& m) { return std::tuple(m.candidate->query, m.candidate->match); });
@@ -87,17 +78,14 @@ class Agreeing {
   }
 
   [[nodiscard]] double support_of(const Match& anchor) const {
-    std::vector<double> own_bins(num_bins_, 0.0);  // the largest weight in each
-    std::vector<double> their_bins(num_bins_, 0.0);
+    std::vector<bool> own_bins(num_bins_, false);
+    std::vector<bool> their_bins(num_bins_, false);
     for (const std::size_t i : with(anchor)) {
-      const Match& other = matches_[i];
-      for (double* bin : {&own_bins[bin_of(other.own_path_m)], &their_bins[bin_of(other.their_path_m)]})
-        *bin = std::max(*bin, other.weight);
+      own_bins[bin_of(matches_[i].own_path_m)] = true;
+      their_bins[bin_of(matches_[i].their_path_m)] = true;
     }
-    const auto sum = [](const std::vector<double>& bins) {
-      return std::accumulate(bins.begin(), bins.end(), 0.0);
-    };
-    return config_.bin_m * std::min(sum(own_bins), sum(their_bins));
+    const auto num = std::min(std::ranges::count(own_bins, true), std::ranges::count(their_bins, true));
+    return config_.bin_m * static_cast<double>(num);
   }
 
  private:
@@ -137,7 +125,7 @@ Segment segment_around(const Agreeing& matches, std::size_t anchor, double suppo
 
 std::vector<Segment> agreeing_segments(const OdometryChain& own, const OdometryChain& theirs,
                                        const std::vector<LoopCandidate>& found, const SegmentQuery& query) {
-  const Agreeing matches(matches_of(own, theirs, found, query.self_distances), query.config);
+  const Agreeing matches(matches_of(own, theirs, found), query.config);
   std::vector<double> support_m(matches.size());
   parallel_for_each(
       matches.size(), [&](std::size_t i) { support_m[i] = matches.support_of(matches.at(i)); }, 16);
