@@ -140,11 +140,7 @@ Agent::Replies Agent::search_when_ready(RobotId peer) {
   const bool has_path = !is_adaptive() || session.lie_within(ledger_.num_nodes_of(peer));
   if (!session.has_all_places() || !has_path) return {};
   std::vector<LoopCandidate> found = candidates_with(peer);
-  if (is_adaptive() && !found.empty()) {
-    RankedCandidates ranked = search_->rank(std::move(found));
-    found = std::move(ranked.first);
-    session.keep_for_second_search(std::move(ranked.further));
-  }
+  if (is_adaptive() && !found.empty()) found = search_->most_promising(std::move(found));
   await_clouds(session, std::move(found));
   return request_of(session);
 }
@@ -232,13 +228,9 @@ Agent::Replies Agent::go_on_checking(RobotId peer) {
 }
 
 Agent::Replies Agent::conclude_check(RobotId peer) {
-  PeerSession& session = sessions_[peer];
   const MergeChecker checker = checks_.extract(peer).mapped();
-  const MergeCheck check = checker.verdict(map_->id, peer);
-  if (leads_nowhere(check)) await_clouds(session, session.take_second_search());
-  if (session.state() == PeerState::awaiting_clouds) return request_of(session);
   const std::size_t num_before = ledger_.num_own_checks();
-  ledger_.add_own(with_advice(check, checker));
+  ledger_.add_own(with_advice(checker.verdict(map_->id, peer), checker));
   return ledger_.checks_since(map_->id, num_before);
 }
 
@@ -257,20 +249,6 @@ MergeCheck Agent::with_advice(MergeCheck verdict, const MergeChecker& checker) {
   verdict = checker.verdict(verdict.a, verdict.b, in_words(*advice, name_a, name_b));
   verdict.advice = advice;
   return verdict;
-}
-
-bool Agent::leads_nowhere(const MergeCheck& check) const {
-  const bool is_all_refuted = std::ranges::all_of(check.hypotheses, [](const MergeHypothesis& hypothesis) {
-    return hypothesis.outcome == HypothesisOutcome::refuted;
-  });
-  // Loops that slide along a smooth tube count, too: they fill a search that should have gone elsewhere.
-  const auto num_loops = std::ranges::count_if(known().loops, [&](const auto& entry) {
-    const auto& [ends, loop] = entry;
-    return ends.first.robot == check.a && ends.second.robot == check.b &&
-           loop.verdict == LoopVerdict::accepted;
-  });
-  return is_all_refuted &&
-         config_.adaptive.second_search_share * num_loops >= config_.adaptive.search.candidates;
 }
 
 void Agent::find_revisits() {

@@ -115,8 +115,6 @@ class Agent {
   Replies conclude_check(RobotId peer);
   /// The verdict of a check that is over, with where to drive if that would decide it.
   [[nodiscard]] MergeCheck with_advice(MergeCheck verdict, const MergeChecker& checker);
-  /// Many loops, and all that they claim is refuted: the true ones may not have been among the candidates.
-  [[nodiscard]] bool leads_nowhere(const MergeCheck& check) const;
 
   [[nodiscard]] Hello hello() const;
   [[nodiscard]] std::vector<Message> addressed(RobotId peer, Replies bodies) const;

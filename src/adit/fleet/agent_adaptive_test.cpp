@@ -57,31 +57,6 @@ TEST(AdaptiveAgent, KeepsRobotsOfTwoStreetsApartWithAReason) {
   EXPECT_EQ(solution.components.size(), 2U);
 }
 
-// Two streets, so that whatever loops are accepted are refuted.
-std::size_t num_tried_between_two_streets(const AgentConfig& config) {
-  TwoRobots fleet(3, config);
-  const test::BoxWorld elsewhere(77);
-  const auto map = std::make_shared<const RobotMap>(test::drive(elsewhere, {1}, fleet.truth_1, -0.002));
-  fleet.agents[1] = Agent(map, config);
-  fleet.meet();
-  const MergeCheck& check = fleet.agents[0].known().checks.at({{0}, {1}});
-  EXPECT_FALSE(check.accepted);
-  EXPECT_EQ(fleet.agents[0].known().loops.size(), fleet.agents[1].known().loops.size());
-  return fleet.agents[0].known().loops.size();
-}
-
-TEST(AdaptiveAgent, SearchesOnWhereManyLoopsAreAllRefuted) {
-  AgentConfig config = adaptive();
-  config.adaptive.search.candidates = 4;
-  config.adaptive.search.of_a_place = 100;  // the street is short
-  config.adaptive.search.further_candidates = 0;
-  EXPECT_EQ(num_tried_between_two_streets(config), 4U);
-  config.adaptive.search.further_candidates = 9;
-  EXPECT_EQ(num_tried_between_two_streets(config), 13U);
-  config.adaptive.registration.min_inliers = 1000;  // no loops
-  EXPECT_EQ(num_tried_between_two_streets(config), 4U);
-}
-
 /// A robot that drives up the street and back again, on the other lane.
 struct ThereAndBack {
   std::vector<Pose> truth = street(0.0, 50.0, -0.5);

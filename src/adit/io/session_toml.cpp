@@ -141,7 +141,6 @@ void insert_merges(const Session& session, toml::table& table) {
     toml::table tested = merge_table(session.fleet, check);
     if (const auto outcome = outcome_of(check); outcome != session.solution.pairs.end()) {
       tested.insert("merged", outcome->merged);  // an accepted one may be taken back
-      if (!outcome->joined_reason.empty()) tested.insert("joined", outcome->joined_reason);
       if (outcome->accuracy) tested.insert("sigma", sigma_table(*outcome->accuracy));
     }
     (check.a == check.b ? revisits : merges).push_back(std::move(tested));

@@ -90,9 +90,7 @@ std::vector<MergePicture> merge_pictures(const FleetGraph& fleet, const FleetSol
     MergePicture picture;
     picture.robots = {fleet.robots.at(check.a).name, fleet.robots.at(check.b).name};
     picture.merged = pair->merged;
-    picture.verdict = !pair->merged                 ? pair->refused_reason
-                      : pair->joined_reason.empty() ? check.reason
-                                                    : pair->joined_reason;
+    picture.verdict = pair->merged ? check.reason : pair->refused_reason;
     if (pair->accuracy) picture.verdict += "; " + to_string(*pair->accuracy);
     picture.evidence_needed = check.needed;
     picture.path = odometry_of(fleet.robots.at(check.a), Pose());

@@ -320,7 +320,6 @@ void put(Writer& out, const MergeCheck& check) {
   out.vector(check.loops);
   put(out, check.reason);
   out.vector(check.hypotheses);
-  for (const double chance : check.goes_on) out.scalar(chance);
   out.scalar(check.refused_kind);
   out.scalar(static_cast<std::uint8_t>(check.advice ? 1 : 0));
   if (check.advice) put(out, *check.advice);
@@ -336,10 +335,6 @@ void get(Reader& in, MergeCheck& check) {
   in.vector(check.loops);
   get(in, check.reason);
   in.vector(check.hypotheses, kHypothesesPerCheck);
-  for (double& chance : check.goes_on) {
-    chance = in.scalar<double>();
-    if (!(chance >= 0.0 && chance <= 1.0)) in.refuse();
-  }
   check.refused_kind = in.scalar<RefusalKind>();
   if (check.refused_kind > RefusalKind::unknown) in.refuse();
   if (in.scalar<std::uint8_t>() != 0) get(in, check.advice.emplace());

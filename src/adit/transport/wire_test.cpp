@@ -38,7 +38,6 @@ MergeCheck a_check() {
   check.hypotheses[0].places = {{5, 70000, PlaceOutcome::distinctive}, {9, 70004, PlaceOutcome::differs}};
   check.hypotheses[0].walls = 2.5;
   check.hypotheses[1].counts = {11, 3, 70001, 456, 123.5, 0.75, 0.0625};
-  check.goes_on = {0.25, 0.5, 0.5, 0.625, 0.75, 0.75, 0.75, 1.0};
   check.refused_kind = RefusalKind::changed_place;
   check.advice = MergeAdvice{143.5, 103.25, {51.25, -8.0, 0.5}, 5.125, 4.0};
   return check;
@@ -118,7 +117,6 @@ TEST(Wire, DecisionsTravelExactly) {
   EXPECT_EQ(places[1].outcome, PlaceOutcome::differs);
   EXPECT_EQ(check.hypotheses[0].walls, 2.5);
   EXPECT_EQ(second.counts, a_check().hypotheses[1].counts);
-  EXPECT_EQ(check.goes_on, a_check().goes_on);
   EXPECT_EQ(check.refused_kind, RefusalKind::changed_place);
   ASSERT_TRUE(check.advice);
   EXPECT_EQ(check.advice->from_m, 143.5);
@@ -145,7 +143,6 @@ TEST(Wire, DecisionsThatCannotBeAreRefused) {
       [&](MergeCheck& c) { c.hypotheses[0].places[1].outcome = static_cast<PlaceOutcome>(3); },
       [&](MergeCheck& c) { c.hypotheses[0].walls = nan; },
       [&](MergeCheck& c) { c.hypotheses[1].counts.compared_m = nan; },
-      [&](MergeCheck& c) { c.goes_on[3] = 1.5; },
       [&](MergeCheck& c) { c.refused_kind = static_cast<RefusalKind>(9); },
       [&](MergeCheck& c) { c.advice->from_m = nan; },
       [&](MergeCheck& c) { c.advice->from.z() = nan; },

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "adit/core/decompositions.hpp"
@@ -24,6 +25,16 @@ std::vector<std::size_t> steps_to(const PoseGraph& graph) {
     if (is_step(graph.edges[e])) step[graph.edges[e].to] = e;
   }
   return step;
+}
+
+/// Least squares with all loops, where every edge then errs by no more than its stated noise allows.
+std::optional<Solution<Pose>> all_as_stated(const PoseGraph& graph, const GncConfig& config) {
+  Solution<Pose> solved = optimize(graph, config.optimizer);
+  if (!solved.ok()) return std::nullopt;
+  const double bound = chi2_quantile(config.inlier_probability, Pose::kDof);
+  for (const double chi2 : edge_costs(graph, solved.poses))
+    if (chi2 > bound) return std::nullopt;
+  return solved;
 }
 
 }  // namespace
@@ -88,9 +99,11 @@ std::vector<Pose> spread(const PoseGraph& whole, const CondensedGraph& condensed
   return out;
 }
 
-Solution<Pose> solve_robustly(const PoseGraph& whole, const GncConfig& config) {
+Solution<Pose> solve_robustly(const PoseGraph& whole, const GncConfig& config, LoopsAre loops) {
   const CondensedGraph condensed = condense(whole);
-  const Solution<Pose> found = optimize_gnc(condensed.graph, config);
+  std::optional<Solution<Pose>> all;
+  if (loops == LoopsAre::confirmed) all = all_as_stated(condensed.graph, config);
+  const Solution<Pose> found = all ? *std::move(all) : optimize_gnc(condensed.graph, config);
   if (!found.ok()) return optimize_gnc(whole, config);  // which says why in terms of the whole graph
   PoseGraph placed = whole;
   const std::vector<Pose> start = spread(whole, condensed, found.poses);

@@ -78,5 +78,13 @@ TEST(CondensedGraph, FindsTheLoopsAndPosesThatTheWholeGraphFinds) {
     EXPECT_LT((whole.poses[i].translation() - condensed.poses[i].translation()).norm(), 1e-3);
 }
 
+TEST(CondensedGraph, AConfirmedLoopThatIsFalseIsStillFound) {
+  const TwoChains two;
+  const Solution<Pose> solved = solve_robustly(two.graph, {}, LoopsAre::confirmed);
+  ASSERT_TRUE(solved.ok());
+  EXPECT_EQ(solved.edge_weights.back(), 0.0);
+  EXPECT_EQ(std::ranges::count(solved.edge_weights, 0.0), 1);
+}
+
 }  // namespace
 }  // namespace adit

@@ -19,7 +19,6 @@ struct CycleConfig {
   double freedom = 24.0;
   double detour = 1.5;
   double detour_m = 10.0;
-  double same_alignment_m = 3.0;
   int refuted_pairs = 2;
 };
 inline Fields fields_of(CycleConfig& c) {
@@ -31,8 +30,6 @@ inline Fields fields_of(CycleConfig& c) {
        "paths around a cycle are compared if at most this many times as long as the shortest one"},
       {"detour_m", &c.detour_m, "m", 0.0, 10000.0,
        "plus this; of these paths the one that closes best counts"},
-      {"same_alignment_m", &c.same_alignment_m, "m", 0.0, 1000.0,
-       "hypotheses of two pairs agree if a cycle through both ends within this distance of its beginning"},
       {"refuted_pairs", &c.refuted_pairs, "", 1, 10000,
        "pairs whose scans refute what merges together claim, before one of these is taken back"}};
 }

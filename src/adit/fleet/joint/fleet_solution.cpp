@@ -121,7 +121,6 @@ void decide_merges(const FleetGraph& fleet, const BackEndConfig& config, const L
         std::ranges::count_if(of_pair, [&](std::size_t l) { return solution.loops[l].in_use(); }));
     pair.merged = num_used >= static_cast<std::size_t>(config.min_loops);
     if (pair.merged) continue;
-    pair.joined_reason.clear();
     if (pair.refused_reason.empty()) {
       Refusal found = refusal(fleet, config, pair, tried[{pair.a, pair.b}], num_used);
       pair.refused_kind = found.kind;
@@ -167,8 +166,10 @@ void solve_group(const FleetGraph& fleet, const std::vector<RobotId>& robots, co
   }
   const PoseGraph graph =
       build_graph(part_of(fleet, robots), std::vector<const LoopOutcome*>(loops.begin(), loops.end()));
+  const LoopsAre confirmed =
+      fleet.policy == MergePolicy::adaptive ? LoopsAre::confirmed : LoopsAre::unconfirmed;
   Solution<Pose> solved =
-      config.gnc_on ? solve_robustly(graph, config.gnc) : optimize(graph, config.gnc.optimizer);
+      config.gnc_on ? solve_robustly(graph, config.gnc, confirmed) : optimize(graph, config.gnc.optimizer);
   // The paper's policies state fixed sigmas, and are compared as they are.
   if (config.balance_on && fleet.policy == MergePolicy::adaptive && solved.ok() && !loops.empty())
     solved = balanced(graph, solved, config.gnc.optimizer, solution.variances);
@@ -223,13 +224,9 @@ Fields fields_of(BackEndConfig& c) {
       {"gnc_on", &c.gnc_on, "", 0, 0, "let graduated non-convexity reject loops while the graph is solved"},
       {"cycles_needed", &c.cycles_needed, "", 0, 0,
        "take back merges that passed the merge check where merges with third robots contradict them"},
-      {"joint_evidence", &c.joint_evidence, "", 0, 0,
-       "also join maps for which several pairs of robots have enough evidence only together"},
       {"balance_on", &c.balance_on, "", 0, 0,
        "weigh each robot's odometry, and the loops of each pair, by how well they fit the rest (adaptive)"},
-      {"min_loops", &c.min_loops, "", 1, 10000, "loops in use that two robots need to share a map"},
-      {"one_place_m", &c.one_place_m, "m", 0.1, 1000.0,
-       "places that several pairs compared this near to one another count once"}};
+      {"min_loops", &c.min_loops, "", 1, 10000, "loops in use that two robots need to share a map"}};
   append(fields, "cycles", fields_of(c.cycles));
   append(fields, "pcm", fields_of(c.pcm));
   append(fields, "gnc", fields_of(c.gnc));

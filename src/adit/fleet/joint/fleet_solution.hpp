@@ -23,13 +23,11 @@ struct BackEndConfig {
   bool pcm_on = true;
   bool gnc_on = true;
   /// Under MergePolicy::adaptive pairs with an accepted MergeCheck share a map,
-  bool cycles_needed = true;   ///< as long as cycles of merges do not contradict it,
-  bool joint_evidence = true;  ///< and pairs whose evidence suffices only when it is added up.
+  bool cycles_needed = true;  ///< as long as cycles of merges do not contradict it,
   /// and each robot's odometry, and the loops of each pair, count by what they turn out to be worth.
   bool balance_on = true;
   int min_loops = 1;  ///< Loops in use between two robots before they count as merged.
   CycleConfig cycles;
-  double one_place_m = 4.0;  ///< Comparisons of several pairs this near to one another count once.
   PcmConfig pcm;
   GncConfig gnc;
 };
@@ -63,8 +61,7 @@ struct PairOutcome {
   std::size_t second_clique = 0;  ///< PCM's largest clique disjoint from it.
   bool clique_exact = true;       ///< PCM proved both to be the largest.
   bool merged = false;
-  std::optional<MergeAccuracy> accuracy = {};  ///< By measure_merges.
-  std::string joined_reason;  ///< One sentence where several pairs together had enough evidence; else "".
+  std::optional<MergeAccuracy> accuracy = {};       ///< By measure_merges.
   RefusalKind refused_kind = RefusalKind::unknown;  ///< Where it is not merged.
   std::string refused_reason;                       ///< One sentence; "" when merged.
 };

@@ -56,8 +56,6 @@ std::string finding(const MergeCheck& check, std::size_t index) {
 std::string reason_of(const LoopOutcome& outcome, const MergeCheck* check,
                       std::optional<std::size_t> hypothesis, const PairOutcome* pair) {
   if (outcome.loop.verdict != LoopVerdict::accepted) return "not registered: " + outcome.loop.reason;
-  if (outcome.in_use() && pair != nullptr && !pair->joined_reason.empty())
-    return "in use: " + pair->joined_reason;
   if (outcome.in_use())
     return hypothesis ? "in use: " + finding(*check, *hypothesis)
                       : std::string("in use: agrees with the odometries and the other loops in use");
@@ -85,10 +83,7 @@ LoopAccount account_of(const LoopOutcome& outcome, const FleetGraph& fleet, cons
   if (check != nullptr && outcome.loop.verdict == LoopVerdict::accepted)
     account.hypothesis = hypothesis_of(*check, outcome.loop);
   const PairOutcome* pair = pair_of(solution, outcome.loop);
-  account.merge_check = check == nullptr                                  ? "none"
-                        : check->accepted                                 ? "accepted"
-                        : pair != nullptr && !pair->joined_reason.empty() ? "joined"
-                                                                          : "refused";
+  account.merge_check = check == nullptr ? "none" : check->accepted ? "accepted" : "refused";
   account.reason = reason_of(outcome, check, account.hypothesis, pair);
   return account;
 }

@@ -88,16 +88,6 @@ TEST(LoopAccount, ARefusedMergeSaysWhatItLacks) {
                 "hypothesis 2 rivals hypothesis 1 from 21 m away");
 }
 
-TEST(LoopAccount, ALoopOfPairsThatDecidedTogetherNamesThem) {
-  FleetSolution together = pair_with(1, "");
-  together.pairs[0].joined_reason =
-      "a-b (5.0) and a-c (4.0) say the same: evidence 9.3 together and 9.2 needed";
-  const LoopAccount account =
-      account_of(outcome_of(0, 0, true, 1.0), tested(HypothesisOutcome::unsure), together);
-  EXPECT_EQ(account.merge_check, "joined");
-  expect_reason(account, "in use: a-b (5.0) and a-c (4.0) say the same");
-}
-
 TEST(LoopAccount, ALoopOfAMergeThatWasTakenBackSaysSo) {
   const FleetGraph accepted = tested(HypothesisOutcome::accepted);
   const FleetSolution taken_back = pair_with(1, "taken back: misses by 34 m");

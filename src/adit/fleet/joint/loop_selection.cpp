@@ -6,7 +6,6 @@
 #include <set>
 
 #include "adit/core/format.hpp"
-#include "adit/fleet/joint/joint_evidence.hpp"
 #include "adit/fleet/joint/merge_cycles.hpp"
 
 namespace adit {
@@ -117,13 +116,15 @@ std::string taken_back(const FleetGraph& fleet, const std::vector<Merge>& merges
       has_least_evidence ? "has the least evidence of them" : "without it the others agree best");
 }
 
-std::string joined(const FleetGraph& fleet, const JointMerge& joint) {
-  std::string pairs;
-  for (const Merge& merge : joint.merges)
-    pairs += format("{}{}-{} ({:.1f})", pairs.empty() ? "" : " and ", fleet.robots.at(merge.a).name,
-                    fleet.robots.at(merge.b).name, merge.evidence);
-  return format("{} say the same: evidence {:.1f} together and {:.1f} needed", pairs, joint.evidence,
-                joint.needed);
+/// The hypothesis with those of its loops that are known, as are their keyframes.
+Merge merge_of(const FleetGraph& fleet, const MergeCheck& check, const MergeHypothesis& hypothesis) {
+  Merge merge{check.a, check.b, hypothesis.evidence, {}};
+  for (const auto& [a, b] : hypothesis.loops) {
+    const auto loop = fleet.loops.find({{check.a, a}, {check.b, b}});
+    if (loop != fleet.loops.end() && fleet.knows({check.a, a}) && fleet.knows({check.b, b}))
+      merge.loops.push_back(pcm_loop_of(loop->second));
+  }
+  return merge;
 }
 
 /// What scans refuted about pairs of robots that did not merge.
@@ -159,7 +160,6 @@ class MergeReview {
 
   /// Takes the loops of merges out that cycles of robots contradict.
   void take_back() {
-    std::set<std::size_t> gone;
     for (const Contradiction& contradiction :
          contradictions(merges_, refuted_hypotheses(fleet_), chains_, config_.cycles)) {
       const Merge& merge = merges_[contradiction.merge];
@@ -167,28 +167,7 @@ class MergeReview {
       outcome_of(merge).refused_reason = taken_back(fleet_, merges_, contradiction);
       for (const std::size_t l : selection_.of_pairs.at({merge.a, merge.b}))
         selection_.loops[l].is_selected = false;
-      gone.insert(contradiction.merge);
     }
-    std::vector<Merge> left;
-    for (std::size_t m = 0; m < merges_.size(); ++m)
-      if (!gone.contains(m)) left.push_back(std::move(merges_[m]));
-    merges_ = std::move(left);
-  }
-
-  /// Puts those in that have enough evidence only together.
-  void join() {
-    for (const JointMerge& joint : joint_merges(fleet_, merges_, chains_, config_))
-      for (const Merge& merge : joint.merges) {
-        PairOutcome& pair = outcome_of(merge);
-        std::set<std::pair<std::size_t, std::size_t>> ends;
-        for (const PcmLoop& loop : merge.loops) ends.emplace(loop.a, loop.b);
-        for (const std::size_t l : selection_.of_pairs.at({merge.a, merge.b})) {
-          const LoopClosure& loop = selection_.loops[l].loop;
-          selection_.loops[l].is_selected = ends.contains({loop.from.index, loop.to.index});
-        }
-        pair.num_selected = merge.loops.size();
-        pair.joined_reason = joined(fleet_, joint);
-      }
   }
 
  private:
@@ -201,7 +180,7 @@ class MergeReview {
   const BackEndConfig& config_;
   LoopSelection& selection_;
   Chains chains_;
-  std::vector<Merge> merges_;  ///< Those that stand.
+  std::vector<Merge> merges_;
 };
 
 }  // namespace
@@ -225,7 +204,6 @@ LoopSelection select_loops(const FleetGraph& fleet, const BackEndConfig& config)
   if (!is_adaptive) return selection;
   MergeReview review(fleet, chains, config, selection);
   if (config.cycles_needed) review.take_back();
-  if (config.joint_evidence) review.join();
   return selection;
 }
 

@@ -122,46 +122,4 @@ std::vector<Contradiction> contradictions(const std::vector<Merge>& merges, cons
   return out;
 }
 
-struct CycleCheck::Known {
-  const std::vector<Merge>& merges;
-  const Chains& chains;
-  CycleConfig config;
-  MergeGraph graph;
-  double scale;
-};
-
-CycleCheck::CycleCheck(const std::vector<Merge>& merges, const Chains& chains, const CycleConfig& config)
-    : known_(new Known{merges, chains, config, MergeGraph(merges), drift_scale(merges, chains, config)}) {}
-CycleCheck::~CycleCheck() = default;
-
-bool CycleCheck::agree(const Merge& one, const Merge& other) const {
-  const std::vector<Merge>& merges = known_->merges;
-  const MergeGraph& graph = known_->graph;
-  const auto path_between = [&](RobotId from, RobotId to) {
-    Robots path = graph.shortest_path(from, to);
-    std::ranges::reverse(path);
-    return path;
-  };
-  // From a robot of one group over `one` into the other group, and back over `other`.
-  Robots there = path_between(one.b, other.b);
-  Robots back = path_between(other.a, one.a);
-  if (there.empty() || back.empty()) {
-    there = path_between(one.b, other.a);
-    back = path_between(other.b, one.a);
-  }
-  if (there.empty() || back.empty()) return false;
-  Robots around{one.a};
-  std::vector<const Merge*> legs{&one};
-  const auto go_along = [&](const Robots& path) {
-    around.insert(around.end(), path.begin(), path.end());
-    for (const std::size_t m : graph.along_path(path)) legs.push_back(&merges[m]);
-  };
-  go_along(there);
-  legs.push_back(&other);
-  go_along(back);
-  around.pop_back();  // where it began
-  const Round round = Cycle(around, legs, known_->chains, known_->scale, known_->config).best();
-  return !round.contradicts() && round.miss_m <= known_->config.same_alignment_m;
-}
-
 }  // namespace adit

@@ -12,7 +12,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -42,23 +41,5 @@ struct Contradiction {
 [[nodiscard]] std::vector<Contradiction> contradictions(const std::vector<Merge>& merges,
                                                         const std::vector<Merge>& refuted,
                                                         const Chains& chains, const CycleConfig& config = {});
-
-/// Whether hypotheses about other pairs agree with one another, given the merges that stand.
-class CycleCheck {
- public:
-  /// Both must outlive it.
-  CycleCheck(const std::vector<Merge>& merges, const Chains& chains, const CycleConfig& config = {});
-  ~CycleCheck();
-  CycleCheck(const CycleCheck&) = delete;
-  CycleCheck& operator=(const CycleCheck&) = delete;
-
-  /// `one` and `other` are about two pairs of robots, each with one robot in either of two groups that merges
-  /// join. They agree when a cycle along both and through the groups ends near where it began.
-  [[nodiscard]] bool agree(const Merge& one, const Merge& other) const;
-
- private:
-  struct Known;
-  std::unique_ptr<const Known> known_;
-};
 
 }  // namespace adit

@@ -64,9 +64,6 @@ Fields fields_of(AdaptiveConfig& c) {
   Fields fields = fields_of(c.search);
   fields.push_back({"one_place_m", &c.one_place_m, "m", 0.1, 1000.0,
                     "loops whose keyframes stand farther apart are rejected: not one place"});
-  fields.push_back(
-      {"second_search_share", &c.second_search_share, "", 1, 1e6,
-       "the search goes on where at least one candidate in this many became a loop and all are refuted"});
   append(fields, "registration", fields_of(c.registration));
   append(fields, "submap", fields_of(c.submap));
   append(fields, "merge_check", fields_of(c.merge_check));

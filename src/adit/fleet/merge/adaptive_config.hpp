@@ -54,7 +54,6 @@ struct AdaptiveConfig {
   RegistrationConfig registration;
   SubmapConfig submap;
   double one_place_m = 10.0;
-  int second_search_share = 4;
   MergeCheckConfig merge_check;
 };
 /// The keys of `search` carry no prefix of their own.

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "adit/fleet/merge/evidence_model.hpp"
+#include "adit/fleet/merge/merge_evidence.hpp"
 #include "adit/fleet/sync/protocol.hpp"
 #include "adit/registration/relief.hpp"
 

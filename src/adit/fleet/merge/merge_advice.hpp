@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "adit/fleet/merge/discernment.hpp"
+#include "adit/fleet/merge/merge_evidence.hpp"
 #include "adit/fleet/sync/protocol.hpp"
 #include "adit/posegraph/pcm.hpp"
 

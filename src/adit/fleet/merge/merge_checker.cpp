@@ -258,7 +258,6 @@ MergeCheck MergeChecker::verdict(RobotId a, RobotId b, const std::string& remedy
     const bool has_rival = out.hypotheses.size() > 1 && out.hypotheses[1].outcome == HypothesisOutcome::rival;
     if (out.accepted) best.outcome = HypothesisOutcome::accepted;
     if (has_rival && best.evidence >= out.needed) best.outcome = HypothesisOutcome::rival;
-    out.goes_on = chances();
   }
   out.evidence = best.evidence;
   out.num_checked = best.num_checked;

@@ -3,6 +3,7 @@
 /// What the places at which two maps were compared say about one alignment of them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "adit/fleet/sync/protocol.hpp"
 
 namespace adit {
+
+/// P(the next distinctive place agrees | the alignment is wrong), after 0, 1-2, 3-6, 7-14, ... that agreed.
+using ChancesToGoOn = std::array<double, 8>;
 
 /// P(the next distinctive place agrees | look-alikes), after `passed` that agreed; within `least_chance` and
 /// `agreement_if_true` of kFleetEvidence.

@@ -11,11 +11,10 @@
 #include "adit/fleet/search/path.hpp"
 
 namespace adit {
+
 Fields fields_of(SearchConfig& c) {
   Fields fields = {
       {"candidates", &c.candidates, "", 1, 1e6, "candidates that are registered with each peer"},
-      {"further_candidates", &c.further_candidates, "", 0, 1e6,
-       "further candidates where the first led to many loops, all of which are refuted"},
       {"stand_out", &c.stand_out, "", 0, 0,
        "rank candidates by their distance over that to the most similar other place of the own map; "
        "otherwise by their distance"},
@@ -72,15 +71,8 @@ const std::vector<double>& CandidateSearch::self_distances() {
   return self_distances_;
 }
 
-RankedCandidates CandidateSearch::rank(std::vector<LoopCandidate> found) {
-  const auto num_first = static_cast<std::size_t>(config_.candidates);
-  const auto num_further = static_cast<std::size_t>(config_.further_candidates);
-  RankedCandidates ranked{standing_out(std::move(found), num_first + num_further), {}};
-  if (ranked.first.size() <= num_first) return ranked;
-  const auto further = ranked.first.begin() + static_cast<std::ptrdiff_t>(num_first);
-  ranked.further.assign(further, ranked.first.end());
-  ranked.first.erase(further, ranked.first.end());
-  return ranked;
+std::vector<LoopCandidate> CandidateSearch::most_promising(std::vector<LoopCandidate> found) {
+  return standing_out(std::move(found), static_cast<std::size_t>(config_.candidates));
 }
 
 std::vector<LoopCandidate> CandidateSearch::standing_out(std::vector<LoopCandidate> found, std::size_t num) {

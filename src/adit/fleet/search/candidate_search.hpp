@@ -19,7 +19,6 @@ namespace adit {
 
 struct SearchConfig {
   int candidates = 64;
-  int further_candidates = 40;
   bool stand_out = true;
   int of_a_place = 3;
   int place_keyframes = 6;
@@ -46,11 +45,6 @@ struct PeerPlaces {
                                                              const PlaceIndexConfig& place,
                                                              const Lanes& lanes = {});
 
-struct RankedCandidates {
-  std::vector<LoopCandidate> first;
-  std::vector<LoopCandidate> further;  ///< For a second search, where the loops among the first lead nowhere.
-};
-
 /// Ranks candidates by what the own map says about them. What it needs of the map is computed when first
 /// needed.
 class CandidateSearch {
@@ -62,8 +56,9 @@ class CandidateSearch {
   [[nodiscard]] Lanes lanes() const { return {config_.lanes, config_.lane_m}; }
   [[nodiscard]] const SelfSimilarity& self_similarity();
 
-  /// Of what `most_similar_places` found, those that stand out from look-alikes in the own map.
-  [[nodiscard]] RankedCandidates rank(std::vector<LoopCandidate> found);
+  /// Of what `most_similar_places` found, those that stand out most from look-alikes in the own map, at most
+  /// a few of each place.
+  [[nodiscard]] std::vector<LoopCandidate> most_promising(std::vector<LoopCandidate> found);
 
   /// Candidates within the own map.
   [[nodiscard]] std::vector<LoopCandidate> revisits();

@@ -44,12 +44,8 @@ class PeerSession {
   /// Hands the descriptors over to the search.
   [[nodiscard]] std::vector<Places::Place> take_places();
 
-  /// Candidates to register now, and those of a second search, should the first lead nowhere.
+  /// Candidates to register.
   void await_clouds_of(const std::vector<LoopCandidate>& candidates);
-  void keep_for_second_search(std::vector<LoopCandidate> candidates) {
-    second_search_ = std::move(candidates);
-  }
-  [[nodiscard]] std::vector<LoopCandidate> take_second_search() { return std::exchange(second_search_, {}); }
   [[nodiscard]] std::size_t num_waiting() const;
   /// The peer's keyframes whose clouds the merge check needs, in its order; none ends the comparison.
   void await_comparison_of(std::vector<std::uint32_t> keyframes) { to_compare_ = std::move(keyframes); }
@@ -75,7 +71,6 @@ class PeerSession {
   bool has_all_places_ = false;        ///< None of them is still to come.
   bool is_searched_ = false;
   std::map<std::uint32_t, std::vector<LoopCandidate>> waiting_;  ///< By the peer's keyframe.
-  std::vector<LoopCandidate> second_search_;
   std::vector<std::uint32_t> to_compare_;
 };
 

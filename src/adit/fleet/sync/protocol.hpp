@@ -18,7 +18,7 @@
 
 namespace adit {
 
-inline constexpr std::uint8_t kProtocolVersion = 8;
+inline constexpr std::uint8_t kProtocolVersion = 9;
 inline constexpr std::size_t kPlacesPerMessage = 64;
 inline constexpr std::size_t kCloudsPerMessage = 16;
 inline constexpr std::size_t kNodesPerMessage = 512;
@@ -111,9 +111,6 @@ enum class PlaceOutcome : std::uint8_t {
   distinctive,  ///< Agrees, and a displacement along the tunnel would have shown.
 };
 
-/// P(the next distinctive place agrees | the alignment is wrong), after 0, 1-2, 3-6, 7-14, ... that agreed.
-using ChancesToGoOn = std::array<double, 8>;
-
 /// A place of the claimed overlap: the keyframes that were compared there.
 struct TestedPlace {
   std::uint32_t a = 0;
@@ -173,7 +170,6 @@ struct MergeCheck {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> loops;  ///< Keyframes of a and b.
   std::string reason;                               ///< One sentence: why, and what would lead to a merge.
   std::vector<MergeHypothesis> hypotheses{};        ///< At most kHypothesesPerCheck, the best one first.
-  ChancesToGoOn goes_on{};                          ///< As robot a measured them on its own map.
   RefusalKind refused_kind = RefusalKind::unknown;  ///< Where it is not accepted.
   std::optional<MergeAdvice> advice = {};           ///< Where a place is known; `reason` names it.
 };
