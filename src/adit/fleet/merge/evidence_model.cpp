@@ -19,6 +19,7 @@ struct Origin {
 };
 
 constexpr std::string_view kChosen = "chosen: the rate that is aimed at";
+constexpr std::string_view kOfForty = "1410 false and 130 true hypotheses of 40 worlds (decision 0048)";
 constexpr std::string_view kTrueOfFive = "true pairs of five tuning worlds (decision 0043)";
 constexpr std::string_view kWalksOfFifteen =
     "106 first steps of look-alikes on 15 maps of five tuning worlds (decision 0043)";
@@ -32,9 +33,9 @@ constexpr std::string_view kOfWalls = "three tuning worlds (decision 0015)";
 constexpr std::array kOrigins = {
     Origin{"fleet.agreement_if_true", kTrueOfFive, "2026-11-25"},
     Origin{"fleet.least_chance", "places 3 m apart see in part the same (decision 0043)", "2026-11-25"},
-    Origin{"fleet.copied", kJudgement, "2026-11-25"},
+    Origin{"fleet.copied", kOfForty, "2026-11-25"},
     Origin{"fleet.copy_goes_on", kJudgement, "2026-11-25"},
-    Origin{"error_rate", kChosen, "2026-11-21"},
+    Origin{"error_rate", kOfForty, "2026-11-25"},
     Origin{"refusal_rate", kChosen, "2026-11-21"},
     Origin{"refusal_rate_before_the_end", "chosen: asked after each of some 100 comparisons", "2026-11-21"},
     Origin{"usual_share", kOfScans, "2026-11-21"},
@@ -48,8 +49,8 @@ constexpr std::array kOrigins = {
     Origin{"structure_reach_m", kLining, "2026-11-24"},
     Origin{"thing_reach_m", kVehicle, "2026-11-24"},
     Origin{"changes_at_worst_per_km", kThings, "2026-11-24"},
-    Origin{"things_per_km", kThings, "2026-11-24"},
-    Origin{"things_elsewhere_per_km", kThings, "2026-11-24"},
+    Origin{"things_per_km", kOfForty, "2026-11-25"},
+    Origin{"things_elsewhere_per_km", kOfForty, "2026-11-25"},
     Origin{"things_speak_at_most", "chosen: they come and go (decision 0043)", "2026-11-25"},
     Origin{"walls.same_share", kOfWalls, "2026-11-22"},
     Origin{"walls.same_sigma", kOfWalls, "2026-11-22"},
@@ -85,7 +86,8 @@ double number_of(const Field& field) {
 
 Fields fields_of(EvidenceModel& c) {
   Fields fields = {
-      {"error_rate", &c.error_rate, "", 1e-12, 0.5, "chance that a wrong merge passes"},
+      {"error_rate", &c.error_rate, "", 1e-12, 0.5,
+       "largest chance that a wrong merge passes, by this model; what was measured is below (decision 0048)"},
       {"refusal_rate", &c.refusal_rate, "", 1e-12, 0.5,
        "chance that a true merge is refused because scans or walls differ"},
       {"refusal_rate_before_the_end", &c.refusal_rate_before_the_end, "", 1e-12, 0.5,

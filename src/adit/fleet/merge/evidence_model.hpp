@@ -19,13 +19,13 @@ namespace adit {
 struct FleetEvidence {
   double agreement_if_true = 0.95;
   double least_chance = 0.2;
-  double copied = 0.001;
+  double copied = 0.002;
   double copy_goes_on = 0.95;
 };
 inline constexpr FleetEvidence kFleetEvidence;
 
 struct EvidenceModel {
-  double error_rate = 1e-3;
+  double error_rate = 5e-3;
   double refusal_rate = 0.01;
   double refusal_rate_before_the_end = 1e-4;
 
@@ -42,8 +42,8 @@ struct EvidenceModel {
   double structure_reach_m = 10.0;
   double thing_reach_m = 5.0;
   double changes_at_worst_per_km = 20.0;
-  double things_per_km = 40.0;
-  double things_elsewhere_per_km = 120.0;
+  double things_per_km = 75.0;
+  double things_elsewhere_per_km = 117.0;
   double things_speak_at_most = 1.0;
 
   ReliefModel walls = {};

@@ -108,7 +108,7 @@ TEST(MergeChecker, WallsCountWhereOwnLookAlikesHaveOthers) {
   const auto check = [&](int num_equal, double share_of_others) {
     EqualSignShares shares;
     for (int i = 0; i < 10; ++i) shares.add_other({1000, share_of_others, 0.015});
-    MergeChecker checker = checker_of(kTrueLoops, measured(look_alikes(0.8), shares), {});
+    MergeChecker checker = checker_of(kTrueLoops, measured(look_alikes(0.85), shares), {});
     return run(checker, [&](const PlannedComparison& c) { return with_offsets(c.theirs, num_equal); });
   };
   EXPECT_FALSE(check(50, 0.51).accepted) << "look-alikes go on for long, and their walls are the same";
@@ -203,7 +203,7 @@ TEST(MergeChecker, PlacesThatAgreeJoinTheMaps) {
   EXPECT_TRUE(check.accepted) << check.reason;
   EXPECT_EQ(check.num_passed, check.num_checked);
   EXPECT_NEAR(check.evidence, check.num_checked * std::log(kFleetEvidence.agreement_if_true / 0.5), 1e-9);
-  EXPECT_NEAR(check.needed, std::log(1e3), 1e-9);
+  EXPECT_NEAR(check.needed, std::log(200.0), 1e-9);
   const std::vector<std::pair<std::uint32_t, std::uint32_t>> loops = {{80, 119}, {90, 109}, {100, 99}};
   EXPECT_EQ(check.loops, loops);
   ASSERT_EQ(check.hypotheses.size(), 1U);
