@@ -51,6 +51,8 @@ void add_recording_options(const Command& command, RecordingConfig& config) {
 
 Result<Recording> open_input(const std::string& input, const RecordingConfig& config) {
   return open_recording(input, config).map([&](Recording recording) {
+    for (const std::string& warning : recording.warnings)
+      std::fprintf(stderr, "adit: %s: warning: %s\n", input.c_str(), warning.c_str());
     for (const std::string& assumption : recording.assumptions)
       std::fprintf(stderr, "adit: %s: assumed %s\n", input.c_str(), assumption.c_str());
     return recording;

@@ -11,7 +11,7 @@
 #include "adit/core/parallel.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/io/atomic_file.hpp"
-#include "adit/io/mcap.hpp"
+#include "adit/io/bag_recording.hpp"
 #include "adit/io/tum.hpp"
 #include "adit/io/world_files.hpp"
 #include "adit/slam/naming.hpp"

@@ -4,7 +4,7 @@
 /// where the sensor stood, and no format may lose it.
 #include <gtest/gtest.h>
 
-#include "adit/io/mcap.hpp"
+#include "adit/io/bag_recording.hpp"
 #include "adit/io/recording_files.hpp"
 #include "adit/io/scan_folder.hpp"
 #include "examples/simulated.hpp"

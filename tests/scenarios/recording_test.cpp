@@ -3,7 +3,7 @@
 /// A simulated recording on disk is the recording itself, to the last bit.
 #include <gtest/gtest.h>
 
-#include "adit/io/mcap.hpp"
+#include "adit/io/bag_recording.hpp"
 #include "adit/io/recording_files.hpp"
 #include "adit/odometry/kiss_icp.hpp"
 #include "adit/simulation/scenario.hpp"

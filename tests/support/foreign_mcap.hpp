@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "adit/core/rng.hpp"
-#include "adit/io/mcap.hpp"
+#include "adit/io/bag_recording.hpp"
 #include "adit/io/mcap_records.hpp"
 #include "adit/io/ros_messages.hpp"
 
@@ -88,8 +88,9 @@ class ForeignFile {
     message(channel(3, "/tf_static"), make_scan(0, 0).stamp, ros::encode_transforms(transforms));
     return *this;
   }
+  [[nodiscard]] std::string bytes() const { return plain_file(records_); }
   [[nodiscard]] Result<Recording> read(const RecordingConfig& config = {}) const {
-    return read_recording(memory_source(plain_file(records_)), config);
+    return read_recording(memory_source(bytes()), config);
   }
 
  private:

@@ -95,6 +95,7 @@ struct Recording {
   Pose T_base_lidar;         ///< The mount: where the LiDAR sits on the robot.
   std::string mount_source;  ///< How the mount is known, for people: "/tf_static: base_link -> os_lidar".
   std::vector<std::string> assumptions;                ///< By the reader, a sentence each with its remedy.
+  std::vector<std::string> warnings;                   ///< What could not be read, a sentence each.
   std::vector<Stamp> scan_stamps;                      ///< Strictly ascending.
   std::function<Result<Scan>(std::size_t)> read_scan;  ///< Thread-safe; scan i has stamp scan_stamps[i].
   Trajectory wheel;                                    ///< T_wheelodom_base; empty when there are no wheels.

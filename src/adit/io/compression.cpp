@@ -60,6 +60,15 @@ std::string compress_zstd(std::string_view bytes) {
   return out;
 }
 
+bool is_zstd(std::string_view bytes) { return bytes.starts_with("\x28\xB5\x2F\xFD"); }
+
+Result<std::string> decompress_zstd_frame(std::string_view bytes) {
+  const unsigned long long stated = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
+  if (stated == ZSTD_CONTENTSIZE_ERROR || stated == ZSTD_CONTENTSIZE_UNKNOWN)
+    return fail("a zstd frame that does not state its size");
+  return decompress(bytes, "zstd", stated);
+}
+
 Result<std::string> decompress(std::string_view bytes, std::string_view compression, std::size_t size) {
   if (size > kLargest) return fail(format("{} uncompressed bytes are announced; 1 GiB is the most", size));
   if (compression == "zstd") return decompress_zstd(bytes, size);

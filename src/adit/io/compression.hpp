@@ -17,6 +17,11 @@ namespace adit {
 /// Exactly `size` bytes, or an error; `size` above 1 GiB is refused as damage.
 Result<std::string> decompress(std::string_view bytes, std::string_view compression, std::size_t size);
 
+/// Whether the bytes begin as a zstd frame does.
+[[nodiscard]] bool is_zstd(std::string_view bytes);
+/// A zstd frame that states its own size, at most 1 GiB.
+Result<std::string> decompress_zstd_frame(std::string_view bytes);
+
 /// LZF, as in PCD's binary_compressed.
 [[nodiscard]] std::string compress_lzf(std::string_view bytes);
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <variant>
 
+#include "adit/io/bag.hpp"
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/g2o.hpp"
 #include "adit/io/jrl.hpp"
@@ -147,6 +148,7 @@ Json recording_json(const Recording& recording) {
             {"mount", mount_text(recording.T_base_lidar)},
             {"mount_from", recording.mount_source},
             {"assumed", recording.assumptions},
+            {"warnings", recording.warnings},
             {"scans", recording.num_scans()},
             {"first_stamp_s", stamp_text(recording.scan_stamps.front())},
             {"last_stamp_s", stamp_text(recording.scan_stamps.back())}};
@@ -159,7 +161,7 @@ Json recording_json(const Recording& recording) {
 }
 
 /// What any MCAP file holds, whether or not it is a recording that adit can use.
-Result<Json> topics_info(const fs::path& path) {
+Result<Json> mcap_topics_info(const fs::path& path) {
   const Result<ByteSource> source = open_source(path);
   if (!source) return tl::unexpected(source.error());
   const Result<mcap::Reader> reader = mcap::Reader::open(*source);
@@ -182,8 +184,28 @@ Result<Json> topics_info(const fs::path& path) {
               {"topics", topics}};
 }
 
-Result<Json> mcap_info(const fs::path& path, const RecordingConfig& config) {
-  return topics_info(path).map([&](Json info) {
+/// The same of a bag of any storage.
+Result<Json> bag_topics_info(const fs::path& path) {
+  return open_bag(path).map([](const Bag& bag) {
+    std::vector<std::size_t> counts(bag.topics.size(), 0);
+    for (const BagMessage& message : bag.messages) ++counts[message.topic];
+    Json topics = Json::array();
+    for (std::size_t i = 0; i < bag.topics.size(); ++i)
+      topics.push_back({{"topic", bag.topics[i].name},
+                        {"type", bag.topics[i].type},
+                        {"encoding", bag.topics[i].encoding},
+                        {"messages", counts[i]}});
+    return Json{{"kind", "bag"},
+                {"storage", bag.storage},
+                {"files", bag.num_files},
+                {"messages", bag.messages.size()},
+                {"topics", topics}};
+  });
+}
+
+/// With what adit makes of it, or why it cannot use it.
+Result<Json> with_recording(Result<Json> topics, const fs::path& path, const RecordingConfig& config) {
+  return std::move(topics).map([&](Json info) {
     const Result<Recording> recording = open_recording(path.string(), config);
     if (recording) {
       info.update(recording_json(*recording));
@@ -209,13 +231,15 @@ Result<Json> session_info(const fs::path& path) {
 
 Result<Json> folder_info(const fs::path& path, const RecordingConfig& config) {
   if (fs::exists(path / "session.toml")) return session_info(path);
+  if (is_bag_folder(path)) return with_recording(bag_topics_info(path), path, config);
   return open_recording(path.string(), config).map(recording_json);
 }
 
 Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
   if (fs::is_directory(path)) return folder_info(path, config);
   const std::string extension = lower_case(path.extension().string());
-  if (extension == ".mcap") return mcap_info(path, config);
+  if (extension == ".mcap") return with_recording(mcap_topics_info(path), path, config);
+  if (extension == ".db3") return with_recording(bag_topics_info(path), path, config);
   if (extension == ".pcd" || extension == ".bin") return cloud_info(path);
   if (extension == ".ply") return ply_info(path);
   if (extension == ".obj" || extension == ".stl" || extension == ".dae" || extension == ".glb")
@@ -227,8 +251,9 @@ Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
   if (fs::is_regular_file(path)) {
     return fail(
         path.string() +
-        ": not a kind of file that adit knows; it knows .mcap, clouds and meshes (.pcd .ply .bin .obj .stl "
-        ".dae .glb), .tum, .g2o, .jrl, routes (.yaml) and folders of scans or of a session");
+        ": not a kind of file that adit knows; it knows .mcap, .db3, clouds and meshes (.pcd .ply .bin .obj "
+        ".stl "
+        ".dae .glb), .tum, .g2o, .jrl, routes (.yaml) and folders of scans, of a bag or of a session");
   }
   return open_recording(path.string(), config).map(recording_json);
 }

@@ -30,14 +30,13 @@ std::string_view missing_in(const ImuCovariance& covariance) {
 
 }  // namespace
 
-Result<ImuTrack> read_imu(const mcap::Reader& reader, const std::vector<mcap::MessageRef>& messages) {
+Result<ImuTrack> read_imu(const Bag& bag, const std::vector<BagMessage>& messages) {
   ImuTrack track;
   LeftOut backward;
   LeftOut not_finite;
   for (std::size_t i = 0; i < messages.size(); ++i) {
-    const Result<ros::ImuMessage> imu = reader.read(messages[i]).and_then([](const mcap::Message& message) {
-      return ros::decode_imu(message.data);
-    });
+    const Result<ros::ImuMessage> imu =
+        bag.read(messages[i]).and_then([](const std::string& data) { return ros::decode_imu(data); });
     if (!imu) return fail(format("IMU, message {}", i), imu.error());
     if (i == 0) {
       track.frame = imu->frame;

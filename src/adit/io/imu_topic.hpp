@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// The messages of an IMU (sensor_msgs/msg/Imu) in an MCAP file.
+/// The messages of an IMU (sensor_msgs/msg/Imu) of a bag.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 #include "adit/core/records.hpp"
 #include "adit/core/result.hpp"
-#include "adit/io/mcap_reader.hpp"
+#include "adit/io/bag.hpp"
 
 namespace adit {
 
@@ -22,6 +22,6 @@ struct ImuTrack {
 /// Reads the messages in the order given. Samples whose stamps do not ascend or whose numbers are not finite
 /// are left out, as is an IMU that measures only rates or only accelerations; `remarks` says so. Fails when a
 /// message is damaged.
-Result<ImuTrack> read_imu(const mcap::Reader& reader, const std::vector<mcap::MessageRef>& messages);
+Result<ImuTrack> read_imu(const Bag& bag, const std::vector<BagMessage>& messages);
 
 }  // namespace adit

@@ -149,28 +149,39 @@ Result<> check_start(const ByteSource& source) {
   return {};
 }
 
-/// The file ends early: the error says where and how much is readable.
-tl::unexpected<Error> truncated(const ByteSource& source) {
-  Contents contents;
-  const Result<> scanned = scan_data(source, contents);
-  return fail(
-      format("byte {}: the file ends without a footer, as after an interrupted recording; {} messages are "
-             "readable{}: save them with 'mcap recover'",
-             source.size, contents.messages.size(), scanned ? "" : " (" + scanned.error().message + ")"));
+Result<> check_channels(const Contents& contents) {
+  for (const MessageRef& message : contents.messages) {
+    if (contents.channels.contains(message.channel_id)) continue;
+    return fail(format("a message refers to channel {}, which is not defined", message.channel_id));
+  }
+  return {};
 }
 
-Result<Footer> read_footer(const ByteSource& source) {
+/// What can be read of a file that ends early.
+Result<Contents> contents_before_cut(const ByteSource& source) {
+  Contents contents;
+  const Result<> scanned = scan_data(source, contents);
+  contents.torn = scanned ? format("byte {}: the file ends without a footer", source.size)
+                          : format("the file breaks off: {}", scanned.error().message);
+  if (contents.messages.empty()) return fail(format("{}, and no message is whole", contents.torn));
+  return check_channels(contents).map([&] { return std::move(contents); });
+}
+
+/// Nothing where the file ends early.
+Result<std::optional<Footer>> read_footer(const ByteSource& source) {
   constexpr std::uint64_t kTail = kFooterSize + kMagic.size();
-  if (source.size < kMagic.size() + kTail) return truncated(source);
+  if (source.size < kMagic.size() + kTail) return std::nullopt;
   const std::uint64_t offset = source.size - kTail;
   const Result<std::string> tail = source.read(offset, kTail);
   if (!tail) return tl::unexpected(tail.error());
-  if (!tail->ends_with(kMagic)) return truncated(source);
+  if (!tail->ends_with(kMagic)) return std::nullopt;
   RecordCursor cursor(*tail);
   const std::optional<RecordView> record = cursor.next();
   if (!record || record->opcode != Opcode::footer)
     return fail_at(offset, "no footer before the closing magic bytes");
-  return decode_at<Footer>(offset, record->content, "footer");
+  return decode_at<Footer>(offset, record->content, "footer").map([](const Footer& footer) {
+    return std::optional(footer);
+  });
 }
 
 /// The bytes of the summary, checked.
@@ -266,14 +277,6 @@ bool is_complete(const Contents& contents) {
   });
 }
 
-Result<> check_channels(const Contents& contents) {
-  for (const MessageRef& message : contents.messages) {
-    if (contents.channels.contains(message.channel_id)) continue;
-    return fail(format("a message refers to channel {}, which is not defined", message.channel_id));
-  }
-  return {};
-}
-
 Result<Contents> read_contents(const ByteSource& source, const Footer& footer) {
   if (footer.summary_start != 0) {
     Result<Contents> contents = contents_from_summary(source, footer);
@@ -295,9 +298,10 @@ struct Reader::Cache {
 
 Result<Reader> Reader::open(ByteSource source) {
   if (Result<> start = check_start(source); !start) return tl::unexpected(start.error());
-  const Result<Footer> footer = read_footer(source);
+  const Result<std::optional<Footer>> footer = read_footer(source);
   if (!footer) return tl::unexpected(footer.error());
-  return read_contents(source, *footer).map([&](Contents contents) {
+  Result<Contents> found = *footer ? read_contents(source, **footer) : contents_before_cut(source);
+  return std::move(found).map([&](Contents contents) {
     std::ranges::stable_sort(contents.messages, {}, &MessageRef::log_time);
     return Reader(std::move(source), std::move(contents));
   });

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "adit/core/result.hpp"
@@ -30,12 +31,14 @@ struct Contents {
   std::vector<Metadata> metadata;
   std::vector<ChunkIndex> chunks;
   std::vector<MessageRef> messages;  ///< By log time; equal times in file order.
+  std::string torn;                  ///< Where the file breaks off and why; "" where it is whole.
 };
 
 class Reader {
  public:
-  /// Opens a complete file. Errors name the byte offset: no MCAP file, damaged summary, checksums that
-  /// differ. A file that ends early (no footer) is refused with the number of messages in front of the cut.
+  /// Errors name the byte offset: no MCAP file, damaged summary, checksums that differ. Of a file that ends
+  /// early (no footer), as after an interrupted recording, the whole records in front of the cut are read;
+  /// none is an error.
   static Result<Reader> open(ByteSource source);
 
   [[nodiscard]] const Contents& contents() const { return contents_; }

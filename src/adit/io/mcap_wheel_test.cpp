@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "adit/io/mcap.hpp"
+#include "adit/io/bag_recording.hpp"
 #include "support/files.hpp"
 #include "support/foreign_mcap.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-#include "adit/io/mcap.hpp"
+#include "adit/io/bag_recording.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -10,7 +10,6 @@
 #include "adit/core/format.hpp"
 #include "adit/io/frame_tree.hpp"
 #include "adit/io/imu_topic.hpp"
-#include "adit/io/mcap_reader.hpp"
 #include "adit/io/ros_messages.hpp"
 #include "adit/io/text.hpp"
 #include "adit/io/tum.hpp"
@@ -19,14 +18,15 @@
 namespace adit {
 namespace {
 
-using mcap::MessageRef;
+/// Indices into Bag::topics.
+using TopicIndices = std::vector<std::size_t>;
 
 struct Topics {
-  std::vector<mcap::Channel> points;
-  std::vector<mcap::Channel> wheel;
-  std::vector<mcap::Channel> truth;
-  std::vector<mcap::Channel> imu;
-  std::vector<mcap::Channel> transforms;
+  TopicIndices points;
+  TopicIndices wheel;
+  TopicIndices truth;
+  TopicIndices imu;
+  TopicIndices transforms;
 };
 
 /// Whether "gt", "truth" or "groundtruth" is a whole word of the topic: "/robot_0/ground_truth" is ground
@@ -41,30 +41,28 @@ bool is_truth(const std::string& topic) {
   });
 }
 
-Topics find_topics(const mcap::Contents& contents) {
+Topics find_topics(const Bag& bag) {
   Topics topics;
-  for (const auto& [id, channel] : contents.channels) {
-    const auto schema = contents.schemas.find(channel.schema_id);
-    if (schema == contents.schemas.end() || channel.message_encoding != "cdr") continue;
-    const std::string& type = schema->second.name;
-    if (type == ros::kPointCloud2) topics.points.push_back(channel);
-    if (type == ros::kImu) topics.imu.push_back(channel);
-    if (type == ros::kOdometry) (is_truth(channel.topic) ? topics.truth : topics.wheel).push_back(channel);
-    if (type == ros::kTransforms && channel.topic.ends_with("tf_static"))
-      topics.transforms.push_back(channel);
+  for (std::size_t i = 0; i < bag.topics.size(); ++i) {
+    const auto& [name, type, encoding] = bag.topics[i];
+    if (encoding != "cdr") continue;
+    if (type == ros::kPointCloud2) topics.points.push_back(i);
+    if (type == ros::kImu) topics.imu.push_back(i);
+    if (type == ros::kOdometry) (is_truth(name) ? topics.truth : topics.wheel).push_back(i);
+    if (type == ros::kTransforms && name.ends_with("tf_static")) topics.transforms.push_back(i);
   }
   return topics;
 }
 
-std::string names_of(const std::vector<mcap::Channel>& channels) {
+std::string names_of(const Bag& bag, const TopicIndices& topics) {
   std::vector<std::string> names;
-  for (const mcap::Channel& channel : channels) names.push_back(channel.topic);
+  for (const std::size_t topic : topics) names.push_back(bag.topics[topic].name);
   return format("{}", fmt::join(names, ", "));
 }
 
-Result<> check_single(const std::vector<mcap::Channel>& channels, std::string_view what) {
-  if (channels.size() < 2) return {};
-  return fail(format("several topics of {}: {}; keep one of them in the file", what, names_of(channels)));
+Result<> check_single(const Bag& bag, const TopicIndices& topics, std::string_view what) {
+  if (topics.size() < 2) return {};
+  return fail(format("several topics of {}: {}; keep one of them in the file", what, names_of(bag, topics)));
 }
 
 /// How people choose one of several topics.
@@ -75,45 +73,44 @@ struct TopicChoice {
 };
 
 /// Leaves the topic asked for, or the only one, if there is any.
-Result<> choose_one(std::vector<mcap::Channel>& channels, const TopicChoice& choice) {
-  const std::string all = names_of(channels);
+Result<> choose_one(const Bag& bag, TopicIndices& topics, const TopicChoice& choice) {
+  const std::string all = names_of(bag, topics);
   if (!choice.topic.empty())
-    std::erase_if(channels, [&](const mcap::Channel& channel) { return channel.topic != choice.topic; });
-  if (channels.empty() && !choice.topic.empty()) {
+    std::erase_if(topics, [&](std::size_t topic) { return bag.topics[topic].name != choice.topic; });
+  if (topics.empty() && !choice.topic.empty()) {
     return fail(format("no {} topic '{}'; there {}", choice.type, choice.topic,
                        all.empty() ? "is none" : "are: " + all));
   }
-  if (channels.size() < 2) return {};
+  if (topics.size() < 2) return {};
   return fail(format("several topics of {}: {}; choose one with {} TOPIC", choice.type, all, choice.option));
 }
 
 /// Leaves one topic of clouds and at most one of each other kind.
-Result<Topics> choose_topics(Topics topics, const RecordingConfig& config) {
+Result<Topics> choose_topics(const Bag& bag, const RecordingConfig& config) {
+  Topics topics = find_topics(bag);
   if (topics.points.empty())
     return fail("no topic of sensor_msgs/msg/PointCloud2 in CDR; there are no scans to read");
   if (config.imu == kNoImu) topics.imu.clear();
   const std::string imu = config.imu == kNoImu ? "" : config.imu;
   const bool has_wheels = config.wheel != kNoWheel;
-  return choose_one(topics.points, {"PointCloud2", "--points", config.points})
+  return choose_one(bag, topics.points, {"PointCloud2", "--points", config.points})
       .and_then([&] {
-        return choose_one(topics.imu, {"Imu", "--imu", imu});
+        return choose_one(bag, topics.imu, {"Imu", "--imu", imu});
       })
       .and_then([&]() -> Result<> {
         if (!has_wheels) return {};
-        return choose_one(topics.wheel, {"wheel odometry", "--wheel", config.wheel});
+        return choose_one(bag, topics.wheel, {"wheel odometry", "--wheel", config.wheel});
       })
-      .and_then([&] { return check_single(topics.truth, "ground truth"); })
+      .and_then([&] { return check_single(bag, topics.truth, "ground truth"); })
       .map([&] { return std::move(topics); });
 }
 
-std::vector<MessageRef> messages_of(const mcap::Contents& contents,
-                                    const std::vector<mcap::Channel>& channels) {
-  std::vector<MessageRef> refs;
-  std::ranges::copy_if(contents.messages, std::back_inserter(refs), [&](const MessageRef& ref) {
-    return std::ranges::any_of(channels,
-                               [&](const mcap::Channel& channel) { return channel.id == ref.channel_id; });
+std::vector<BagMessage> messages_of(const Bag& bag, const TopicIndices& topics) {
+  std::vector<BagMessage> messages;
+  std::ranges::copy_if(bag.messages, std::back_inserter(messages), [&](const BagMessage& message) {
+    return std::ranges::find(topics, message.topic) != topics.end();
   });
-  return refs;
+  return messages;
 }
 
 struct PoseTrack {
@@ -132,12 +129,12 @@ void take_covariance(WheelCovariance& kept, const WheelCovariance& stated, bool 
     kept.twist = stated.twist;
 }
 
-Result<PoseTrack> read_poses(const mcap::Reader& reader, const std::vector<mcap::Channel>& channels) {
+Result<PoseTrack> read_poses(const Bag& bag, const TopicIndices& topics) {
   PoseTrack track;
-  for (const MessageRef& ref : messages_of(reader.contents(), channels)) {
-    const Result<ros::OdometryMessage> pose = reader.read(ref).and_then(
-        [](const mcap::Message& message) { return ros::decode_odometry(message.data); });
-    const std::string place = format("{}, message {}", channels.front().topic, track.poses.size());
+  for (const BagMessage& message : messages_of(bag, topics)) {
+    const Result<ros::OdometryMessage> pose =
+        bag.read(message).and_then([](const std::string& data) { return ros::decode_odometry(data); });
+    const std::string place = format("{}, message {}", names_of(bag, topics), track.poses.size());
     if (!pose) return fail(place, pose.error());
     if (!track.poses.empty() && pose->pose.stamp <= track.poses.back().stamp) {
       return fail(format("{}: stamp {} is not after {}, that of the one before", place,
@@ -152,26 +149,24 @@ Result<PoseTrack> read_poses(const mcap::Reader& reader, const std::vector<mcap:
 
 /// adit's own files are logged at the scan's stamp; others when a scan arrived, so each message must be
 /// looked into.
-Result<std::vector<Stamp>> read_stamps(const mcap::Reader& reader, const std::vector<MessageRef>& scans,
-                                       bool is_own) {
+Result<std::vector<Stamp>> read_stamps(const Bag& bag, const std::vector<BagMessage>& scans) {
   std::vector<Stamp> stamps;
-  for (const MessageRef& ref : scans) {
+  for (const BagMessage& scan : scans) {
     const Result<Stamp> stamp =
-        is_own ? ref.log_time : reader.read(ref).and_then([](const mcap::Message& message) {
-          return ros::decode_stamp(message.data);
-        });
+        bag.own ? scan.log_time
+                : bag.read(scan).and_then([](const std::string& data) { return ros::decode_stamp(data); });
     if (!stamp) return fail(format("scan {}", stamps.size()), stamp.error());
     stamps.push_back(*stamp);
   }
   return stamps;
 }
 
-Result<FrameTree> read_frames(const mcap::Reader& reader, const Topics& topics) {
+Result<FrameTree> read_frames(const Bag& bag, const Topics& topics) {
   FrameTree tree;
-  for (const MessageRef& ref : messages_of(reader.contents(), topics.transforms)) {
-    const auto transforms = reader.read(ref).and_then(
-        [](const mcap::Message& message) { return ros::decode_transforms(message.data); });
-    if (!transforms) return fail(topics.transforms.front().topic, transforms.error());
+  for (const BagMessage& message : messages_of(bag, topics.transforms)) {
+    const auto transforms =
+        bag.read(message).and_then([](const std::string& data) { return ros::decode_transforms(data); });
+    if (!transforms) return fail(bag.topics[message.topic].name, transforms.error());
     for (const ros::TransformMessage& link : *transforms)
       tree.add(link.frame, link.child, link.pose.T_world_body);
   }
@@ -179,16 +174,14 @@ Result<FrameTree> read_frames(const mcap::Reader& reader, const Topics& topics) 
 }
 
 /// The robot's frame as topics of wheel odometry name it that are not used; "" where they differ.
-Result<std::string> body_frame(const mcap::Reader& reader, const std::vector<mcap::Channel>& channels) {
+Result<std::string> body_frame(const Bag& bag, const TopicIndices& topics) {
   std::string body;
-  for (const mcap::Channel& channel : channels) {
-    const std::vector<MessageRef> messages = messages_of(reader.contents(), {channel});
+  for (const std::size_t topic : topics) {
+    const std::vector<BagMessage> messages = messages_of(bag, {topic});
     if (messages.empty()) continue;
     const Result<ros::OdometryMessage> first =
-        reader.read(messages.front()).and_then([](const auto& message) {
-          return ros::decode_odometry(message.data);
-        });
-    if (!first) return fail(format("{}, message 0", channel.topic), first.error());
+        bag.read(messages.front()).and_then([](const auto& data) { return ros::decode_odometry(data); });
+    if (!first) return fail(format("{}, message 0", bag.topics[topic].name), first.error());
     if (!body.empty() && FrameTree::bare(body) != FrameTree::bare(first->child)) return std::string();
     body = first->child;
   }
@@ -264,43 +257,34 @@ Result<> take_mounts(Recording& recording, const FrameTree& tree, const FrameNam
   return {};
 }
 
-Result<ros::CloudMessage> read_cloud_message(const mcap::Reader& reader, const MessageRef& ref) {
-  return reader.read(ref).and_then(
-      [](const mcap::Message& message) { return ros::decode_cloud(message.data); });
+Result<ros::CloudMessage> read_cloud_message(const Bag& bag, const BagMessage& message) {
+  return bag.read(message).and_then([](const std::string& data) { return ros::decode_cloud(data); });
 }
 
 /// Name, sensor and assumptions: adit's own metadata say them. Elsewhere "/robot_0/points" is of robot_0.
-void take_metadata(Recording& recording, const mcap::Contents& contents, const std::string& topic) {
+void take_metadata(Recording& recording, const Bag& bag, const std::string& topic) {
   recording.name = topic.substr(topic.starts_with('/') ? 1 : 0);
   recording.name = recording.name.substr(0, recording.name.find('/'));
-  for (const mcap::Metadata& metadata : contents.metadata) {
-    if (metadata.name != "adit") continue;
-    const auto take = [&](const char* key, std::string& target) {
-      if (const auto entry = metadata.entries.find(key); entry != metadata.entries.end())
-        target = entry->second;
-    };
-    take("robot", recording.name);
-    take("lidar", recording.lidar);
-    take("imu", recording.imu_name);
-    std::string assumed;
-    take("assumed", assumed);
-    recording.assumptions = lines_of(assumed);
-  }
+  recording.warnings = bag.warnings;
+  if (!bag.own) return;
+  const auto take = [&](const char* key, std::string& target) {
+    if (const auto entry = bag.own->find(key); entry != bag.own->end()) target = entry->second;
+  };
+  take("robot", recording.name);
+  take("lidar", recording.lidar);
+  take("imu", recording.imu_name);
+  std::string assumed;
+  take("assumed", assumed);
+  recording.assumptions = lines_of(assumed);
 }
 
-bool is_own_file(const mcap::Contents& contents) {
-  return std::ranges::any_of(contents.metadata,
-                             [](const mcap::Metadata& metadata) { return metadata.name == "adit"; });
-}
-
-/// Scans are decoded when asked for; the reader lives as long as the function.
-std::function<Result<Scan>(std::size_t)> scan_reader(std::shared_ptr<const mcap::Reader> reader,
-                                                     std::vector<MessageRef> scans,
+std::function<Result<Scan>(std::size_t)> scan_reader(std::shared_ptr<const Bag> bag,
+                                                     std::vector<BagMessage> scans,
                                                      std::vector<Stamp> stamps) {
-  return [reader = std::move(reader), scans = std::move(scans),
+  return [bag = std::move(bag), scans = std::move(scans),
           stamps = std::move(stamps)](std::size_t i) -> Result<Scan> {
     ADIT_CHECK(i < scans.size(), "no scan of that index");
-    Result<ros::CloudMessage> message = read_cloud_message(*reader, scans[i]);
+    Result<ros::CloudMessage> message = read_cloud_message(*bag, scans[i]);
     if (!message) return fail(format("scan {}", i), message.error());
     if (message->scan.stamp != stamps[i]) return fail(format("scan {}: its stamp differs from the index", i));
     return std::move(message->scan);
@@ -316,37 +300,32 @@ struct Tracks {
 };
 
 /// Without wheels (`kNoWheel`) only the frame that they are of.
-Result<PoseTrack> read_wheels(const mcap::Reader& reader, const Topics& topics,
-                              const RecordingConfig& config) {
-  if (config.wheel != kNoWheel) return read_poses(reader, topics.wheel);
-  return body_frame(reader, topics.wheel).map([](std::string&& child) {
+Result<PoseTrack> read_wheels(const Bag& bag, const Topics& topics, const RecordingConfig& config) {
+  if (config.wheel != kNoWheel) return read_poses(bag, topics.wheel);
+  return body_frame(bag, topics.wheel).map([](std::string&& child) {
     return PoseTrack{{}, std::move(child), {}};
   });
 }
 
-Result<Tracks> read_tracks(const mcap::Reader& reader, const Topics& topics, const RecordingConfig& config) {
-  const mcap::Contents& contents = reader.contents();
-  Result<PoseTrack> wheel = read_wheels(reader, topics, config);
+Result<Tracks> read_tracks(const Bag& bag, const Topics& topics, const RecordingConfig& config) {
+  Result<PoseTrack> wheel = read_wheels(bag, topics, config);
   if (!wheel) return tl::unexpected(wheel.error());
-  Result<PoseTrack> truth = read_poses(reader, topics.truth);
+  Result<PoseTrack> truth = read_poses(bag, topics.truth);
   if (!truth) return tl::unexpected(truth.error());
-  Result<ImuTrack> imu = read_imu(reader, messages_of(contents, topics.imu));
+  Result<ImuTrack> imu = read_imu(bag, messages_of(bag, topics.imu));
   if (!imu) return tl::unexpected(imu.error());
-  return read_stamps(reader, messages_of(contents, topics.points), is_own_file(contents))
-      .map([&](std::vector<Stamp> stamps) {
-        return Tracks{std::move(stamps), std::move(*wheel), std::move(*truth), std::move(*imu)};
-      });
+  return read_stamps(bag, messages_of(bag, topics.points)).map([&](std::vector<Stamp> stamps) {
+    return Tracks{std::move(stamps), std::move(*wheel), std::move(*truth), std::move(*imu)};
+  });
 }
 
-Result<Recording> read_recording(const std::shared_ptr<const mcap::Reader>& reader,
-                                 const RecordingConfig& config) {
-  const mcap::Contents& contents = reader->contents();
-  const Result<Topics> topics = choose_topics(find_topics(contents), config);
+Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, const RecordingConfig& config) {
+  const Result<Topics> topics = choose_topics(*bag, config);
   if (!topics) return tl::unexpected(topics.error());
-  Result<Tracks> tracks = read_tracks(*reader, *topics, config);
+  Result<Tracks> tracks = read_tracks(*bag, *topics, config);
   if (!tracks) return tl::unexpected(tracks.error());
   Recording recording;
-  take_metadata(recording, contents, topics->points.front().topic);
+  take_metadata(recording, *bag, names_of(*bag, topics->points));
   recording.scan_stamps = std::move(tracks->scans);
   recording.wheel = std::move(tracks->wheel.poses);
   recording.wheel_covariance = tracks->wheel.covariance;
@@ -355,11 +334,11 @@ Result<Recording> read_recording(const std::shared_ptr<const mcap::Reader>& read
   recording.imu_covariance = tracks->imu.covariance;
   std::ranges::copy(tracks->imu.remarks, std::back_inserter(recording.assumptions));
   if (Result<> checked = check_fits_mcap(recording); !checked) return tl::unexpected(checked.error());
-  const std::vector<MessageRef> scans = messages_of(contents, topics->points);
-  recording.read_scan = scan_reader(reader, scans, recording.scan_stamps);
+  const std::vector<BagMessage> scans = messages_of(*bag, topics->points);
+  recording.read_scan = scan_reader(bag, scans, recording.scan_stamps);
   const Result<> mounted =
-      read_cloud_message(*reader, scans.front()).and_then([&](const ros::CloudMessage& first) {
-        return read_frames(*reader, *topics).and_then([&](const FrameTree& tree) {
+      read_cloud_message(*bag, scans.front()).and_then([&](const ros::CloudMessage& first) {
+        return read_frames(*bag, *topics).and_then([&](const FrameTree& tree) {
           return take_mounts(recording, tree, {tracks->wheel.child, first.frame, tracks->imu.frame}, config);
         });
       });
@@ -369,16 +348,20 @@ Result<Recording> read_recording(const std::shared_ptr<const mcap::Reader>& read
 
 }  // namespace
 
+Result<Recording> read_recording(Bag bag, const RecordingConfig& config) {
+  return recording_in(std::make_shared<const Bag>(std::move(bag)), config);
+}
+
 Result<Recording> read_recording(ByteSource source, const RecordingConfig& config) {
-  return mcap::Reader::open(std::move(source)).and_then([&](mcap::Reader reader) {
-    return read_recording(std::make_shared<const mcap::Reader>(std::move(reader)), config);
+  return open_mcap_bag(std::move(source)).and_then([&](Bag bag) {
+    return read_recording(std::move(bag), config);
   });
 }
 
 Result<Recording> read_recording(const std::filesystem::path& path, const RecordingConfig& config) {
-  const Result<ByteSource> source = open_source(path);
-  if (!source) return tl::unexpected(source.error());
-  Result<Recording> recording = read_recording(*source, config);
+  Result<Bag> bag = open_bag(path);
+  if (!bag) return tl::unexpected(bag.error());
+  Result<Recording> recording = read_recording(std::move(*bag), config);
   if (!recording) return fail(path.string(), recording.error());
   recording->read_scan = [read = std::move(recording->read_scan),
                           name = path.string()](std::size_t i) -> Result<Scan> {

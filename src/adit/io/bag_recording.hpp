@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// One robot's recording as an MCAP file (https://mcap.dev/spec, version 0) that ROS 2 tools and Foxglove can
-/// open: profile ros2, messages in CDR, zstd chunks, indexed.
+/// One robot's recording as a bag of ROS 2: an MCAP file, a .db3 file, or a folder of them (bag.hpp).
+///
+/// adit itself writes MCAP (https://mcap.dev/spec, version 0) that ROS 2 tools and Foxglove can open: profile
+/// ros2, messages in CDR, zstd chunks, indexed.
 ///
 ///     /ROBOT/points          sensor_msgs/msg/PointCloud2   x y z float32, [intensity float32],
 ///                                                          [t int32, ns from the stamp]
@@ -18,23 +20,25 @@
 
 #include "adit/core/records.hpp"
 #include "adit/core/result.hpp"
-#include "adit/io/byte_source.hpp"
+#include "adit/io/bag.hpp"
 #include "adit/io/mcap_output.hpp"
 #include "adit/io/mount.hpp"
 
 namespace adit {
 
-/// Opens a recording. Trajectories are read at once, scans when asked for, from any thread. Needs a complete
-/// file: one without footer (a recorder that was interrupted) is an error that names the place and counts the
-/// readable messages.
+/// Opens a recording. Trajectories are read at once, scans when asked for, from any thread. A file that was
+/// not finished is read as far as it goes, which `warnings` says.
 ///
-/// Of a file that adit did not write are taken: the only PointCloud2 topic, or the one that `config.points`
+/// Of a bag that adit did not write are taken: the only PointCloud2 topic, or the one that `config.points`
 /// names; the only Odometry topic that is not ground truth (its name has neither "truth", "groundtruth" nor
 /// "gt" as a whole word) for the wheels; and of /tf_static the chain of links from the wheels' frame to the
 /// LiDAR's, without wheels from base_footprint, base_link, base or the root. Without such a chain the mount
 /// is unknown, an error unless `config.mount` gives it. The IMU is the only Imu topic, or the one that
 /// `config.imu` names; without links to it, its mount is taken for the LiDAR's, which `assumptions` says.
-Result<Recording> read_recording(const std::filesystem::path& path, const RecordingConfig& config = {});
-Result<Recording> read_recording(ByteSource source, const RecordingConfig& config = {});
+[[nodiscard]] Result<Recording> read_recording(const std::filesystem::path& path,
+                                               const RecordingConfig& config = {});
+[[nodiscard]] Result<Recording> read_recording(Bag bag, const RecordingConfig& config = {});
+/// Of an MCAP file.
+[[nodiscard]] Result<Recording> read_recording(ByteSource source, const RecordingConfig& config = {});
 
 }  // namespace adit

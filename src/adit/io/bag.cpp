@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/bag.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "adit/core/check.hpp"
+#include "adit/core/format.hpp"
+#include "adit/io/mcap_reader.hpp"
+
+namespace adit {
+namespace {
+
+/// The topic of that name and type; a new one where there is none yet.
+std::size_t topic_in(std::vector<BagTopic>& topics, const BagTopic& topic) {
+  const auto known = std::ranges::find_if(
+      topics, [&](const BagTopic& other) { return other.name == topic.name && other.type == topic.type; });
+  const auto index = static_cast<std::size_t>(known - topics.begin());
+  if (known == topics.end()) topics.push_back(topic);
+  return index;
+}
+
+std::optional<std::map<std::string, std::string>> own_metadata(const mcap::Contents& contents) {
+  for (const mcap::Metadata& metadata : contents.metadata)
+    if (metadata.name == "adit") return metadata.entries;
+  return std::nullopt;
+}
+
+Bag bag_of(const std::shared_ptr<const mcap::Reader>& reader) {
+  const mcap::Contents& contents = reader->contents();
+  Bag bag;
+  bag.storage = "mcap";
+  bag.own = own_metadata(contents);
+  if (!contents.torn.empty())
+    bag.warnings.push_back(
+        format("{}; {} messages in front of that are read", contents.torn, contents.messages.size()));
+  std::map<std::uint16_t, std::size_t> topic_of_channel;
+  for (const auto& [id, channel] : contents.channels) {
+    const auto schema = contents.schemas.find(channel.schema_id);
+    const std::string type = schema == contents.schemas.end() ? "" : schema->second.name;
+    topic_of_channel[id] = topic_in(bag.topics, {channel.topic, type, channel.message_encoding});
+  }
+  for (std::size_t i = 0; i < contents.messages.size(); ++i) {
+    const mcap::MessageRef& message = contents.messages[i];
+    bag.messages.push_back({topic_of_channel.at(message.channel_id), message.log_time, i});
+  }
+  bag.read = [reader](const BagMessage& message) {
+    return reader->read(reader->contents().messages.at(message.where)).map([](mcap::Message&& found) {
+      return std::move(found.data);
+    });
+  };
+  return bag;
+}
+
+}  // namespace
+
+Result<Bag> open_mcap_bag(ByteSource source) {
+  return mcap::Reader::open(std::move(source)).map([](mcap::Reader reader) {
+    return bag_of(std::make_shared<const mcap::Reader>(std::move(reader)));
+  });
+}
+
+Bag joined(std::vector<Bag> parts) {
+  ADIT_CHECK(!parts.empty(), "a bag has at least one file");
+  if (parts.size() == 1) return std::move(parts.front());
+  struct Place {
+    std::size_t part = 0;
+    BagMessage message;  ///< As the part has it.
+  };
+  Bag all;
+  all.storage = parts.front().storage;
+  all.num_files = parts.size();
+  auto places = std::make_shared<std::vector<Place>>();
+  auto readers = std::make_shared<std::vector<std::function<Result<std::string>(const BagMessage&)>>>();
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    Bag& part = parts[p];
+    if (!all.own) all.own = std::move(part.own);
+    std::ranges::move(part.warnings, std::back_inserter(all.warnings));
+    readers->push_back(std::move(part.read));
+    std::vector<std::size_t> topic_of;
+    for (const BagTopic& topic : part.topics) topic_of.push_back(topic_in(all.topics, topic));
+    for (const BagMessage& message : part.messages) {
+      all.messages.push_back({topic_of[message.topic], message.log_time, places->size()});
+      places->push_back({p, message});
+    }
+  }
+  std::ranges::stable_sort(all.messages, {}, &BagMessage::log_time);
+  all.read = [places, readers](const BagMessage& message) {
+    const Place& place = places->at(message.where);
+    return readers->at(place.part)(place.message);
+  };
+  return all;
+}
+
+}  // namespace adit

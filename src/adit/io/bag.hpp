@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Recorded ROS messages, whatever file or folder they lie in.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "adit/core/result.hpp"
+#include "adit/core/time.hpp"
+#include "adit/io/byte_source.hpp"
+
+namespace adit {
+
+struct BagTopic {
+  std::string name;
+  std::string type;      ///< "sensor_msgs/msg/PointCloud2"; "" where the file does not say.
+  std::string encoding;  ///< "cdr"
+};
+
+struct BagMessage {
+  std::size_t topic = 0;    ///< Index into Bag::topics.
+  Stamp log_time;           ///< When it was recorded.
+  std::uint64_t where = 0;  ///< For `read` alone.
+};
+
+/// The index is in memory, messages are read when asked for.
+struct Bag {
+  std::string storage;  ///< "mcap" or "sqlite3"
+  std::size_t num_files = 1;
+  std::vector<BagTopic> topics;      ///< No two of one name and type.
+  std::vector<BagMessage> messages;  ///< By log time; equal times in the order of the file.
+  /// What adit said of its own recording (mcap_output.hpp); nothing in files of others.
+  std::optional<std::map<std::string, std::string>> own;
+  std::vector<std::string> warnings;  ///< What could not be read, a sentence each with its remedy.
+  /// The content of a message; may be called from any thread.
+  std::function<Result<std::string>(const BagMessage&)> read;
+};
+
+/// Opens
+///  - FILE.mcap, with or without chunks, index, lz4 and zstd;
+///  - FILE.db3, the sqlite storage of rosbag2;
+///  - FOLDER: a bag folder of rosbag2, its files in the order of metadata.yaml, or by name where there is
+///    none. Files that were compressed as a whole (.db3.zstd) are an error with the remedy.
+/// Messages that were compressed one by one (zstd, compression mode MESSAGE of rosbag2) are expanded.
+[[nodiscard]] Result<Bag> open_bag(const std::filesystem::path& path);
+[[nodiscard]] Result<Bag> open_mcap_bag(ByteSource source);
+
+/// Whether `folder` is a bag folder: it has the metadata.yaml of rosbag2, or no files of clouds but of bags.
+[[nodiscard]] bool is_bag_folder(const std::filesystem::path& folder);
+
+/// Several files of one recording as one bag; messages of all are put in order. `parts`: at least one.
+[[nodiscard]] Bag joined(std::vector<Bag> parts);
+
+}  // namespace adit

@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/bag.hpp"
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include <filesystem>
+
+#include "adit/core/format.hpp"
+#include "adit/io/bag_recording.hpp"
+#include "adit/io/compression.hpp"
+#include "adit/io/recording_files.hpp"
+#include "support/data.hpp"
+#include "support/files.hpp"
+#include "support/foreign_mcap.hpp"
+
+namespace adit {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a robot records: clouds, wheels, frames.
+Bag a_bag() {
+  test::ForeignFile file;
+  file.clouds("/robot_0/points")
+      .odometry("/robot_0/odom")
+      .links({test::link("base_link", "os_lidar", test::T_base_ouster)});
+  return open_mcap_bag(memory_source(file.bytes())).value();
+}
+
+/// As rosbag2 stores them: a row for each topic, and one for each message in the order of arrival.
+void write_db3(const fs::path& path, const Bag& bag, const std::vector<BagMessage>& messages,
+               bool compressed = false) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  const auto run = [&](const char* query) {
+    ASSERT_EQ(sqlite3_exec(database, query, nullptr, nullptr, nullptr), SQLITE_OK)
+        << sqlite3_errmsg(database);
+  };
+  run("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
+      "serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL)");
+  run("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT NULL, "
+      "data BLOB NOT NULL)");
+  run("CREATE INDEX timestamp_idx ON messages (timestamp ASC)");
+  sqlite3_stmt* insert = nullptr;
+  sqlite3_prepare_v2(database, "INSERT INTO topics VALUES(?, ?, ?, ?, '')", -1, &insert, nullptr);
+  for (std::size_t t = 0; t < bag.topics.size(); ++t) {
+    sqlite3_bind_int64(insert, 1, static_cast<std::int64_t>(10 * t + 7));
+    sqlite3_bind_text(insert, 2, bag.topics[t].name.c_str(), -1, SQLITE_TRANSIENT);
+    sqlite3_bind_text(insert, 3, bag.topics[t].type.c_str(), -1, SQLITE_TRANSIENT);
+    sqlite3_bind_text(insert, 4, bag.topics[t].encoding.c_str(), -1, SQLITE_TRANSIENT);
+    ASSERT_EQ(sqlite3_step(insert), SQLITE_DONE);
+    sqlite3_reset(insert);
+  }
+  sqlite3_finalize(insert);
+  sqlite3_prepare_v2(database, "INSERT INTO messages(topic_id, timestamp, data) VALUES(?, ?, ?)", -1, &insert,
+                     nullptr);
+  for (const BagMessage& message : messages) {
+    const std::string data = bag.read(message).value();
+    const std::string stored = compressed ? compress_zstd(data) : data;
+    sqlite3_bind_int64(insert, 1, static_cast<std::int64_t>(10 * message.topic + 7));
+    sqlite3_bind_int64(insert, 2, message.log_time.ns);
+    sqlite3_bind_blob(insert, 3, stored.data(), static_cast<int>(stored.size()), SQLITE_TRANSIENT);
+    ASSERT_EQ(sqlite3_step(insert), SQLITE_DONE);
+    sqlite3_reset(insert);
+  }
+  sqlite3_finalize(insert);
+  sqlite3_close(database);
+}
+
+void expect_same(const Result<Bag>& read, const Bag& bag) {
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_EQ(read->messages.size(), bag.messages.size());
+  for (std::size_t m = 0; m < bag.messages.size(); ++m) {
+    const BagMessage& mine = read->messages[m];
+    EXPECT_EQ(mine.log_time, bag.messages[m].log_time);
+    EXPECT_EQ(read->topics.at(mine.topic).name, bag.topics[bag.messages[m].topic].name);
+    EXPECT_EQ(read->topics.at(mine.topic).type, bag.topics[bag.messages[m].topic].type);
+    EXPECT_EQ(read->read(mine).value(), bag.read(bag.messages[m]).value());
+  }
+  EXPECT_TRUE(read->warnings.empty());
+}
+
+std::string metadata_naming(const std::vector<std::string>& files) {
+  std::string yaml = "rosbag2_bagfile_information:\n  version: 5\n  relative_file_paths:\n";
+  for (const std::string& file : files) yaml += "    - " + file + "\n";
+  return yaml;
+}
+
+TEST(Bag, SqliteHoldsWhatMcapDoes) {
+  const test::TemporaryFolder folder;
+  const Bag bag = a_bag();
+  write_db3(folder / "a.db3", bag, bag.messages);
+  expect_same(open_bag(folder / "a.db3"), bag);
+  write_db3(folder / "packed.db3", bag, bag.messages, true);
+  expect_same(open_bag(folder / "packed.db3"), bag);
+
+  const Result<Recording> recording = open_recording((folder / "a.db3").string());
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->name, "robot_0");
+  EXPECT_EQ(recording->num_scans(), 3U);
+  EXPECT_EQ(recording->wheel.size(), 3U);
+  EXPECT_EQ(recording->scan_stamps[1], test::make_scan(1, 0).stamp);
+  EXPECT_EQ(recording->read_scan(2)->cloud.points, test::make_scan(2, 4).cloud.points);
+  EXPECT_LT((recording->T_base_lidar.inverse() * test::T_base_ouster).log().norm(), 1e-9);
+}
+
+TEST(Bag, AFolderIsOneRecordingHoweverItWasSplit) {
+  const test::TemporaryFolder folder;
+  const Bag bag = a_bag();
+  for (std::size_t at = 0; at <= bag.messages.size(); ++at) {
+    const auto middle = bag.messages.begin() + static_cast<std::ptrdiff_t>(at);
+    const fs::path split = folder / format("split_{}", at);
+    fs::create_directory(split);
+    write_db3(split / "a_0.db3", bag, {bag.messages.begin(), middle});
+    write_db3(split / "b_1.db3", bag, {middle, bag.messages.end()});
+    ASSERT_TRUE(is_bag_folder(split));
+    expect_same(open_bag(split), bag);
+    fs::rename(split / "a_0.db3", split / "c_0.db3");  // from here on the order is that of metadata.yaml
+    test::put_file(split / "metadata.yaml", metadata_naming({"early/c_0.db3", "b_1.db3"}));
+    ASSERT_TRUE(is_bag_folder(split));
+    expect_same(open_bag(split), bag);
+    EXPECT_EQ(open_recording(split.string())->num_scans(), 3U);
+  }
+}
+
+TEST(Bag, WhatAFolderLacksIsNamed) {
+  const test::TemporaryFolder folder;
+  const fs::path metadata = folder / "metadata.yaml";
+  test::put_file(metadata, metadata_naming({"a_0.db3"}));
+  EXPECT_ERROR(open_bag(folder.path()), "metadata.yaml: names 'a_0.db3', which is not there");
+  test::put_file(metadata, metadata_naming({"a_0.db3.zstd"}));
+  EXPECT_ERROR(open_bag(folder.path()), "unpack it: zstd -d");
+  const Bag bag = a_bag();
+  write_db3(folder / "a_0.db3", bag, bag.messages);
+  expect_same(open_bag(folder.path()), bag);  // unpacked since
+  test::put_file(metadata, metadata_naming({}));
+  EXPECT_ERROR(open_bag(folder.path()), "names no files");
+  test::put_file(metadata, "rosbag2_bagfile_information: [");
+  EXPECT_ERROR(open_bag(folder.path()), "metadata.yaml: line");
+  test::put_file(folder / "b.db3", "no database at all");
+  EXPECT_ERROR(open_bag(folder / "b.db3"), "b.db3: not a bag of rosbag2");
+  EXPECT_ERROR(open_bag(folder / "none.db3"), "none.db3: cannot be opened");
+}
+
+TEST(Bag, OfASqliteFileThatBreaksOffTheFirstMessagesAreRead) {
+  const test::TemporaryFolder folder;
+  Bag bag = a_bag();
+  std::vector<BagMessage> many;  // over several pages
+  for (int i = 0; i < 50; ++i) many.insert(many.end(), bag.messages.begin(), bag.messages.end());
+  write_db3(folder / "whole.db3", bag, many);
+  const std::string whole = test::get_file(folder / "whole.db3");
+  std::size_t most = 0;
+  int num_warned = 0;
+  for (std::size_t size = 0; size < whole.size(); size += 500) {
+    test::put_file(folder / "cut.db3", whole.substr(0, size));
+    const Result<Bag> cut = open_bag(folder / "cut.db3");
+    if (!cut) continue;
+    ASSERT_LE(cut->messages.size(), many.size());
+    most = std::max(most, cut->messages.size());
+    if (cut->messages.size() < many.size()) {
+      ASSERT_EQ(cut->warnings.size(), 1U) << "cut at " << size;
+      EXPECT_NE(cut->warnings[0].find(format("the first {} messages", cut->messages.size())),
+                std::string::npos);
+      ++num_warned;
+    }
+    for (const BagMessage& message : cut->messages) (void)cut->read(message);
+  }
+  EXPECT_GT(most, many.size() / 2);
+  EXPECT_GT(num_warned, 3);
+}
+
+TEST(Bag, ReadsAFileOfRosbag2) {
+  ADIT_NEED_DATA("recordings/cdr_test_0.db3");
+  const Result<Bag> bag = open_bag(test::shared_data("recordings/cdr_test_0.db3"));
+  ASSERT_TRUE(bag) << bag.error().message;
+  ASSERT_EQ(bag->topics.size(), 2U);
+  EXPECT_EQ(bag->topics[1].type, "test_msgs/msg/Arrays");
+  ASSERT_EQ(bag->messages.size(), 7U);  // as sqlite3 counts them
+  EXPECT_EQ(bag->messages.front().log_time.ns, 1586406456763032325);
+  EXPECT_EQ(bag->messages.back().log_time.ns, 1586406456914169506);
+  for (const BagMessage& message : bag->messages)
+    EXPECT_EQ(bag->read(message)->size(), message.topic == 0 ? 52U : 696U);
+}
+
+}  // namespace
+}  // namespace adit
