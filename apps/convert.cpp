@@ -8,9 +8,9 @@
 #include <variant>
 
 #include "adit/io/atomic_file.hpp"
+#include "adit/io/bag_recording.hpp"
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/g2o.hpp"
-#include "adit/io/bag_recording.hpp"
 #include "adit/io/mesh_files.hpp"
 #include "adit/io/scan_folder.hpp"
 #include "adit/io/text.hpp"
@@ -38,7 +38,8 @@ Kind kind_of(const std::string& name) {
   if (is_any_of(extension, {".tum", ".csv", ".kitti", ".txt"})) return Kind::trajectory;
   if (extension == ".g2o") return Kind::graph;
   const bool is_folder = extension.empty() || fs::is_directory(name) || name.find('@') != std::string::npos;
-  return is_folder || extension == ".mcap" || extension == ".db3" ? Kind::recording : Kind::unknown;
+  return is_folder || extension == ".mcap" || extension == ".db3" || extension == ".bag" ? Kind::recording
+                                                                                         : Kind::unknown;
 }
 
 Result<> convert_trajectory(const fs::path& in, const fs::path& out) {
@@ -123,7 +124,9 @@ void add_convert(Program& program) {
       .default_shown();
   add_recording_options(command, options->recording);
   command.footer(
-      "recording (.mcap, .db3, bag folder, folder of clouds, FOLDER@even) -> .mcap, folder, or its poses (.tum .csv .kitti)\n"
+      "recording (.mcap, .db3, .bag, bag folder, folder of clouds, FOLDER@even) -> .mcap, folder, or its "
+      "poses "
+      "(.tum .csv .kitti)\n"
       "cloud (.pcd .ply .bin) -> cloud; mesh (.obj .stl .dae .glb .ply) -> .ply, and of a .ply the vertices "
       "-> cloud\n"
       "trajectory (.tum .csv) -> .tum .csv .kitti; graph (.g2o) -> .g2o, rewritten");

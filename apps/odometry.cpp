@@ -108,7 +108,8 @@ void add_odometry(Program& program) {
   const Command command =
       program.add_command("odometry", "Compute the odometry of one robot",
                           [options](const Common& common) { return odometry(*options, common); });
-  command.add_option("input", options->input, "Recording (.mcap, .db3, bag folder) or folder of scans").required();
+  command.add_option("input", options->input, "Recording (.mcap, .db3, .bag, bag folder) or folder of scans")
+      .required();
   command
       .add_option("--method", options->method,
                   "plane-icp (default) or kinematic-icp: with wheels; kiss-icp: LiDAR alone")

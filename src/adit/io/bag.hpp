@@ -14,13 +14,14 @@
 #include "adit/core/result.hpp"
 #include "adit/core/time.hpp"
 #include "adit/io/byte_source.hpp"
+#include "adit/io/cdr.hpp"
 
 namespace adit {
 
 struct BagTopic {
   std::string name;
   std::string type;      ///< "sensor_msgs/msg/PointCloud2"; "" where the file does not say.
-  std::string encoding;  ///< "cdr"
+  std::string encoding;  ///< "cdr" or "ros1"
 };
 
 struct BagMessage {
@@ -31,7 +32,7 @@ struct BagMessage {
 
 /// The index is in memory, messages are read when asked for.
 struct Bag {
-  std::string storage;  ///< "mcap" or "sqlite3"
+  std::string storage;  ///< "mcap", "sqlite3" or "ros1"
   std::size_t num_files = 1;
   std::vector<BagTopic> topics;      ///< No two of one name and type.
   std::vector<BagMessage> messages;  ///< By log time; equal times in the order of the file.
@@ -42,14 +43,27 @@ struct Bag {
   std::function<Result<std::string>(const BagMessage&)> read;
 };
 
+/// The content of a message, decoded by a function of ros_messages.hpp.
+template <class Decode>
+[[nodiscard]] auto decoded(const Bag& bag, const BagMessage& message, Decode decode) {
+  const bool is_ros1 = bag.topics[message.topic].encoding == "ros1";
+  return bag.read(message).and_then([&](const std::string& content) {
+    return decode(content, is_ros1 ? MessageEncoding::ros1 : MessageEncoding::cdr);
+  });
+}
+
 /// Opens
 ///  - FILE.mcap, with or without chunks, index, lz4 and zstd;
 ///  - FILE.db3, the sqlite storage of rosbag2;
+///  - FILE.bag, of ROS 1: chunks plain, bz2 or lz4, with or without index (ros1_bag.hpp);
 ///  - FOLDER: a bag folder of rosbag2, its files in the order of metadata.yaml, or by name where there is
 ///    none. Files that were compressed as a whole (.db3.zstd) are an error with the remedy.
 /// Messages that were compressed one by one (zstd, compression mode MESSAGE of rosbag2) are expanded.
 [[nodiscard]] Result<Bag> open_bag(const std::filesystem::path& path);
 [[nodiscard]] Result<Bag> open_mcap_bag(ByteSource source);
+
+/// Whether the name is that of a file of a bag.
+[[nodiscard]] bool is_bag_file(const std::filesystem::path& path);
 
 /// Whether `folder` is a bag folder: it has the metadata.yaml of rosbag2, or no files of clouds but of bags.
 [[nodiscard]] bool is_bag_folder(const std::filesystem::path& folder);

@@ -8,6 +8,7 @@
 #include "adit/core/format.hpp"
 #include "adit/io/bag.hpp"
 #include "adit/io/compression.hpp"
+#include "adit/io/ros1_bag.hpp"
 #include "adit/io/sqlite_bag.hpp"
 #include "adit/io/text.hpp"
 
@@ -20,11 +21,6 @@ constexpr const char* kMetadata = "metadata.yaml";
 constexpr const char* kInformation = "rosbag2_bagfile_information";
 
 std::string extension_of(const fs::path& path) { return lower_case(path.extension().string()); }
-
-bool is_bag_file(const fs::path& path) {
-  const std::string extension = extension_of(path);
-  return extension == ".mcap" || extension == ".db3";
-}
 
 bool is_cloud_file(const fs::path& path) {
   const std::string extension = extension_of(path);
@@ -71,11 +67,12 @@ Result<std::vector<fs::path>> files_of_metadata(const fs::path& folder) {
 
 Result<Bag> open_file(const fs::path& path) {
   if (extension_of(path) == ".db3") return open_sqlite_bag(path);
-  if (extension_of(path) != ".mcap")
-    return fail(format("{}: not a file of a bag that adit knows; .mcap and .db3 are known", path.string()));
+  if (!is_bag_file(path))
+    return fail(
+        format("{}: not a file of a bag that adit knows; .mcap, .db3 and .bag are known", path.string()));
   const Result<ByteSource> source = open_source(path);
   if (!source) return tl::unexpected(source.error());
-  Result<Bag> bag = open_mcap_bag(*source);
+  Result<Bag> bag = extension_of(path) == ".bag" ? open_ros1_bag(*source) : open_mcap_bag(*source);
   if (!bag) return fail(path.string(), bag.error());
   return bag;
 }
@@ -102,6 +99,11 @@ Bag expanding(Bag bag) {
 }
 
 }  // namespace
+
+bool is_bag_file(const fs::path& path) {
+  const std::string extension = extension_of(path);
+  return extension == ".mcap" || extension == ".db3" || extension == ".bag";
+}
 
 bool is_bag_folder(const fs::path& folder) {
   std::error_code ignored;

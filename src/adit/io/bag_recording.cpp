@@ -45,7 +45,7 @@ Topics find_topics(const Bag& bag) {
   Topics topics;
   for (std::size_t i = 0; i < bag.topics.size(); ++i) {
     const auto& [name, type, encoding] = bag.topics[i];
-    if (encoding != "cdr") continue;
+    if (encoding != "cdr" && encoding != "ros1") continue;
     if (type == ros::kPointCloud2) topics.points.push_back(i);
     if (type == ros::kImu) topics.imu.push_back(i);
     if (type == ros::kOdometry) (is_truth(name) ? topics.truth : topics.wheel).push_back(i);
@@ -132,8 +132,7 @@ void take_covariance(WheelCovariance& kept, const WheelCovariance& stated, bool 
 Result<PoseTrack> read_poses(const Bag& bag, const TopicIndices& topics) {
   PoseTrack track;
   for (const BagMessage& message : messages_of(bag, topics)) {
-    const Result<ros::OdometryMessage> pose =
-        bag.read(message).and_then([](const std::string& data) { return ros::decode_odometry(data); });
+    const Result<ros::OdometryMessage> pose = decoded(bag, message, ros::decode_odometry);
     const std::string place = format("{}, message {}", names_of(bag, topics), track.poses.size());
     if (!pose) return fail(place, pose.error());
     if (!track.poses.empty() && pose->pose.stamp <= track.poses.back().stamp) {
@@ -152,9 +151,7 @@ Result<PoseTrack> read_poses(const Bag& bag, const TopicIndices& topics) {
 Result<std::vector<Stamp>> read_stamps(const Bag& bag, const std::vector<BagMessage>& scans) {
   std::vector<Stamp> stamps;
   for (const BagMessage& scan : scans) {
-    const Result<Stamp> stamp =
-        bag.own ? scan.log_time
-                : bag.read(scan).and_then([](const std::string& data) { return ros::decode_stamp(data); });
+    const Result<Stamp> stamp = bag.own ? scan.log_time : decoded(bag, scan, ros::decode_stamp);
     if (!stamp) return fail(format("scan {}", stamps.size()), stamp.error());
     stamps.push_back(*stamp);
   }
@@ -164,8 +161,7 @@ Result<std::vector<Stamp>> read_stamps(const Bag& bag, const std::vector<BagMess
 Result<FrameTree> read_frames(const Bag& bag, const Topics& topics) {
   FrameTree tree;
   for (const BagMessage& message : messages_of(bag, topics.transforms)) {
-    const auto transforms =
-        bag.read(message).and_then([](const std::string& data) { return ros::decode_transforms(data); });
+    const auto transforms = decoded(bag, message, ros::decode_transforms);
     if (!transforms) return fail(bag.topics[message.topic].name, transforms.error());
     for (const ros::TransformMessage& link : *transforms)
       tree.add(link.frame, link.child, link.pose.T_world_body);
@@ -179,8 +175,7 @@ Result<std::string> body_frame(const Bag& bag, const TopicIndices& topics) {
   for (const std::size_t topic : topics) {
     const std::vector<BagMessage> messages = messages_of(bag, {topic});
     if (messages.empty()) continue;
-    const Result<ros::OdometryMessage> first =
-        bag.read(messages.front()).and_then([](const auto& data) { return ros::decode_odometry(data); });
+    const Result<ros::OdometryMessage> first = decoded(bag, messages.front(), ros::decode_odometry);
     if (!first) return fail(format("{}, message 0", bag.topics[topic].name), first.error());
     if (!body.empty() && FrameTree::bare(body) != FrameTree::bare(first->child)) return std::string();
     body = first->child;
@@ -258,7 +253,7 @@ Result<> take_mounts(Recording& recording, const FrameTree& tree, const FrameNam
 }
 
 Result<ros::CloudMessage> read_cloud_message(const Bag& bag, const BagMessage& message) {
-  return bag.read(message).and_then([](const std::string& data) { return ros::decode_cloud(data); });
+  return decoded(bag, message, ros::decode_cloud);
 }
 
 /// Name, sensor and assumptions: adit's own metadata say them. Elsewhere "/robot_0/points" is of robot_0.

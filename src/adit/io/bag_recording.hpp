@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// One robot's recording as a bag of ROS 2: an MCAP file, a .db3 file, or a folder of them (bag.hpp).
+/// One robot's recording as a bag: an MCAP file, a .db3 file, a folder of them, or a .bag of ROS 1 (bag.hpp).
 ///
 /// adit itself writes MCAP (https://mcap.dev/spec, version 0) that ROS 2 tools and Foxglove can open: profile
 /// ros2, messages in CDR, zstd chunks, indexed.

@@ -45,11 +45,23 @@ class CdrWriter {
   std::string bytes_;
 };
 
-/// Reads CDR of either byte order. After a value that reaches past the end all values are zero or empty, and
-/// `ok` is false: check it once, at the end.
-class CdrReader {
+/// How the bytes of a message are laid out.
+enum class MessageEncoding {
+  cdr,
+  ros1,  ///< Little-endian without any alignment. Source: the ROS 1 wiki, "msg", field types.
+};
+
+/// Reads CDR of either byte order, and what ROS 1 writes. After a value that reaches past the end all values
+/// are zero or empty, and `ok` is false: check it once, at the end.
+class MessageReader {
  public:
-  explicit CdrReader(std::string_view bytes) {
+  explicit MessageReader(std::string_view bytes, MessageEncoding encoding = MessageEncoding::cdr)
+      : encoding_(encoding) {
+    if (encoding == MessageEncoding::ros1) {
+      body_ = bytes;
+      ok_ = true;
+      return;
+    }
     ok_ = bytes.size() >= 4 && bytes[0] == '\0' && (bytes[1] == '\0' || bytes[1] == '\1');
     if (!ok_) return;
     order_ = bytes[1] == '\1' ? std::endian::little : std::endian::big;
@@ -58,7 +70,7 @@ class CdrReader {
 
   template <class T>
   [[nodiscard]] T number() {
-    offset_ = (offset_ + sizeof(T) - 1) / sizeof(T) * sizeof(T);
+    if (encoding_ == MessageEncoding::cdr) offset_ = (offset_ + sizeof(T) - 1) / sizeof(T) * sizeof(T);
     std::array<char, sizeof(T)> raw{};
     const std::string_view taken = take(sizeof(T));
     std::ranges::copy(taken, raw.begin());
@@ -72,8 +84,9 @@ class CdrReader {
   }
   [[nodiscard]] std::string_view blob() { return take(number<std::uint32_t>()); }
   [[nodiscard]] bool ok() const { return ok_; }
+  [[nodiscard]] MessageEncoding encoding() const { return encoding_; }
   /// Behind the last value, for messages about damage.
-  [[nodiscard]] std::size_t offset() const { return offset_ + 4; }
+  [[nodiscard]] std::size_t offset() const { return offset_ + (encoding_ == MessageEncoding::cdr ? 4 : 0); }
 
  private:
   std::string_view take(std::size_t size) {
@@ -84,6 +97,7 @@ class CdrReader {
     return taken;
   }
 
+  MessageEncoding encoding_;
   std::string_view body_;
   std::size_t offset_ = 0;
   std::endian order_ = std::endian::little;

@@ -13,7 +13,7 @@ TEST(Cdr, AlignsToTheSizeOfTheNumber) {
   const std::string bytes = writer.take();
   // 4 of head; byte at 0, number at 4, text at 8 (4 + "ab\0" = 7), double at 16.
   EXPECT_EQ(bytes.size(), 4U + 24U);
-  CdrReader reader(bytes);
+  MessageReader reader(bytes);
   EXPECT_EQ(reader.number<std::uint8_t>(), 7);
   EXPECT_EQ(reader.number<std::uint32_t>(), 1U);
   EXPECT_EQ(reader.text(), "ab");
@@ -24,9 +24,9 @@ TEST(Cdr, AlignsToTheSizeOfTheNumber) {
 }
 
 TEST(Cdr, BigEndian) {
-  CdrReader reader(std::string_view("\0\0\0\0\0\0\1\2", 8));
+  MessageReader reader(std::string_view("\0\0\0\0\0\0\1\2", 8));
   EXPECT_EQ(reader.number<std::uint32_t>(), 0x102U);
-  EXPECT_FALSE(CdrReader("\x07\x07").ok());
+  EXPECT_FALSE(MessageReader("\x07\x07").ok());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "adit/io/compression.hpp"
 
+#include <bzlib.h>
 #include <liblzf/lzf.h>
 #include <lz4frame.h>
 #include <zstd.h>
@@ -50,6 +51,18 @@ Result<std::string> decompress_lz4(std::string_view bytes, std::size_t size) {
   return out;
 }
 
+Result<std::string> decompress_bz2(std::string_view bytes, std::size_t size) {
+  std::string out(size, '\0');
+  auto got = static_cast<unsigned>(size);
+  std::string in(bytes);  // the library's argument is not const
+  const int code =
+      BZ2_bzBuffToBuffDecompress(out.data(), &got, in.data(), static_cast<unsigned>(in.size()), 0, 0);
+  if (code == BZ_OUTBUFF_FULL) return fail(format("bz2 data expand to more than {} bytes", size));
+  if (code != BZ_OK) return fail(format("damaged bz2 data (code {})", code));
+  if (got != size) return fail(format("bz2 data expand to {} bytes, not {}", got, size));
+  return out;
+}
+
 }  // namespace
 
 std::string compress_zstd(std::string_view bytes) {
@@ -73,8 +86,9 @@ Result<std::string> decompress(std::string_view bytes, std::string_view compress
   if (size > kLargest) return fail(format("{} uncompressed bytes are announced; 1 GiB is the most", size));
   if (compression == "zstd") return decompress_zstd(bytes, size);
   if (compression == "lz4") return decompress_lz4(bytes, size);
+  if (compression == "bz2") return decompress_bz2(bytes, size);
   if (!compression.empty())
-    return fail(format("compression '{}' is unknown; lz4 and zstd are known", compression));
+    return fail(format("compression '{}' is unknown; lz4, zstd and bz2 are known", compression));
   if (bytes.size() != size) return fail(format("{} bytes, not the {} announced", bytes.size(), size));
   return std::string(bytes);
 }

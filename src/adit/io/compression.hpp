@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// The compressions of MCAP chunks, "" (none), "lz4" (LZ4 frames) and "zstd", and LZF, that of PCD files.
+/// The compressions of the chunks of bags, "" (none), "lz4" (LZ4 frames), "zstd" and "bz2", and LZF, that of
+/// PCD files.
 #pragma once
 
 #include <cstddef>

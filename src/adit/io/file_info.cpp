@@ -239,7 +239,7 @@ Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
   if (fs::is_directory(path)) return folder_info(path, config);
   const std::string extension = lower_case(path.extension().string());
   if (extension == ".mcap") return with_recording(mcap_topics_info(path), path, config);
-  if (extension == ".db3") return with_recording(bag_topics_info(path), path, config);
+  if (is_bag_file(path)) return with_recording(bag_topics_info(path), path, config);
   if (extension == ".pcd" || extension == ".bin") return cloud_info(path);
   if (extension == ".ply") return ply_info(path);
   if (extension == ".obj" || extension == ".stl" || extension == ".dae" || extension == ".glb")
@@ -251,7 +251,8 @@ Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
   if (fs::is_regular_file(path)) {
     return fail(
         path.string() +
-        ": not a kind of file that adit knows; it knows .mcap, .db3, clouds and meshes (.pcd .ply .bin .obj "
+        ": not a kind of file that adit knows; it knows bags (.mcap .db3 .bag), clouds and meshes (.pcd .ply "
+        ".bin .obj "
         ".stl "
         ".dae .glb), .tum, .g2o, .jrl, routes (.yaml) and folders of scans, of a bag or of a session");
   }

@@ -35,8 +35,7 @@ Result<ImuTrack> read_imu(const Bag& bag, const std::vector<BagMessage>& message
   LeftOut backward;
   LeftOut not_finite;
   for (std::size_t i = 0; i < messages.size(); ++i) {
-    const Result<ros::ImuMessage> imu =
-        bag.read(messages[i]).and_then([](const std::string& data) { return ros::decode_imu(data); });
+    const Result<ros::ImuMessage> imu = decoded(bag, messages[i], ros::decode_imu);
     if (!imu) return fail(format("IMU, message {}", i), imu.error());
     if (i == 0) {
       track.frame = imu->frame;

@@ -51,16 +51,16 @@ Result<Recording> open_recording(const std::string& input, const RecordingConfig
   if (!mount) return tl::unexpected(mount.error());
   std::error_code ignored;
   const auto choose = [&](Recording recording) { return with_chosen_wheels(std::move(recording), config); };
-  const std::string extension = lower_case(std::filesystem::path(input).extension().string());
-  if (extension == ".mcap" || extension == ".db3" || is_bag_folder(input))
-    return read_recording(input, config);
+  if (is_bag_file(input) || is_bag_folder(input)) return read_recording(input, config);
   if (std::filesystem::is_directory(input, ignored)) return read_scan_folder(input, {}, *mount).map(choose);
   const std::size_t at = input.rfind('@');
   if (at != std::string::npos && std::filesystem::is_directory(input.substr(0, at), ignored))
     return open_part(input.substr(0, at), input.substr(at + 1), *mount).map(choose);
   if (std::filesystem::exists(input, ignored))
-    return fail(input + ": is not a recording; a bag of ROS 2 (.mcap, .db3 or folder) or a folder of clouds is");
-  return fail(input + ": no such file or folder; a recording is a bag of ROS 2 (.mcap, .db3 or folder) or a folder of clouds");
+    return fail(input + ": is not a recording; a bag (.mcap, .db3, .bag or folder) or a folder of clouds is");
+  return fail(input +
+              ": no such file or folder; a recording is a bag (.mcap, .db3, .bag or folder) or a folder "
+              "of clouds");
 }
 
 }  // namespace adit

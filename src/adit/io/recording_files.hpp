@@ -12,7 +12,7 @@
 namespace adit {
 
 /// Opens
-///  - FILE.mcap, FILE.db3, FOLDER of a bag: see bag_recording.hpp;
+///  - FILE.mcap, FILE.db3, FILE.bag, FOLDER of a bag: see bag_recording.hpp;
 ///  - FOLDER: a folder of clouds, see scan_folder.hpp;
 ///  - FOLDER@even, FOLDER@odd, FOLDER@FIRST:STEP: part of the scans, so that one drive can serve as two
 ///  robots.

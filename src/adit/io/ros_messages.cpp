@@ -54,7 +54,9 @@ void write_header(CdrWriter& writer, Stamp stamp, std::string_view frame) {
   writer.text(frame);
 }
 
-Stamp read_stamp(CdrReader& reader) {
+Stamp read_stamp(MessageReader& reader) {
+  // The header of ROS 1 counts its messages first.
+  if (reader.encoding() == MessageEncoding::ros1) static_cast<void>(reader.number<std::uint32_t>());
   const std::int64_t seconds = reader.number<std::int32_t>();
   const std::int64_t nanoseconds = reader.number<std::uint32_t>();
   return {seconds * kNanosecondsPerSecond + nanoseconds};
@@ -66,7 +68,7 @@ void write_pose(CdrWriter& writer, const Pose& pose) {
   for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) writer.number(value);
 }
 
-Result<Pose> read_pose(CdrReader& reader) {
+Result<Pose> read_pose(MessageReader& reader) {
   Vector3 t;
   for (double& value : t) value = reader.number<double>();
   Eigen::Quaterniond q;
@@ -87,7 +89,7 @@ void write_rows(CdrWriter& writer, const Matrix& matrix) {
     for (Eigen::Index k = 0; k < matrix.cols(); ++k) writer.number(matrix(i, k));
 }
 template <class Matrix>
-void read_rows(CdrReader& reader, Matrix& matrix) {
+void read_rows(MessageReader& reader, Matrix& matrix) {
   for (Eigen::Index i = 0; i < matrix.rows(); ++i)
     for (Eigen::Index k = 0; k < matrix.cols(); ++k) matrix(i, k) = reader.number<double>();
 }
@@ -114,7 +116,7 @@ std::vector<CloudField> fields_of(const PointCloud& cloud) {
   return fields;
 }
 
-std::vector<CloudField> read_fields(CdrReader& reader) {
+std::vector<CloudField> read_fields(MessageReader& reader) {
   std::vector<CloudField> fields;
   const auto count = reader.number<std::uint32_t>();
   for (std::uint32_t i = 0; i < count && reader.ok(); ++i) {
@@ -187,8 +189,8 @@ std::string encode_cloud(const Scan& scan, std::string_view frame) {
   return writer.take();
 }
 
-Result<CloudMessage> decode_cloud(std::string_view message) {
-  CdrReader reader(message);
+Result<CloudMessage> decode_cloud(std::string_view message, MessageEncoding encoding) {
+  MessageReader reader(message, encoding);
   CloudMessage out;
   out.scan.stamp = read_stamp(reader);
   out.frame = reader.text();
@@ -235,8 +237,8 @@ std::string encode_odometry(const OdometryMessage& odometry) {
   return writer.take();
 }
 
-Result<OdometryMessage> decode_odometry(std::string_view message) {
-  CdrReader reader(message);
+Result<OdometryMessage> decode_odometry(std::string_view message, MessageEncoding encoding) {
+  MessageReader reader(message, encoding);
   OdometryMessage out;
   out.pose.stamp = read_stamp(reader);
   out.frame = reader.text();
@@ -263,8 +265,8 @@ std::string encode_transforms(const std::vector<TransformMessage>& transforms) {
   return writer.take();
 }
 
-Result<std::vector<TransformMessage>> decode_transforms(std::string_view message) {
-  CdrReader reader(message);
+Result<std::vector<TransformMessage>> decode_transforms(std::string_view message, MessageEncoding encoding) {
+  MessageReader reader(message, encoding);
   std::vector<TransformMessage> transforms;
   const auto count = reader.number<std::uint32_t>();
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -293,8 +295,8 @@ std::string encode_imu(const ImuMessage& imu) {
   return writer.take();
 }
 
-Result<ImuMessage> decode_imu(std::string_view message) {
-  CdrReader reader(message);
+Result<ImuMessage> decode_imu(std::string_view message, MessageEncoding encoding) {
+  MessageReader reader(message, encoding);
   ImuMessage out;
   out.sample.stamp = read_stamp(reader);
   out.frame = reader.text();
@@ -308,8 +310,8 @@ Result<ImuMessage> decode_imu(std::string_view message) {
   return out;
 }
 
-Result<Stamp> decode_stamp(std::string_view message) {
-  CdrReader reader(message);
+Result<Stamp> decode_stamp(std::string_view message, MessageEncoding encoding) {
+  MessageReader reader(message, encoding);
   const Stamp stamp = read_stamp(reader);
   if (!reader.ok()) return fail("the message is too short for a header");
   return stamp;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// The five ROS 2 messages that recordings are made of, in CDR, with their definitions for MCAP's `ros2msg`
-/// schemas.
+/// The ROS messages that recordings are made of: written in CDR, as ROS 2 does, with their definitions for
+/// MCAP's `ros2msg` schemas; read in CDR and as ROS 1 writes them.
 #pragma once
 
 #include <string>
@@ -10,6 +10,7 @@
 
 #include "adit/core/records.hpp"
 #include "adit/core/result.hpp"
+#include "adit/io/cdr.hpp"
 
 namespace adit::ros {
 
@@ -29,7 +30,7 @@ struct CloudMessage {
 /// The stamp's seconds must fit 32 bits: see `fits_ros`.
 [[nodiscard]] std::string encode_cloud(const Scan& scan, std::string_view frame);
 /// Takes the fields that pcd.hpp lists, of any type and byte order. Points that are not finite are left out.
-Result<CloudMessage> decode_cloud(std::string_view message);
+Result<CloudMessage> decode_cloud(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
 
 /// T_frame_child at a time.
 struct TransformMessage {
@@ -42,9 +43,11 @@ struct OdometryMessage : TransformMessage {
   WheelCovariance covariance = {};
 };
 [[nodiscard]] std::string encode_odometry(const OdometryMessage& odometry);
-Result<OdometryMessage> decode_odometry(std::string_view message);
+Result<OdometryMessage> decode_odometry(std::string_view message,
+                                        MessageEncoding encoding = MessageEncoding::cdr);
 [[nodiscard]] std::string encode_transforms(const std::vector<TransformMessage>& transforms);
-Result<std::vector<TransformMessage>> decode_transforms(std::string_view message);
+Result<std::vector<TransformMessage>> decode_transforms(std::string_view message,
+                                                        MessageEncoding encoding = MessageEncoding::cdr);
 
 /// One measurement of an IMU, as sensor_msgs/msg/Imu defines it: a covariance of zeros is unknown, one whose
 /// first element is -1 says that its quantity was not measured.
@@ -57,14 +60,14 @@ struct ImuMessage {
 };
 [[nodiscard]] std::string encode_imu(const ImuMessage& imu);
 /// Numbers are handed on as they are, also those that are not finite. Fails when the message ends early.
-Result<ImuMessage> decode_imu(std::string_view message);
+Result<ImuMessage> decode_imu(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
 /// The first element of the covariance of a quantity that was not measured.
 inline constexpr double kUnmeasured = -1.0;
 /// Whether a covariance says that its quantity was not measured.
 [[nodiscard]] inline bool is_unmeasured(const Matrix3& covariance) { return covariance(0, 0) == kUnmeasured; }
 
 /// The stamp that nearly every message starts with.
-Result<Stamp> decode_stamp(std::string_view message);
+Result<Stamp> decode_stamp(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
 /// ROS keeps seconds in 32 bits, up to 2038; MCAP none before 0.
 [[nodiscard]] bool fits_ros(Stamp stamp);
 

@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/ros1_bag.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "adit/core/format.hpp"
+#include "adit/io/bag_recording.hpp"
+#include "adit/io/packed_cloud.hpp"
+#include "adit/io/ros_messages.hpp"
+#include "support/data.hpp"
+#include "support/files.hpp"
+#include "support/foreign_mcap.hpp"
+
+namespace adit {
+namespace {
+
+/// Numbers without alignment, texts behind their length.
+class Ros1Writer {
+ public:
+  template <class T>
+  Ros1Writer& number(T value) {
+    append_little_endian(bytes_, value);
+    return *this;
+  }
+  Ros1Writer& text(std::string_view value) {
+    number(static_cast<std::uint32_t>(value.size()));
+    bytes_.append(value);
+    return *this;
+  }
+  Ros1Writer& header(Stamp stamp, std::string_view frame) {
+    number(std::uint32_t{42}).number(static_cast<std::uint32_t>(stamp.ns / 1'000'000'000));
+    return number(static_cast<std::uint32_t>(stamp.ns % 1'000'000'000)).text(frame);
+  }
+  Ros1Writer& pose(const Pose& pose) {
+    for (const double value : pose.translation()) number(value);
+    for (const double value : pose.rotation().coeffs()) number(value);
+    return *this;
+  }
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+std::string cloud(const Scan& scan) {
+  Ros1Writer w;
+  w.header(scan.stamp, "os_lidar").number(std::uint32_t{1});
+  w.number(static_cast<std::uint32_t>(scan.cloud.size())).number(std::uint32_t{3});
+  for (std::uint32_t i = 0; i < 3; ++i)
+    w.text(std::string(1, "xyz"[i])).number(4 * i).number(std::uint8_t{7}).number(std::uint32_t{1});
+  w.number(std::uint8_t{0})
+      .number(std::uint32_t{12})
+      .number(static_cast<std::uint32_t>(12 * scan.cloud.size()));
+  std::string points;
+  for (const Eigen::Vector3f& point : scan.cloud.points)
+    for (const float value : point) append_little_endian(points, value);
+  return w.text(points).number(std::uint8_t{1}).bytes();
+}
+
+std::string odometry(Stamp stamp, const Pose& pose) {
+  Ros1Writer w;
+  w.header(stamp, "odom").text("base_link").pose(pose);
+  for (int i = 0; i < 36 + 6 + 36; ++i) w.number(0.0);
+  return w.bytes();
+}
+
+std::string transform(const std::string& frame, const std::string& child, const Pose& pose) {
+  return Ros1Writer().number(std::uint32_t{1}).header({5}, frame).text(child).pose(pose).bytes();
+}
+
+std::string field(std::string_view name, std::string_view value) {
+  return Ros1Writer().text(format("{}={}", name, value)).bytes();
+}
+template <class T>
+std::string field_of(std::string_view name, T value) {
+  return field(name, Ros1Writer().number(value).bytes());
+}
+std::string record(const std::string& header, std::string_view data) {
+  return Ros1Writer().text(header).text(data).bytes();
+}
+
+struct Ros1Message {
+  std::uint32_t connection;
+  Stamp time;
+  std::string data;
+};
+
+std::string message_record(const Ros1Message& message) {
+  const std::uint64_t time = static_cast<std::uint64_t>(message.time.ns / 1'000'000'000) |
+                             static_cast<std::uint64_t>(message.time.ns % 1'000'000'000) << 32U;
+  return record(
+      field_of("op", std::uint8_t{2}) + field_of("conn", message.connection) + field_of("time", time),
+      message.data);
+}
+
+/// A bag as a recorder leaves it that was killed: one plain chunk, no index.
+std::string recording_bytes() {
+  std::string chunk;
+  const auto connection = [&](std::uint32_t id, const std::string& topic, const std::string& type) {
+    chunk += record(field_of("op", std::uint8_t{7}) + field_of("conn", id) + field("topic", topic),
+                    field("topic", topic) + field("type", type));
+  };
+  connection(0, "/robot_0/points", "sensor_msgs/PointCloud2");
+  connection(1, "/robot_0/odom", "nav_msgs/Odometry");
+  connection(2, "/tf_static", "tf2_msgs/TFMessage");
+  chunk += message_record({2, {7}, transform("base_link", "os_lidar", test::T_base_ouster)});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Scan scan = test::make_scan(i, 5);
+    chunk += message_record({0, scan.stamp + Duration(3'000'000), cloud(scan)});
+    chunk += message_record(
+        {1, scan.stamp, odometry(scan.stamp, Pose::planar(0.5 * static_cast<double>(i), 0, 0))});
+  }
+  std::string bytes = "#ROSBAG V2.0\n";
+  bytes += record(field_of("op", std::uint8_t{3}) + field_of("index_pos", std::uint64_t{0}) +
+                      field_of("conn_count", std::uint32_t{0}) + field_of("chunk_count", std::uint32_t{0}),
+                  std::string(100, ' '));
+  return bytes + record(field_of("op", std::uint8_t{5}) + field("compression", "none") +
+                            field_of("size", static_cast<std::uint32_t>(chunk.size())),
+                        chunk);
+}
+
+TEST(Ros1Bag, IsARecordingLikeAnyOther) {
+  const Result<Bag> bag = open_ros1_bag(memory_source(recording_bytes()));
+  ASSERT_TRUE(bag) << bag.error().message;
+  EXPECT_EQ(bag->messages.size(), 7U);
+  EXPECT_TRUE(bag->warnings.empty());
+  const Result<Recording> recording = read_recording(*bag);
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->name, "robot_0");
+  ASSERT_EQ(recording->num_scans(), 3U);
+  EXPECT_EQ(recording->scan_stamps[2], test::make_scan(2, 5).stamp);
+  EXPECT_EQ(recording->read_scan(1)->cloud.points, test::make_scan(1, 5).cloud.points);
+  ASSERT_EQ(recording->wheel.size(), 3U);
+  EXPECT_EQ(recording->wheel[2].T_world_body.translation().x(), 1.0);
+  EXPECT_LT((recording->T_base_lidar.inverse() * test::T_base_ouster).log().norm(), 1e-9);
+}
+
+TEST(Ros1Bag, EveryTruncationIsReadSoFarOrAnError) {
+  const std::string bytes = recording_bytes();
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const Result<Bag> bag = open_ros1_bag(memory_source(bytes.substr(0, size)));
+    ASSERT_FALSE(bag) << "the only chunk is cut at " << size;
+    EXPECT_NE(bag.error().message.find("byte"), std::string::npos) << bag.error().message;
+  }
+}
+
+TEST(Ros1Bag, DamagedBytesAreAnErrorOrHarmless) {
+  const std::string bytes = recording_bytes();
+  Rng rng(3);
+  int num_read = 0;
+  for (int i = 0; i < 2000; ++i) {
+    std::string damaged = bytes;
+    for (int k = 0; k < 2; ++k) damaged[rng.below(damaged.size())] = static_cast<char>(rng.below(256));
+    const Result<Bag> bag = open_ros1_bag(memory_source(std::move(damaged)));
+    if (!bag) continue;
+    const Result<Recording> recording = read_recording(*bag);
+    for (std::size_t s = 0; recording && s < recording->num_scans(); ++s) (void)recording->read_scan(s);
+    ++num_read;
+  }
+  EXPECT_GT(num_read, 100);
+}
+
+std::string example(const std::string& name) { return test::shared_data("recordings/" + name).string(); }
+
+TEST(Ros1Bag, HoldsTheSameHoweverItsChunksAreCompressed) {
+  ADIT_NEED_DATA("recordings/example.bag");
+  const Result<Bag> plain = open_bag(example("example.bag"));
+  ASSERT_TRUE(plain) << plain.error().message;
+  EXPECT_EQ(plain->messages.size(), 8647U);
+  for (const char* name : {"example-bz2.bag", "example-lz4.bag"}) {
+    const Result<Bag> packed = open_bag(example(name));
+    ASSERT_TRUE(packed) << packed.error().message;
+    ASSERT_EQ(packed->messages.size(), plain->messages.size());
+    for (std::size_t m = 0; m < plain->messages.size(); ++m) {
+      const BagMessage& one = plain->messages[m];
+      const BagMessage& other = packed->messages[m];
+      ASSERT_EQ(other.log_time, one.log_time);
+      ASSERT_EQ(packed->topics[other.topic].name, plain->topics[one.topic].name);
+      ASSERT_EQ(packed->read(other).value(), plain->read(one).value());
+    }
+  }
+}
+
+TEST(Ros1Bag, WhatIsWholeOfATornFileIsReadWithAWarning) {
+  ADIT_NEED_DATA("recordings/example-lz4.bag");
+  const std::string whole = test::get_file(example("example-lz4.bag"));
+  std::set<std::size_t> numbers;
+  for (std::size_t size = whole.size() / 4; size < whole.size(); size += whole.size() / 16) {
+    const Result<Bag> torn = open_ros1_bag(memory_source(whole.substr(0, size)));
+    if (!torn) continue;
+    ASSERT_EQ(torn->warnings.size(), 1U) << "cut at " << size;
+    EXPECT_NE(torn->warnings[0].find(format("{} messages", torn->messages.size())), std::string::npos);
+    EXPECT_TRUE(torn->read(torn->messages.back()));
+    numbers.insert(torn->messages.size());
+  }
+  EXPECT_GE(numbers.size(), 1U);
+  EXPECT_LE(*numbers.rbegin(), 8647U);
+}
+
+TEST(Ros1Bag, ReadsWheelsAndImuOfARealRobot) {
+  ADIT_NEED_DATA("recordings/ros1_odometry_bz2.bag");
+  const Result<Bag> bag = open_bag(example("ros1_odometry_bz2.bag"));
+  ASSERT_TRUE(bag) << bag.error().message;
+  std::size_t num_odometry = 0;
+  std::size_t num_imu = 0;
+  Stamp last{0};
+  double sum = 0.0;
+  for (const BagMessage& message : bag->messages) {
+    const std::string& type = bag->topics[message.topic].type;
+    if (type == ros::kOdometry) {
+      const Result<ros::OdometryMessage> pose = decoded(*bag, message, ros::decode_odometry);
+      ASSERT_TRUE(pose) << pose.error().message;
+      EXPECT_GT(pose->pose.stamp, last);
+      EXPECT_NEAR(to_seconds(pose->pose.stamp - message.log_time), 0.0, 0.5);
+      last = pose->pose.stamp;
+      ++num_odometry;
+    }
+    if (type == ros::kImu) {
+      const Result<ros::ImuMessage> imu = decoded(*bag, message, ros::decode_imu);
+      ASSERT_TRUE(imu) << imu.error().message;
+      sum += imu->sample.specific_force.norm();
+      ++num_imu;
+    }
+  }
+  EXPECT_EQ(num_odometry, 3952U);
+  ASSERT_EQ(num_imu, 11865U);
+  EXPECT_NEAR(sum / static_cast<double>(num_imu), 9.8, 0.5) << "gravity, in the mean";
+}
+
+}  // namespace
+}  // namespace adit
