@@ -150,6 +150,13 @@ std::vector<std::size_t> Hypothesis::to_look_at_again() const {
   return out;
 }
 
+std::size_t Hypothesis::num_changes_unless_explained() const {
+  Hypothesis confirmed = *this;
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    if (compared[i].differs() && second_looks[i]) confirmed.note_changes(compared[i].structures);
+  return confirmed.num_changes();
+}
+
 std::size_t Hypothesis::num_differing(double by_more_than) const {
   return static_cast<std::size_t>(std::ranges::count_if(
       compared, [&](const ComparedPlace& place) { return !(place.difference <= by_more_than); }));
@@ -186,6 +193,13 @@ std::vector<TestedPlace> Hypothesis::places(bool distinctive_only) const {
     places.push_back({plan[i].own, plan[i].theirs, outcome(compared[i], distinctive_only)});
   std::ranges::stable_sort(places, {}, &TestedPlace::a);
   return places;
+}
+
+std::vector<TestedPlace> Hypothesis::places_at_best(bool distinctive_only) const {
+  Hypothesis best = *this;
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    if (compared[i].differs() && second_looks[i]) best.compared[i] = {.is_distinctive = true};
+  return best.places(distinctive_only);
 }
 
 std::vector<Hypothesis> hypotheses_of(const LoopsBetween& between, double reach_m,

@@ -77,6 +77,8 @@ struct Hypothesis {
   [[nodiscard]] std::size_t num_differing(double by_more_than = 1.0) const;
   /// Changes of structure, and places that differ as a whole.
   [[nodiscard]] std::size_t num_changes() const { return structures.num() + num_unlocated; }
+  /// The same if all second looks that are left confirmed what the first ones saw.
+  [[nodiscard]] std::size_t num_changes_unless_explained() const;
   /// Compared places that agree, but for what is explained; and those of them where a displacement would have
   /// shown beside that.
   [[nodiscard]] std::size_t num_agreeing() const;
@@ -84,6 +86,8 @@ struct Hypothesis {
   /// What was found at each place; what differs elsewhere leaves the rest of a place to agree. In the order
   /// driven by the own robot; where not `distinctive_only` every place that agrees counts as distinctive.
   [[nodiscard]] std::vector<TestedPlace> places(bool distinctive_only) const;
+  /// The same if all second looks that are left showed that places agree, and are distinctive.
+  [[nodiscard]] std::vector<TestedPlace> places_at_best(bool distinctive_only) const;
 
  private:
   [[nodiscard]] PlaceOutcome outcome(const ComparedPlace& place, bool distinctive_only) const;

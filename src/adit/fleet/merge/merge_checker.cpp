@@ -63,9 +63,11 @@ bool MergeChecker::has_other_walls(const Hypothesis& h) const {
 
 bool MergeChecker::differs_too_often(const Hypothesis& h) const {
   const std::size_t num = h.compared.size();
-  if (num >= static_cast<std::size_t>(config_.first_checks) && h.num_differing() == num) return true;
-  // One change is seen from many places: the places themselves are no independent trials.
-  return poisson_tail(h.num_changes(), config_.evidence.changes_at_worst_per_km * compared_km(h)) <
+  const bool all_differ = num >= static_cast<std::size_t>(config_.first_checks) && h.num_differing() == num;
+  // One change is seen from many places: the places themselves are no independent trials. Where all differ,
+  // second looks are not waited for.
+  const std::size_t changes = all_differ ? h.num_changes_unless_explained() : h.num_changes();
+  return poisson_tail(changes, config_.evidence.changes_at_worst_per_km * compared_km(h)) <
          config_.evidence.refusal_rate;
 }
 
@@ -89,9 +91,18 @@ double MergeChecker::evidence(const Hypothesis& h) const {
   return evidence_of_scans(h) + evidence_of_walls(h) + evidence_of_things(h);
 }
 
+double MergeChecker::prior_evidence(const Hypothesis& h) const {
+  return h.known_before + std::log(static_cast<double>(h.loops.size()) / static_cast<double>(loops_.size()));
+}
+
 double MergeChecker::evidence_of_scans(const Hypothesis& h) const {
-  const double prior = static_cast<double>(h.loops.size()) / static_cast<double>(loops_.size());
-  return h.known_before + std::log(prior) + evidence_of_places(h.places(config_.distinctive_only));
+  return prior_evidence(h) + evidence_of_places(h.places(config_.distinctive_only));
+}
+
+double MergeChecker::most_evidence_of_scans(const Hypothesis& h) const {
+  const auto num_left = static_cast<double>(h.plan.size() - h.compared.size());
+  return prior_evidence(h) + evidence_of_places(h.places_at_best(config_.distinctive_only)) +
+         num_left * evidence_of_agreement(chances(), 0);
 }
 
 double MergeChecker::evidence_of_places(const std::vector<TestedPlace>& places) const {
@@ -120,9 +131,7 @@ std::optional<std::size_t> MergeChecker::to_go_on_with() const {
   for (const Hypothesis& h : hypotheses_)
     if (h.is_finished() && !is_refuted(h)) best_finished = std::max(best_finished, evidence_of_scans(h));
   const auto can_no_longer_be_a_rival = [&](const Hypothesis& h) {
-    if (!std::isfinite(best_finished)) return false;
-    const auto num_left = static_cast<double>(h.plan.size() - h.compared.size());
-    return evidence_of_scans(h) + num_left * evidence_of_agreement(chances(), 0) < best_finished - needed();
+    return std::isfinite(best_finished) && most_evidence_of_scans(h) < best_finished - needed();
   };
   // Ranked by what needs no measuring of the own map: many a check ends with all refuted.
   const auto share_differing = [](const Hypothesis& h) {

@@ -76,6 +76,7 @@ class MergeChecker {
 
   [[nodiscard]] double needed() const;
   [[nodiscard]] double evidence(const Hypothesis& hypothesis) const;
+  [[nodiscard]] double prior_evidence(const Hypothesis& hypothesis) const;
   [[nodiscard]] double evidence_of_scans(const Hypothesis& hypothesis) const;
   /// In the order driven by the own robot.
   [[nodiscard]] double evidence_of_places(const std::vector<TestedPlace>& places) const;
@@ -83,6 +84,8 @@ class MergeChecker {
   [[nodiscard]] double evidence_of_walls(const Hypothesis& hypothesis, double times = 1.0) const;
   /// Poisson's log likelihood ratio of what may come and go; never positive.
   [[nodiscard]] double evidence_of_things(const Hypothesis& hypothesis) const;
+  /// What a hypothesis can reach when all that is left to compare speaks for it.
+  [[nodiscard]] double most_evidence_of_scans(const Hypothesis& hypothesis) const;
   [[nodiscard]] ChancesToGoOn chances() const { return own_.measured().look_alikes.chances(); }
 
   [[nodiscard]] std::optional<std::size_t> to_go_on_with() const;
