@@ -57,8 +57,11 @@ class MotionFilter {
   /// The next interval begins and ends; `begin` before `end`. Before the first one, nothing can be learned:
   /// what is said of the first scan is ignored. Of `motion`, what was measured in between, the IMU.
   void predict(Stamp begin, Stamp end, const SensedMotion& motion);
-  /// What the wheels say about the interval predicted last. Nothing is learned from wheels that slip: metres
-  /// beyond four standard deviations of what is known without them.
+  /// What the wheels say about the interval predicted last. The farther off ahead, the less they weigh: they
+  /// may slip. They say nothing of gravity and of the IMU's biases (a Schmidt-Kalman update), which scans do:
+  /// the bias that a slip would teach would mislead until a scan measures the way ahead. Source: Huber,
+  /// "Robust Estimation of a Location Parameter" (1964); Schmidt, "Application of State-Space Methods to
+  /// Navigation Problems" (1966).
   void measure(const WheelDelta& wheel);
 
   /// The motion in the interval predicted last.
@@ -106,6 +109,7 @@ class MotionFilter {
   using State = Eigen::Matrix<double, kSize, 1>;
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   using Rows6 = Eigen::Matrix<double, 6, kSize>;
+  using Columns6 = Eigen::Matrix<double, kSize, 6>;
   static constexpr double kUnknownTwist =
       3.0;  ///< Metres and radians per second: no robot is faster at first.
 

@@ -179,7 +179,7 @@ TEST(MotionFilter, WhatNoScanMeasuresStaysUnknown) {
 }
 
 // Along a tube, where no scan measures the way ahead.
-TEST(MotionFilter, WheelsThatSlipAreLeftOutAndBelievedAgainOnceTheRestKnowsNoBetter) {
+TEST(MotionFilter, WheelsThatSlipWeighLessUntilTheRestKnowsNoBetter) {
   Filter filter({.speed = 0.1});
   const auto drive = [&](double counted_m, int num) {
     for (int i = 0; i < num; ++i) {
@@ -191,7 +191,7 @@ TEST(MotionFilter, WheelsThatSlipAreLeftOutAndBelievedAgainOnceTheRestKnowsNoBet
     return filter.prior().T_ref_now.translation().x();
   };
   EXPECT_NEAR(drive(0.15, 30), 0.15, 1e-3);
-  EXPECT_NEAR(drive(0.21, 5), 0.15, 1e-3);
+  EXPECT_LT(drive(0.21, 5), 0.185) << "half of the slip in half a second";
   EXPECT_NEAR(drive(0.21, 100), 0.21, 5e-3);
   EXPECT_NEAR(filter.wheel_scale(), 0.0, 2.0 * WheelNoise().scale);
 }
