@@ -57,6 +57,14 @@ TEST(AdaptiveAgent, KeepsRobotsOfTwoStreetsApartWithAReason) {
   EXPECT_EQ(solution.components.size(), 2U);
 }
 
+TEST(AdaptiveAgent, RegistersNoMoreCandidatesThanAskedFor) {
+  AgentConfig config = adaptive();
+  config.adaptive.search.candidates = 4;
+  TwoRobots fleet(3, config);
+  fleet.meet();
+  EXPECT_EQ(fleet.agents[0].known().loops.size(), 4U);
+}
+
 /// A robot that drives up the street and back again, on the other lane.
 struct ThereAndBack {
   std::vector<Pose> truth = street(0.0, 50.0, -0.5);

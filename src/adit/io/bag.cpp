@@ -13,15 +13,6 @@
 namespace adit {
 namespace {
 
-/// The topic of that name and type; a new one where there is none yet.
-std::size_t topic_in(std::vector<BagTopic>& topics, const BagTopic& topic) {
-  const auto known = std::ranges::find_if(
-      topics, [&](const BagTopic& other) { return other.name == topic.name && other.type == topic.type; });
-  const auto index = static_cast<std::size_t>(known - topics.begin());
-  if (known == topics.end()) topics.push_back(topic);
-  return index;
-}
-
 std::optional<std::map<std::string, std::string>> own_metadata(const mcap::Contents& contents) {
   for (const mcap::Metadata& metadata : contents.metadata)
     if (metadata.name == "adit") return metadata.entries;
@@ -40,7 +31,7 @@ Bag bag_of(const std::shared_ptr<const mcap::Reader>& reader) {
   for (const auto& [id, channel] : contents.channels) {
     const auto schema = contents.schemas.find(channel.schema_id);
     const std::string type = schema == contents.schemas.end() ? "" : schema->second.name;
-    topic_of_channel[id] = topic_in(bag.topics, {channel.topic, type, channel.message_encoding});
+    topic_of_channel[id] = topic_index(bag.topics, {channel.topic, type, channel.message_encoding});
   }
   for (std::size_t i = 0; i < contents.messages.size(); ++i) {
     const mcap::MessageRef& message = contents.messages[i];
@@ -55,6 +46,14 @@ Bag bag_of(const std::shared_ptr<const mcap::Reader>& reader) {
 }
 
 }  // namespace
+
+std::size_t topic_index(std::vector<BagTopic>& topics, const BagTopic& topic) {
+  const auto known = std::ranges::find_if(
+      topics, [&](const BagTopic& other) { return other.name == topic.name && other.type == topic.type; });
+  const auto index = static_cast<std::size_t>(known - topics.begin());
+  if (known == topics.end()) topics.push_back(topic);
+  return index;
+}
 
 Result<Bag> open_mcap_bag(ByteSource source) {
   return mcap::Reader::open(std::move(source)).map([](mcap::Reader reader) {
@@ -80,7 +79,7 @@ Bag joined(std::vector<Bag> parts) {
     std::ranges::move(part.warnings, std::back_inserter(all.warnings));
     readers->push_back(std::move(part.read));
     std::vector<std::size_t> topic_of;
-    for (const BagTopic& topic : part.topics) topic_of.push_back(topic_in(all.topics, topic));
+    for (const BagTopic& topic : part.topics) topic_of.push_back(topic_index(all.topics, topic));
     for (const BagMessage& message : part.messages) {
       all.messages.push_back({topic_of[message.topic], message.log_time, places->size()});
       places->push_back({p, message});

@@ -52,6 +52,9 @@ template <class Decode>
   });
 }
 
+/// Index of the topic with this name and type, which is added if it is missing.
+[[nodiscard]] std::size_t topic_index(std::vector<BagTopic>& topics, const BagTopic& topic);
+
 /// Opens
 ///  - FILE.mcap, with or without chunks, index, lz4 and zstd;
 ///  - FILE.db3, the sqlite storage of rosbag2;

@@ -89,7 +89,7 @@ Result<> choose_one(const Bag& bag, TopicIndices& topics, const TopicChoice& cho
 Result<Topics> choose_topics(const Bag& bag, const RecordingConfig& config) {
   Topics topics = find_topics(bag);
   if (topics.points.empty())
-    return fail("no topic of sensor_msgs/msg/PointCloud2 in CDR; there are no scans to read");
+    return fail("no topic of sensor_msgs/msg/PointCloud2; there are no scans to read");
   if (config.imu == kNoImu) topics.imu.clear();
   const std::string imu = config.imu == kNoImu ? "" : config.imu;
   const bool has_wheels = config.wheel != kNoWheel;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// CDR, the encoding of ROS 2 messages: four bytes that state the byte order, then numbers aligned to their
-/// own size (counted from behind those four bytes). Source: OMG DDS-XTypes 1.3, section 7.4 (plain CDR,
-/// version 1).
+/// The encodings of ROS messages. CDR, that of ROS 2: four bytes that state the byte order, then numbers
+/// aligned to their own size (counted from behind those four bytes). Source: OMG DDS-XTypes 1.3, section 7.4
+/// (plain CDR, version 1).
 #pragma once
 
 #include <algorithm>

@@ -144,11 +144,7 @@ struct Contents {
     const std::optional<HeaderFields> fields = fields_in(data);
     if (!id || !fields) return fail_at(offset, "damaged connection record");
     const BagTopic topic{text_in(head, "topic"), type_in_ros2(text_in(*fields, "type")), "ros1"};
-    const auto known = std::ranges::find_if(bag.topics, [&](const BagTopic& other) {
-      return other.name == topic.name && other.type == topic.type;
-    });
-    topic_of_connection[*id] = static_cast<std::size_t>(known - bag.topics.begin());
-    if (known == bag.topics.end()) bag.topics.push_back(topic);
+    topic_of_connection[*id] = topic_index(bag.topics, topic);
     return {};
   }
 };
@@ -175,6 +171,12 @@ Result<> add_message_record(const Record& record, Contents& contents, Place plac
   return contents.add_message(*connection, stamp_of(*time), place);
 }
 
+Result<> add_connection_record(const ByteSource& source, const Record& record, Contents& contents) {
+  return source.read(record.data, record.size).and_then([&](const std::string& data) {
+    return contents.add_connection(record.fields, data, record.offset);
+  });
+}
+
 /// Connections and messages of a chunk without index.
 Result<> scan_chunk(const ByteSource& source, std::uint64_t offset, Contents& contents) {
   Result<std::string> records = read_chunk(source, offset);
@@ -186,11 +188,7 @@ Result<> scan_chunk(const ByteSource& source, std::uint64_t offset, Contents& co
     const Result<Record> record = read_record(inside, at);
     if (!record) return fail(format("chunk at byte {}", offset), record.error());
     Result<> added;
-    if (record->op == Op::connection) {
-      added = inside.read(record->data, record->size).and_then([&](const std::string& data) {
-        return contents.add_connection(record->fields, data, at);
-      });
-    }
+    if (record->op == Op::connection) added = add_connection_record(inside, *record, contents);
     if (record->op == Op::message) added = add_message_record(*record, contents, {chunk, at});
     if (!added) return fail(format("chunk at byte {}", offset), added.error());
     at = record->end();
@@ -206,11 +204,7 @@ Result<> scan_file(const ByteSource& source, Contents& contents) {
     if (!record) return tl::unexpected(record.error());
     Result<> added;
     if (record->op == Op::chunk) added = scan_chunk(source, at, contents);
-    if (record->op == Op::connection) {
-      added = source.read(record->data, record->size).and_then([&](const std::string& data) {
-        return contents.add_connection(record->fields, data, at);
-      });
-    }
+    if (record->op == Op::connection) added = add_connection_record(source, *record, contents);
     if (record->op == Op::message) added = add_message_record(*record, contents, {std::nullopt, at});
     if (!added) return added;
     at = record->end();
@@ -250,11 +244,7 @@ Result<> read_lists(const ByteSource& source, std::uint64_t index_at, Contents& 
     const Result<Record> record = read_record(source, at);
     if (!record) return tl::unexpected(record.error());
     Result<> taken;
-    if (record->op == Op::connection) {
-      taken = source.read(record->data, record->size).and_then([&](const std::string& data) {
-        return contents.add_connection(record->fields, data, at);
-      });
-    }
+    if (record->op == Op::connection) taken = add_connection_record(source, *record, contents);
     if (record->op == Op::chunk_info) {
       const auto chunk = number_in<std::uint64_t>(record->fields, "chunk_pos");
       const auto count = number_in<std::uint32_t>(record->fields, "count");

@@ -87,7 +87,7 @@ double number_of(const Field& field) {
 Fields fields_of(EvidenceModel& c) {
   Fields fields = {
       {"error_rate", &c.error_rate, "", 1e-12, 0.5,
-       "largest chance that a wrong merge passes, by this model; what was measured is below (decision 0048)"},
+       "largest chance that a wrong merge passes, by this model; the measured rate is lower (decision 0048)"},
       {"refusal_rate", &c.refusal_rate, "", 1e-12, 0.5,
        "chance that a true merge is refused because scans or walls differ"},
       {"refusal_rate_before_the_end", &c.refusal_rate_before_the_end, "", 1e-12, 0.5,

@@ -143,18 +143,26 @@ void Hypothesis::add_second_look(std::size_t which, const ComparedPlace& place) 
 
 bool Hypothesis::is_finished() const { return compared.size() == plan.size() && to_look_at_again().empty(); }
 
+bool Hypothesis::waits_for_second_look(std::size_t which) const {
+  return compared[which].differs() && second_looks[which];
+}
+
 std::vector<std::size_t> Hypothesis::to_look_at_again() const {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < compared.size(); ++i)
-    if (compared[i].differs() && second_looks[i]) out.push_back(i);
+    if (waits_for_second_look(i)) out.push_back(i);
   return out;
 }
 
 std::size_t Hypothesis::num_changes_unless_explained() const {
-  Hypothesis confirmed = *this;
-  for (std::size_t i = 0; i < compared.size(); ++i)
-    if (compared[i].differs() && second_looks[i]) confirmed.note_changes(compared[i].structures);
-  return confirmed.num_changes();
+  Changes all = structures;
+  std::size_t unlocated = num_unlocated;
+  for (std::size_t i = 0; i < compared.size(); ++i) {
+    if (!waits_for_second_look(i)) continue;
+    if (compared[i].structures.empty()) ++unlocated;
+    all.add(compared[i].structures);
+  }
+  return all.num() + unlocated;
 }
 
 std::size_t Hypothesis::num_differing(double by_more_than) const {
@@ -196,10 +204,13 @@ std::vector<TestedPlace> Hypothesis::places(bool distinctive_only) const {
 }
 
 std::vector<TestedPlace> Hypothesis::places_at_best(bool distinctive_only) const {
-  Hypothesis best = *this;
+  std::vector<TestedPlace> places;
   for (std::size_t i = 0; i < compared.size(); ++i)
-    if (compared[i].differs() && second_looks[i]) best.compared[i] = {.is_distinctive = true};
-  return best.places(distinctive_only);
+    places.push_back(
+        {plan[i].own, plan[i].theirs,
+         waits_for_second_look(i) ? PlaceOutcome::distinctive : outcome(compared[i], distinctive_only)});
+  std::ranges::stable_sort(places, {}, &TestedPlace::a);
+  return places;
 }
 
 std::vector<Hypothesis> hypotheses_of(const LoopsBetween& between, double reach_m,

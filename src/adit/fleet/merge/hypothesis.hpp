@@ -90,6 +90,7 @@ struct Hypothesis {
   [[nodiscard]] std::vector<TestedPlace> places_at_best(bool distinctive_only) const;
 
  private:
+  [[nodiscard]] bool waits_for_second_look(std::size_t which) const;
   [[nodiscard]] PlaceOutcome outcome(const ComparedPlace& place, bool distinctive_only) const;
   [[nodiscard]] bool shows_beside_changes(const ComparedPlace& place) const;
   /// Counts what differs at a place; true if there is something and all of it had been counted before.
