@@ -78,9 +78,9 @@ TEST(Scenario, wheels_and_imu_whose_clocks_err_cover_every_sweep) {
     config.seed = seed;
     for (const Recording& r : simulated(hall(), config)) {
       const Stamp first_begin = r.scan_stamps.front() - sweep_time(config.lidar);
-      EXPECT_GE(r.wheel.front().stamp, Stamp(0)) << seed;
+      EXPECT_GE(r.wheel.front().stamp, Stamp{}) << seed;
       EXPECT_LE(r.wheel.front().stamp, first_begin) << seed;
-      EXPECT_GE(r.imu.front().stamp, Stamp(0)) << seed;
+      EXPECT_GE(r.imu.front().stamp, Stamp{}) << seed;
       EXPECT_LE(r.imu.front().stamp, first_begin) << seed;
       EXPECT_GE(r.wheel.back().stamp, r.scan_stamps.back()) << seed;
       EXPECT_GE(r.imu.back().stamp, r.scan_stamps.back()) << seed;
