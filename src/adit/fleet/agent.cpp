@@ -117,7 +117,9 @@ Agent::Replies Agent::on(RobotId /*from*/, const MergeChecks& part) {
 }
 
 Agent::Replies Agent::on(RobotId /*from*/, const CloudRequest& request) const {
-  return {clouds_of(*map_, request, {config_.registration_in_use().voxel_size, config_.submap_in_use()})};
+  return {
+      clouds_of(*map_, request,
+                {config_.registration_in_use().voxel_size, config_.submap_in_use(), config_.adaptive.view})};
 }
 
 // ---- searching: candidates -------------------------------------------------------------------------------

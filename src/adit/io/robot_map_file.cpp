@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers stand in the file as they do in memory");
 
 /// Its last digit counts the layouts that there have been.
-constexpr std::string_view kMagic = "adit map 6\n";
+constexpr std::string_view kMagic = "adit map 7\n";
 
 /// Appends what `transfer` names.
 class Writer {
@@ -153,6 +153,7 @@ void scan_context_config(Archive& archive, Config& value) {
   archive.number(value.num_sectors);
   archive.number(value.max_radius_m);
   archive.number(value.height_offset_m);
+  archive.number(value.max_elevation_deg);
 }
 
 template <class Archive, class Map>

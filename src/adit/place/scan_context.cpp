@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "adit/core/angles.hpp"
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/simd.hpp"
@@ -183,6 +184,16 @@ ContextMatch best_around(const ScanContext& query, const ScanContext& match, int
   return best;
 }
 
+PointCloud below_elevation(const PointCloud& cloud, const Vector3& viewpoint, double max_elevation_deg) {
+  const auto slope = static_cast<float>(std::tan(max_elevation_deg * kDegree));
+  PointCloud below;
+  for (const Eigen::Vector3f& p : cloud.points) {
+    const Eigen::Vector3f ray = p - viewpoint.cast<float>();
+    if (ray.z() <= slope * ray.head<2>().norm()) below.points.push_back(p);
+  }
+  return below;
+}
+
 void check_same_grid(const ScanContext& a, const ScanContext& b) {
   ADIT_CHECK(a.num_rings == b.num_rings && a.num_sectors == b.num_sectors,
              "contexts of one grid size are compared");
@@ -202,8 +213,14 @@ bool ScanContext::empty() const {
   return std::ranges::all_of(norms, [](float norm) { return norm == 0.0F; });
 }
 
-ScanContext describe(const PointCloud& cloud_base, const ScanContextConfig& config) {
+ScanContext describe(const PointCloud& cloud_base, const ScanContextConfig& config,
+                     const Vector3& viewpoint) {
   check_config(config);
+  if (config.max_elevation_deg < 90.0) {
+    ScanContextConfig whole = config;
+    whole.max_elevation_deg = 90.0;
+    return describe(below_elevation(cloud_base, viewpoint, config.max_elevation_deg), whole);
+  }
   const PolarGrid grid(config);
   const auto num_cells = static_cast<std::size_t>(grid.num_cells());
   std::vector<float> heights(kCopies * num_cells, 0.0F);

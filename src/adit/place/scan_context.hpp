@@ -10,6 +10,7 @@
 
 #include "adit/core/config.hpp"
 #include "adit/core/point_cloud.hpp"
+#include "adit/core/pose.hpp"
 #include "adit/core/result.hpp"
 
 namespace adit {
@@ -23,13 +24,18 @@ struct ScanContextConfig {
   /// Added to each height, so that a cell with floor alone (z = 0 in the base frame) differs from an empty
   /// one and a falling floor stays positive. Points below -height_offset_m are left out.
   double height_offset_m = 2.0;
+  /// Points higher above the horizon, seen from the sensor, are left out: 90 leaves out none. What only some
+  /// sensors look up at would make one place look like two.
+  double max_elevation_deg = 90.0;
 };
 inline Fields fields_of(ScanContextConfig& c) {
   return {{"num_rings", &c.num_rings, "", 1, 200, "rings of the polar grid"},
           {"num_sectors", &c.num_sectors, "", 3, 720, "sectors of the polar grid"},
           {"max_radius_m", &c.max_radius_m, "m", 1.0, 500.0, "outer radius; points beyond are left out"},
           {"height_offset_m", &c.height_offset_m, "m", 0.0, 20.0,
-           "added to z, metres above the base frame's floor"}};
+           "added to z, metres above the base frame's floor"},
+          {"max_elevation_deg", &c.max_elevation_deg, "deg", 1.0, 90.0,
+           "points higher above the sensor's horizon are left out; 90: none"}};
 }
 
 /// The appearance of a place: the greatest height in each cell of a polar grid around the robot. Made by
@@ -49,12 +55,14 @@ struct ScanContext {
   [[nodiscard]] bool empty() const;  ///< No cell was seen, or default-made.
 };
 
-/// The descriptor of a cloud in the base frame (x forward, z up, z = 0 on the floor). Points that are not
-/// finite, lie farther out than `max_radius_m` or below -`height_offset_m` are left out. Sectors count from
+/// The descriptor of a cloud in the base frame (x forward, z up, z = 0 on the floor), seen from `viewpoint`.
+/// Points that are not finite, lie farther out than `max_radius_m`, below -`height_offset_m` or above
+/// `max_elevation_deg` are left out. Sectors count from
 /// the x axis towards y; within rounding of a border a point falls to either side. A cloud without points
 /// gives a context that is `empty()`. Throws ContractViolation when `config` is out of its ranges.
 /// Source: Kim and Kim, "Scan Context", IROS 2018, section III-A.
-[[nodiscard]] ScanContext describe(const PointCloud& cloud_base, const ScanContextConfig& config);
+[[nodiscard]] ScanContext describe(const PointCloud& cloud_base, const ScanContextConfig& config,
+                                   const Vector3& viewpoint = Vector3::Zero());
 
 /// From heights sector by sector (as `unit_columns` is laid out), 0 for empty cells. Throws ContractViolation
 /// when the size does not fit or a height is negative or not finite.

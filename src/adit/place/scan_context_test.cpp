@@ -155,6 +155,19 @@ TEST(ScanContext, BadPointsAreLeftOut) {
   EXPECT_TRUE(ScanContext{}.empty());
 }
 
+TEST(ScanContext, PointsAboveTheElevationAreLeftOutAsTheSensorSeesThem) {
+  PointCloud cloud;
+  cloud.points = {{10.0F, 0.0F, 2.0F}, {10.0F, 0.0F, 4.0F}};  // 5.7 and 16.7 degrees above a sensor at 1 m
+  const auto highest = [&](double degrees, const Vector3& viewpoint) {
+    return describe(cloud, {.max_elevation_deg = degrees}, viewpoint).height(2, 0);
+  };
+  EXPECT_EQ(highest(15.0, {0, 0, 1}), 4.0F);
+  EXPECT_EQ(highest(17.0, {0, 0, 1}), 6.0F);
+  EXPECT_EQ(highest(15.0, {-5, 0, 1}), 6.0F) << "from farther away it stands lower";
+  EXPECT_EQ(highest(90.0, {0, 0, -100}), 6.0F) << "90 leaves out none";
+  EXPECT_TRUE(describe(cloud, {.max_elevation_deg = 1.0}, {0, 0, 1}).empty());
+}
+
 TEST(ScanContext, TurningTheRobotShiftsTheMatch) {
   Rng rng(3);
   const PointCloud cloud_match = cell_cloud(rng, 0.4);

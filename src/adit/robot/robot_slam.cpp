@@ -130,8 +130,8 @@ void RobotSlam::describe_keyframe(std::size_t k, const Look& look) {
   PointCloud thinned = voxel_downsample(look.cloud, config_.cloud_voxel);
   thinned.time_offsets_ns.clear();  // the cloud is deskewed
   // Places are described with z upwards, however the robot stands, where it feels what is up.
-  map_.places[k] =
-      describe(look.up ? transformed(levelled(*look.up), look.cloud) : look.cloud, config_.scan_context);
+  const Pose level = look.up ? levelled(*look.up) : Pose();
+  map_.places[k] = describe(transformed(level, look.cloud), config_.scan_context, level * map_.viewpoint);
   // A cloud with too few points for a bounding box does not describe the place: it takes no part in the loop
   // search.
   map_.tunnel[k] =

@@ -21,7 +21,8 @@ struct RobotSlamConfig {
   KeyframePolicyConfig keyframes;
   ConfirmConfig confirm;
   TunnelFilterConfig tunnel_filter;
-  ScanContextConfig scan_context;
+  /// A VLP-16 looks 15 degrees up, an OS2 11, a Livox Mid-360 52 (decision 0051).
+  ScanContextConfig scan_context{.max_elevation_deg = 15.0};
   PathNoise noise;
   double cloud_voxel = 0.15;  ///< Keyframe clouds are thinned to one point per voxel of this edge, metres.
 };

@@ -13,8 +13,8 @@ namespace adit {
 /// A keyframe with those around it. A single scan shows what its sensor's field of view leaves; a few metres
 /// of them show the tunnel, whatever the sensor (decision 0040). Lengths in metres.
 struct SubmapConfig {
-  double reach_m = 6.0;    ///< Along the path, to each side; 0: the keyframe alone.
-  double step_m = 2.0;     ///< Along the path, from one keyframe that is taken to the next.
+  double reach_m = 8.0;    ///< Along the path, to each side; 0: the keyframe alone.
+  double step_m = 1.0;     ///< Along the path, from one keyframe that is taken to the next.
   double radius_m = 30.0;  ///< Points farther from the keyframe, horizontally, are left out.
 };
 [[nodiscard]] Fields fields_of(SubmapConfig& config);

@@ -123,19 +123,24 @@ void get(Reader& in, Places::Place& place) {
   get(in, place.context);
 }
 
-void put(Writer& out, const Clouds::Cloud& cloud) {
-  out.scalar(cloud.index);
-  put(out, cloud.viewpoint);
+void put_within_reach(Writer& out, const std::vector<Eigen::Vector3f>& points) {
   std::vector<Eigen::Vector3f> near;
-  for (const Eigen::Vector3f& point : cloud.points) {
+  for (const Eigen::Vector3f& point : points) {
     if (point.cwiseAbs().maxCoeff() <= kPointReach) near.push_back(point);
   }
   out.vector(near);
+}
+void put(Writer& out, const Clouds::Cloud& cloud) {
+  out.scalar(cloud.index);
+  put(out, cloud.viewpoint);
+  put_within_reach(out, cloud.points);
+  put_within_reach(out, cloud.beside);
 }
 void get(Reader& in, Clouds::Cloud& cloud) {
   cloud.index = in.scalar<std::uint32_t>();
   get(in, cloud.viewpoint);
   in.vector(cloud.points);
+  in.vector(cloud.beside);
 }
 
 void put(Writer& out, const LoopClosure& loop) {

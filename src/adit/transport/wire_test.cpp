@@ -55,7 +55,8 @@ std::vector<Message> one_of_each() {
            {0},
            Clouds{{{5,
                     {0.5F, 0.0F, 0.9F},
-                    {Eigen::Vector3f(1.0F, -2.0F, 3.0F), Eigen::Vector3f(0.0025F, 160.0F, -160.0F)}}},
+                    {Eigen::Vector3f(1.0F, -2.0F, 3.0F), Eigen::Vector3f(0.0025F, 160.0F, -160.0F)},
+                    {Eigen::Vector3f(-4.0F, 5.0F, 6.0F)}}},
                   CloudKind::submap}},
           {{0}, {1}, Loops{{0}, 3, {a_loop()}}},
           {{0}, {2}, MergeChecks{{1}, 4, {a_check()}}}};
@@ -166,7 +167,8 @@ TEST(Wire, PointsKeepFiveMillimetresAndFarOnesStayBehind) {
   Clouds clouds;
   clouds.clouds.push_back({1,
                            {0.25F, -0.125F, 0.875F},
-                           {Eigen::Vector3f(12.3456F, -7.7777F, 0.1F), Eigen::Vector3f(170.0F, 0.0F, 0.0F)}});
+                           {Eigen::Vector3f(12.3456F, -7.7777F, 0.1F), Eigen::Vector3f(170.0F, 0.0F, 0.0F)},
+                           {}});
   const Result<Message> back = decode(encode({{0}, {1}, clouds}));
   ASSERT_TRUE(back.has_value());
   const auto& points = std::get<Clouds>(back->body).clouds.at(0).points;

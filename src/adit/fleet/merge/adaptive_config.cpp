@@ -66,6 +66,7 @@ Fields fields_of(AdaptiveConfig& c) {
                     "loops whose keyframes stand farther apart are rejected: not one place"});
   append(fields, "registration", fields_of(c.registration));
   append(fields, "submap", fields_of(c.submap));
+  append(fields, "view", fields_of(c.view));
   append(fields, "merge_check", fields_of(c.merge_check));
   return fields;
 }

@@ -21,7 +21,7 @@ Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryCha
       path_m_(path_lengths(chain_)),
       find_look_alikes_(std::move(find_look_alikes)),
       features_(std::move(features)),
-      surfaces_(map, config.registration) {
+      surfaces_(map, config.registration, config.view) {
   const double usual = config_.merge_check.evidence.allowance * usual_difference();
   const double voxel = config_.registration.voxel_size;
   if (usual > 0.0)
@@ -58,7 +58,8 @@ std::vector<LocalFit> Discernment::compare(const std::vector<OwnComparison>& ask
   std::vector<LocalFit> out(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
     const auto& [a, b, T_a_b] = asked[i];
-    out[i] = fit_near(surfaces_.at(a), surfaces_.at(b), T_a_b, good_enough, config_.registration, from);
+    out[i] =
+        fit_near(surfaces_.at(a).view, surfaces_.at(b).view, T_a_b, good_enough, config_.registration, from);
   });
   return out;
 }
@@ -120,7 +121,7 @@ WallOffsets Discernment::offsets_between(const std::vector<OwnComparison>& pairs
   WallOffsets offsets(config_.registration.relief, Visits::one);
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (!differ(found[i].agreement))
-      offsets.add(patch_offsets(surfaces_.at(pairs[i].a), surfaces_.at(pairs[i].b), found[i].T_a_b,
+      offsets.add(patch_offsets(surfaces_.at(pairs[i].a).scan, surfaces_.at(pairs[i].b).scan, found[i].T_a_b,
                                 chain_.pose(pairs[i].a), config_.registration));
   return offsets;
 }
@@ -162,6 +163,14 @@ std::vector<Vector3> Discernment::differing(std::uint32_t keyframe, const Agreem
     if (patch.num_points > limit_) places.push_back(chain_.pose(keyframe) * patch.position);
   if (places.empty()) places.push_back(chain_.pose(keyframe).translation());  // nothing in common
   return places;
+}
+
+std::vector<std::uint32_t> Discernment::displaced_from(std::uint32_t keyframe) const {
+  const double displacement_m = config_.merge_check.discernment.displacement_m;
+  std::vector<std::uint32_t> displaced;
+  for (const double by : {-displacement_m, displacement_m})
+    if (const auto other = keyframe_at(path_m_, path_m_[keyframe] + by)) displaced.push_back(*other);
+  return displaced;
 }
 
 std::vector<DisplacementSigns> Discernment::displacement_signs(const std::vector<std::uint32_t>& keyframes) {

@@ -51,6 +51,9 @@ class Discernment {
   /// Of each keyframe: by what.
   [[nodiscard]] std::vector<DisplacementSigns> displacement_signs(
       const std::vector<std::uint32_t>& keyframes);
+  /// The keyframes that stand displaced from this one along the path, to either side, by the distance that
+  /// makes a place distinctive; fewer at the ends of the path.
+  [[nodiscard]] std::vector<std::uint32_t> displaced_from(std::uint32_t keyframe) const;
   /// Path, in metres, over which odometry leads to within half a metre to the side: by how much its heading
   /// differs from that of the scans. Within 50 and 150 m.
   [[nodiscard]] double reach_m();

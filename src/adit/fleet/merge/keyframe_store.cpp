@@ -22,14 +22,18 @@ FeatureStore::FeatureStore(std::shared_ptr<const RobotMap> map, const Registrati
           },
           bytes_of, max_bytes) {}
 
+SeenPlace::SeenPlace(const PointCloud& of_view, const PointCloud& of_scan, const Vector3& viewpoint,
+                     const RegistrationConfig& config)
+    : view(compute_surface(of_view, config), viewpoint, config.voxel_size),
+      scan(compute_surface(of_scan, config), viewpoint, config.voxel_size) {}
+
 SurfaceStore::SurfaceStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
-                           std::size_t max_bytes)
+                           const SubmapConfig& view_config, std::size_t max_bytes)
     : KeyframeStore(
           std::move(map),
-          [config](const RobotMap& of, std::uint32_t k) {
-            return SeenSurface(compute_surface(*of.keyframes[k].cloud, config), of.viewpoint,
-                               config.voxel_size);
+          [config, view_config](const RobotMap& of, std::uint32_t k) {
+            return SeenPlace(submap(of, k, view_config), *of.keyframes[k].cloud, of.viewpoint, config);
           },
-          [](const SeenSurface& surface) { return surface.num_bytes(); }, max_bytes) {}
+          [](const SeenPlace& place) { return place.num_bytes(); }, max_bytes) {}
 
 }  // namespace adit

@@ -95,12 +95,21 @@ class FeatureStore : public KeyframeStore<Features> {
                const SubmapConfig& submap_config, std::size_t max_bytes = kMaxBytes);
 };
 
-/// Keyframes made ready for comparing them.
-class SurfaceStore : public KeyframeStore<SeenSurface> {
+/// A keyframe made ready for comparing it.
+struct SeenPlace {
+  SeenSurface view;  ///< Of its scan and those beside it, as if all had been seen from where it stood.
+  SeenSurface scan;  ///< Of its scan alone: what no other keyframe's scan has part in.
+
+  SeenPlace(const PointCloud& of_view, const PointCloud& of_scan, const Vector3& viewpoint,
+            const RegistrationConfig& config);
+  [[nodiscard]] std::size_t num_bytes() const { return view.num_bytes() + scan.num_bytes(); }
+};
+
+class SurfaceStore : public KeyframeStore<SeenPlace> {
  public:
   static constexpr std::size_t kMaxBytes = 128'000'000;
   SurfaceStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
-               std::size_t max_bytes = kMaxBytes);
+               const SubmapConfig& view_config, std::size_t max_bytes = kMaxBytes);
 };
 
 }  // namespace adit

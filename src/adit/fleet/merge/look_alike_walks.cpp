@@ -96,8 +96,8 @@ void LookAlikeWalks::follow(Measured& measured) {
         measured.look_alikes.add_differed(walk.num_passed);
         continue;
       }
-      offsets[walk.look_alike].add(patch_offsets(surfaces.at(a), surfaces.at(b), step.found[w].T_a_b,
-                                                 chain_.pose(a), config_.registration));
+      offsets[walk.look_alike].add(patch_offsets(surfaces.at(a).scan, surfaces.at(b).scan,
+                                                 step.found[w].T_a_b, chain_.pose(a), config_.registration));
       if (is_distinctive[w]) measured.look_alikes.add_agreed(walk.num_passed++);
     }
     std::erase_if(walks_, [](const Walk& walk) { return walk.is_over; });

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "adit/fleet/merge/place_comparer.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "adit/core/parallel.hpp"
@@ -17,14 +18,38 @@ std::vector<std::uint32_t> own_keyframes(const std::vector<PlannedComparison>& a
 
 }  // namespace
 
-ComparedPlace PlaceComparer::compared(const PlannedComparison& place, const SeenSurface& theirs,
+void PlaceComparer::prepare(std::vector<std::uint32_t> keyframes, const std::vector<PlannedComparison>& asked,
+                            const std::vector<DisplacementSigns>& signs) {
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    keyframes.push_back(asked[i].own);
+    if (signs[i].empty()) continue;
+    const std::vector<std::uint32_t> displaced = discernment_.displaced_from(asked[i].own);
+    keyframes.insert(keyframes.end(), displaced.begin(), displaced.end());
+  }
+  discernment_.surfaces().prepare(keyframes);
+}
+
+bool PlaceComparer::agrees_displaced(std::uint32_t own, const SeenPlace& theirs,
+                                     const Pose& T_own_theirs) const {
+  return std::ranges::any_of(discernment_.displaced_from(own), [&](std::uint32_t displaced) {
+    const SeenSurface& there = discernment_.surfaces().at(displaced).view;
+    const LocalFit fit =
+        fit_near(there, theirs.view, T_own_theirs, discernment_.limit(), registration_, FitFrom::guess);
+    return !discernment_.differ(fit.agreement);
+  });
+}
+
+ComparedPlace PlaceComparer::compared(const PlannedComparison& place, const SeenPlace& theirs,
                                       const DisplacementSigns& signs) const {
   const double limit = discernment_.limit();
-  const SeenSurface& own = discernment_.surfaces().at(place.own);
-  const LocalFit fit = fit_near(own, theirs, place.T_own_theirs, limit, registration_);
+  const SeenPlace& own = discernment_.surfaces().at(place.own);
+  const LocalFit fit = fit_near(own.view, theirs.view, place.T_own_theirs, limit, registration_);
   const Pose& T_odom_own = map_.keyframes[place.own].T_odom_base;
-  ComparedPlace out{fit.agreement.largest_difference / limit, !signs.empty()};
-  out.signs = signs;
+  ComparedPlace out{fit.agreement.largest_difference / limit};
+  if (!signs.empty() && !agrees_displaced(place.own, theirs, fit.T_a_b)) {
+    out.is_distinctive = true;
+    out.signs = signs;
+  }
   const auto above_limit = [&](const std::vector<DifferingPatch>& patches) {
     std::vector<Vector3> places;
     for (const DifferingPatch& patch : patches)
@@ -33,7 +58,8 @@ ComparedPlace PlaceComparer::compared(const PlannedComparison& place, const Seen
   };
   out.structures = above_limit(fit.agreement.structures);
   out.things = above_limit(fit.agreement.things);
-  if (!out.differs()) out.offsets = patch_offsets(own, theirs, fit.T_a_b, T_odom_own, registration_);
+  if (!out.differs())
+    out.offsets = patch_offsets(own.scan, theirs.scan, fit.T_a_b, T_odom_own, registration_);
   return out;
 }
 
@@ -42,25 +68,26 @@ std::vector<ComparedPlace> PlaceComparer::with_clouds(const std::vector<PlannedC
   std::map<std::uint32_t, const Clouds::Cloud*> came;
   for (const Clouds::Cloud& cloud : clouds.clouds) came[cloud.index] = &cloud;
   const std::vector<DisplacementSigns> signs = discernment_.displacement_signs(own_keyframes(asked));
-  discernment_.surfaces().prepare(own_keyframes(asked));
+  prepare({}, asked, signs);
   std::vector<ComparedPlace> places(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
     const Clouds::Cloud& received = *came.at(asked[i].theirs);
-    PointCloud cloud;
-    cloud.points = received.points;
-    const SeenSurface theirs(compute_surface(cloud, registration_), received.viewpoint.cast<double>(),
-                             registration_.voxel_size);
+    PointCloud scan;
+    scan.points = received.points;
+    PointCloud view = scan;
+    view.points.insert(view.points.end(), received.beside.begin(), received.beside.end());
+    const SeenPlace theirs(view, scan, received.viewpoint.cast<double>(), registration_);
     places[i] = compared(asked[i], theirs, signs[i]);
   });
   return places;
 }
 
 std::vector<ComparedPlace> PlaceComparer::within_own_map(const std::vector<PlannedComparison>& asked) {
-  std::vector<std::uint32_t> both;
-  for (const PlannedComparison& place : asked) both.insert(both.end(), {place.own, place.theirs});
+  std::vector<std::uint32_t> later;
+  for (const PlannedComparison& place : asked) later.push_back(place.theirs);
   const std::vector<DisplacementSigns> signs = discernment_.displacement_signs(own_keyframes(asked));
-  SurfaceStore& surfaces = discernment_.surfaces();
-  surfaces.prepare(both);
+  prepare(later, asked, signs);
+  const SurfaceStore& surfaces = discernment_.surfaces();
   std::vector<ComparedPlace> places(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
     places[i] = compared(asked[i], surfaces.at(asked[i].theirs), signs[i]);

@@ -3,6 +3,7 @@
 /// Compares the scans of both robots at the places that a merge check asks for.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "adit/fleet/merge/comparison_plan.hpp"
@@ -26,9 +27,16 @@ class PlaceComparer {
   [[nodiscard]] std::vector<ComparedPlace> within_own_map(const std::vector<PlannedComparison>& asked);
 
  private:
-  /// With the surface of the peer's keyframe; the own one has been prepared.
-  [[nodiscard]] ComparedPlace compared(const PlannedComparison& place, const SeenSurface& theirs,
+  /// Surfaces of these keyframes, the own ones that are asked for, and those displaced from them.
+  void prepare(std::vector<std::uint32_t> keyframes, const std::vector<PlannedComparison>& asked,
+               const std::vector<DisplacementSigns>& signs);
+  /// With what was seen at the peer's keyframe; the own one and those displaced from it have been prepared.
+  [[nodiscard]] ComparedPlace compared(const PlannedComparison& place, const SeenPlace& theirs,
                                        const DisplacementSigns& signs) const;
+  /// Whether what the peer saw would agree with what was seen some metres on, too, as if the robot stood
+  /// there. Own scans may tell those places apart where two unlike sensors, by what both see, cannot.
+  [[nodiscard]] bool agrees_displaced(std::uint32_t own, const SeenPlace& theirs,
+                                      const Pose& T_own_theirs) const;
 
   const RobotMap& map_;
   Discernment& discernment_;

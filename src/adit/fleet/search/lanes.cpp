@@ -15,7 +15,8 @@ std::vector<ScanContext> contexts_from(const Lanes& lanes, const RobotMap& map, 
     if (lane == 0) continue;
     const auto aside = static_cast<float>(lane * lanes.apart_m);
     for (std::size_t i = 0; i < cloud.points.size(); ++i) cloud.points[i].y() = seen.points[i].y() - aside;
-    contexts.push_back(describe(cloud, map.scan_context));
+    const Vector3 viewpoint = map.viewpoint - aside * Vector3::UnitY();
+    contexts.push_back(describe(cloud, map.scan_context, viewpoint));
   }
   return contexts;
 }

@@ -2,10 +2,34 @@
 // SPDX-License-Identifier: MIT
 #include "adit/fleet/sync/own_map_parts.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "adit/fleet/sync/parts.hpp"
 #include "adit/geometry/voxel_grid.hpp"
 
 namespace adit {
+namespace {
+
+std::vector<VoxelKey> keys_of(const std::vector<Eigen::Vector3f>& points, double voxel_m) {
+  std::vector<VoxelKey> keys(points.size());
+  VoxelGrid(voxel_m).keys_of(points, keys);
+  return keys;
+}
+
+/// Those of `points` that lie in voxels where none of `taken` does.
+std::vector<Eigen::Vector3f> in_other_voxels(const std::vector<Eigen::Vector3f>& points,
+                                             const std::vector<Eigen::Vector3f>& taken, double voxel_m) {
+  std::vector<VoxelKey> full = keys_of(taken, voxel_m);
+  std::ranges::sort(full);
+  const std::vector<VoxelKey> keys = keys_of(points, voxel_m);
+  std::vector<Eigen::Vector3f> others;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!std::ranges::binary_search(full, keys[i])) others.push_back(points[i]);
+  return others;
+}
+
+}  // namespace
 
 std::vector<std::uint32_t> searchable_keyframes(const RobotMap& map) {
   std::vector<std::uint32_t> indices;
@@ -35,10 +59,17 @@ Clouds clouds_of(const RobotMap& map, const CloudRequest& request, const SentClo
   for (const std::uint32_t index : request.indices) {
     if (index >= map.keyframes.size()) continue;
     // The receiver thins clouds to the same voxels: more points would change nothing.
-    const PointCloud thinned = request.kind == CloudKind::submap
-                                   ? voxel_centroids(submap(map, index, config.submap), config.voxel_m)
-                                   : voxel_centroids(*map.keyframes[index].cloud, config.voxel_m);
-    clouds.clouds.push_back({index, map.viewpoint.cast<float>(), thinned.points});
+    const auto thinned = [&](const SubmapConfig& of) {
+      return voxel_centroids(submap(map, index, of), config.voxel_m).points;
+    };
+    Clouds::Cloud cloud{index, map.viewpoint.cast<float>(), {}};
+    if (request.kind == CloudKind::submap) {
+      cloud.points = thinned(config.submap);
+    } else {
+      cloud.points = thinned({.reach_m = 0.0});
+      cloud.beside = in_other_voxels(thinned(config.view), cloud.points, config.voxel_m);
+    }
+    clouds.clouds.push_back(std::move(cloud));
   }
   return clouds;
 }

@@ -23,6 +23,7 @@ namespace adit {
 struct SentClouds {
   double voxel_m = 0.3;  ///< One point each.
   SubmapConfig submap;
+  SubmapConfig view;
 };
 /// The clouds that a peer asks for; keyframes that do not exist are left out.
 [[nodiscard]] Clouds clouds_of(const RobotMap& map, const CloudRequest& request, const SentClouds& config);

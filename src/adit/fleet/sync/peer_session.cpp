@@ -68,13 +68,13 @@ std::optional<CloudRequest> PeerSession::request() const {
     if (request.indices.size() == kCloudsPerMessage) break;
     request.indices.push_back(index);
   }
-  if (request.indices.empty()) request = {to_compare_, CloudKind::scan};
+  if (request.indices.empty()) request = {to_compare_, CloudKind::view};
   if (request.indices.empty()) return std::nullopt;
   return request;
 }
 
 bool PeerSession::has_comparison(const Clouds& clouds) const {
-  return clouds.kind == CloudKind::scan && std::ranges::all_of(to_compare_, [&](std::uint32_t keyframe) {
+  return clouds.kind == CloudKind::view && std::ranges::all_of(to_compare_, [&](std::uint32_t keyframe) {
            return std::ranges::find(clouds.clouds, keyframe, &Clouds::Cloud::index) != clouds.clouds.end();
          });
 }

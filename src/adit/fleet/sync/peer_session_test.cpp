@@ -54,8 +54,8 @@ TEST(PeerSession, GoesFromGreetingToDecided) {
   EXPECT_EQ(session.state(), PeerState::comparing);
   EXPECT_FALSE(session.has_comparison(clouds_of({10, 20}, CloudKind::submap))) << "late clouds of candidates";
   EXPECT_EQ(session.request()->indices, (std::vector<std::uint32_t>{10, 20}));
-  EXPECT_FALSE(session.has_comparison(clouds_of({10}, CloudKind::scan)));
-  EXPECT_TRUE(session.has_comparison(clouds_of({20, 10}, CloudKind::scan)));
+  EXPECT_FALSE(session.has_comparison(clouds_of({10}, CloudKind::view)));
+  EXPECT_TRUE(session.has_comparison(clouds_of({20, 10}, CloudKind::view)));
   session.await_comparison_of({});
   EXPECT_EQ(session.state(), PeerState::decided);
   EXPECT_FALSE(session.request());

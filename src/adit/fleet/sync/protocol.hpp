@@ -18,7 +18,7 @@
 
 namespace adit {
 
-inline constexpr std::uint8_t kProtocolVersion = 9;
+inline constexpr std::uint8_t kProtocolVersion = 10;
 inline constexpr std::size_t kPlacesPerMessage = 64;
 inline constexpr std::size_t kCloudsPerMessage = 16;
 inline constexpr std::size_t kNodesPerMessage = 512;
@@ -66,12 +66,13 @@ struct Places {
   bool last = false;  ///< Nothing follows.
 };
 
-/// Scans are compared, as what is seen from one point; submaps (robot/submap.hpp) are registered.
-enum class CloudKind : std::uint8_t { scan, submap };
+/// Views are compared: a scan and those beside it, seen from where it stood. Submaps (robot/submap.hpp) are
+/// registered.
+enum class CloudKind : std::uint8_t { view, submap };
 
 struct CloudRequest {
   std::vector<std::uint32_t> indices;
-  CloudKind kind = CloudKind::scan;
+  CloudKind kind = CloudKind::view;
 };
 
 /// The sender's own keyframe clouds, each in its keyframe's base frame.
@@ -79,10 +80,11 @@ struct Clouds {
   struct Cloud {
     std::uint32_t index = 0;
     Eigen::Vector3f viewpoint = Eigen::Vector3f::Zero();  ///< The LiDAR, in the frame of the points.
-    std::vector<Eigen::Vector3f> points;
+    std::vector<Eigen::Vector3f> points;                  ///< Of the keyframe's scan, or of the submap.
+    std::vector<Eigen::Vector3f> beside = {};  ///< Of a view: what the scans beside it saw and it did not.
   };
   std::vector<Cloud> clouds;
-  CloudKind kind = CloudKind::scan;
+  CloudKind kind = CloudKind::view;
 };
 
 /// Loops number first, first + 1, ... of those that `author`, who need not be the sender, registered:

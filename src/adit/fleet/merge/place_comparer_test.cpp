@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/merge/place_comparer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "adit/fleet/sync/fleet_graph.hpp"
+#include "adit/fleet/sync/own_map_parts.hpp"
+#include "support/tube_drive.hpp"
+
+namespace adit {
+namespace {
+
+using test::in_a_tube;
+
+const std::vector<test::Box> kBlock = {{{29.0, 1.5, -4.0}, {31.0, 4.0, 4.0}}};
+constexpr std::uint32_t kBesideTheBlock = 58;
+
+/// What robot 0 finds out about one of its places by what robot 1 sends of the same, of which those points
+/// are left out.
+ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
+                       const std::function<bool(const Eigen::Vector3f&)>& is_seen_by_peer) {
+  const auto own = in_a_tube(kBlock);
+  const auto theirs = in_a_tube(boxes_of_peer, {1});
+  const AdaptiveConfig config;
+  Discernment discernment(
+      own, chain_of(graph_of(*own)), [] { return std::vector<LoopCandidate>(); },
+      std::make_shared<FeatureStore>(own, config.registration, config.submap), config);
+  PlaceComparer comparer(*own, discernment, config.registration);
+  Clouds clouds = clouds_of(*theirs, {{kBesideTheBlock}, CloudKind::view},
+                            {config.registration.voxel_size, config.submap, config.view});
+  for (std::vector<Eigen::Vector3f>* points : {&clouds.clouds[0].points, &clouds.clouds[0].beside})
+    std::erase_if(*points, [&](const Eigen::Vector3f& p) { return !is_seen_by_peer(p); });
+  return comparer.with_clouds({{kBesideTheBlock, kBesideTheBlock, Pose()}}, clouds).front();
+}
+
+bool everything(const Eigen::Vector3f& /*point*/) { return true; }
+bool away_from_the_block(const Eigen::Vector3f& p) { return p.y() < 0.0F; }
+
+TEST(PlaceComparer, APlaceBesideABlockThatBothSeeIsDistinctive) {
+  const ComparedPlace place = compared(kBlock, everything);
+  EXPECT_FALSE(place.differs());
+  EXPECT_TRUE(place.is_distinctive);
+  EXPECT_FALSE(place.signs.empty());
+}
+
+TEST(PlaceComparer, APlaceIsNotDistinctiveByWhatThePeersSensorCannotSee) {
+  const ComparedPlace place = compared(kBlock, away_from_the_block);
+  EXPECT_FALSE(place.differs());
+  EXPECT_FALSE(place.is_distinctive) << "the smooth half of the tube looks alike five metres on";
+  EXPECT_TRUE(place.signs.empty());
+}
+
+TEST(PlaceComparer, ABlockThatOnlyOneTubeHasDiffers) { EXPECT_TRUE(compared({}, everything).differs()); }
+
+}  // namespace
+}  // namespace adit

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/fleet/sync/own_map_parts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <tuple>
+
+#include "support/tube_drive.hpp"
+
+namespace adit {
+namespace {
+
+using Voxels = std::set<std::tuple<int, int, int>>;
+
+const SentClouds kSent{.voxel_m = 0.3, .submap = {}, .view = {.reach_m = 3.0, .step_m = 1.0}};
+
+Voxels voxels_of(const std::vector<Eigen::Vector3f>& points) {
+  Voxels voxels;
+  for (const Eigen::Vector3f& p : points) {
+    const Eigen::Vector3f cell = (p / static_cast<float>(kSent.voxel_m)).array().floor();
+    voxels.insert(
+        std::tuple(static_cast<int>(cell.x()), static_cast<int>(cell.y()), static_cast<int>(cell.z())));
+  }
+  return voxels;
+}
+
+TEST(OwnMapParts, AViewIsTheScanAndWhatThoseBesideItSawAlone) {
+  const auto map = test::in_a_tube({});
+  const Clouds clouds = clouds_of(*map, {{60, 9999}, CloudKind::view}, kSent);
+  ASSERT_EQ(clouds.clouds.size(), 1U) << "there is no keyframe 9999";
+  const Clouds::Cloud& view = clouds.clouds.front();
+  const Voxels own = voxels_of(view.points);
+  const Voxels beside = voxels_of(view.beside);
+  EXPECT_EQ(own, voxels_of(map->keyframes[60].cloud->points));
+  EXPECT_GT(beside.size(), own.size() / 2);
+  for (const auto& voxel : beside) EXPECT_FALSE(own.contains(voxel));
+  for (const auto& voxel : voxels_of(submap(*map, 60, kSent.view).points))
+    EXPECT_TRUE(own.contains(voxel) || beside.contains(voxel));
+}
+
+TEST(OwnMapParts, ASubmapIsOneCloud) {
+  const auto map = test::in_a_tube({});
+  const Clouds clouds = clouds_of(*map, {{60}, CloudKind::submap}, kSent);
+  ASSERT_EQ(clouds.clouds.size(), 1U);
+  EXPECT_EQ(voxels_of(clouds.clouds[0].points), voxels_of(submap(*map, 60, kSent.submap).points));
+  EXPECT_TRUE(clouds.clouds[0].beside.empty());
+}
+
+}  // namespace
+}  // namespace adit
