@@ -15,7 +15,7 @@ namespace adit {
 struct SubmapConfig {
   double reach_m = 8.0;    ///< Along the path, to each side; 0: the keyframe alone.
   double step_m = 1.0;     ///< Along the path, from one keyframe that is taken to the next.
-  double radius_m = 30.0;  ///< Points farther from the keyframe, horizontally, are left out.
+  double radius_m = 20.0;  ///< Points farther from the keyframe, horizontally, are left out.
 };
 [[nodiscard]] Fields fields_of(SubmapConfig& config);
 

@@ -54,7 +54,7 @@ struct AdaptiveConfig {
   RegistrationConfig registration;
   SubmapConfig submap;  ///< What is registered.
   /// What is compared: one scan alone shows too little of what another sensor sees (decision 0051).
-  SubmapConfig view{.reach_m = 3.0, .step_m = 1.0, .radius_m = 30.0};
+  SubmapConfig view{.reach_m = 3.0, .step_m = 1.0, .radius_m = 20.0};
   double one_place_m = 10.0;
   MergeCheckConfig merge_check;
 };
