@@ -31,7 +31,7 @@ std::vector<std::size_t> members(const RobotMap& map, std::size_t k, const Subma
 
 Fields fields_of(SubmapConfig& c) {
   return {{"reach_m", &c.reach_m, "m", 0.0, 100.0,
-           "keyframes within this along the path are registered together, as one cloud; 0: each alone"},
+           "keyframes within this along the path make one cloud; 0: each alone"},
           {"step_m", &c.step_m, "m", 0.1, 100.0, "path between those that are taken"},
           {"radius_m", &c.radius_m, "m", 1.0, 1000.0,
            "points of such a cloud that are farther away are left out"}};
