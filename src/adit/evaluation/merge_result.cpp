@@ -3,6 +3,7 @@
 #include "adit/evaluation/merge_result.hpp"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "adit/core/check.hpp"
@@ -121,6 +122,69 @@ Table summary_table(const std::vector<MergeRun>& runs) {
                   format("{}", counts.joint_pairs), share_text(counts.joint_whole, counts.worlds),
                   at_most_text(counts.joint_wrong, counts.worlds), format("{}", counts.joint_wrong_loops),
                   format("{}", counts.registrations), format("{:.1f}", counts.time_s)}));
+  return table;
+}
+
+std::vector<std::string> words_of(const std::string& list) {
+  constexpr std::string_view kBetween = ", ";
+  std::vector<std::string> words;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(kBetween, begin), list.size());
+    words.push_back(list.substr(begin, end - begin));
+    begin = end + kBetween.size();
+  }
+  return words;
+}
+
+/// "os1-64 and os2-32": by name, whichever robot has which.
+std::string sensors_of(const MergePair& pair, const MergeRun& run) {
+  const std::vector<std::string> in_turn = words_of(run.sensors);
+  std::vector<std::string> robots;  // in their order: pairs run from the first with each of the others on
+  for (const MergePair& one : run.pairs)
+    for (const std::string& robot : one.robots)
+      if (std::ranges::find(robots, robot) == robots.end()) robots.push_back(robot);
+  std::array<std::string, 2> names;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto at = std::ranges::find(robots, pair.robots[i]) - robots.begin();
+    names[i] = in_turn[static_cast<std::size_t>(at) % in_turn.size()];
+  }
+  std::ranges::sort(names);
+  return names[0] == names[1] ? names[0] + " both" : names[0] + " and " + names[1];
+}
+
+/// Runs of each group, policy and conditions by the sensors of a pair, and all together. Empty where no run
+/// has more than one sensor.
+Table pairs_of_sensors_table(const std::vector<MergeRun>& runs) {
+  Table table{"Merging, by the sensors of a pair",
+              "As above, pair by pair and where all robots met.",
+              {},
+              {"Worlds", "Keyframes", "Conditions", "Sensors of the pair", "Pairs", "Merged well",
+               "Joint: merged", "Kept apart", "Wrong merges"},
+              {}};
+  using Key = std::array<std::string, 4>;
+  std::vector<std::pair<Key, MergeCounts>> sums;  // in the order in which they first appear
+  const auto add = [&](const Key& key, const MergeRun& run) {
+    auto sum = std::ranges::find(sums, key, &std::pair<Key, MergeCounts>::first);
+    if (sum == sums.end()) sum = sums.insert(sums.end(), {key, {}});
+    sum->second.add(run);
+  };
+  const auto is_mixed = [](const MergeRun& run) { return words_of(run.sensors).size() > 1; };
+  if (std::ranges::none_of(runs, is_mixed)) return table;
+  for (const MergeRun& run : runs) {
+    for (const MergePair& pair : run.pairs) {
+      MergeRun alone = run;
+      alone.pairs = {pair};
+      add({run.group, run.keyframes, run.conditions, sensors_of(pair, run)}, alone);
+    }
+  }
+  for (const MergeRun& run : runs) add({run.group, run.keyframes, run.conditions, "all"}, run);
+  for (const auto& [key, counts] : sums)
+    table.rows.push_back(
+        {key[0], key[1], key[2], key[3], format("{}", counts.pairs),
+         limits_text(counts.success, counts.mergeable), limits_text(counts.joint_merged, counts.mergeable),
+         share_text(counts.kept_apart, counts.others), at_most_text(counts.wrong, counts.pairs)});
+  std::ranges::stable_sort(
+      table.rows, {}, [](const std::vector<std::string>& row) { return std::tuple(row[0], row[1], row[2]); });
   return table;
 }
 
@@ -277,7 +341,8 @@ void MergeCounts::add(const MergeRun& run) {
 
 std::vector<Table> merge_tables(const std::vector<MergeRun>& runs) {
   std::vector<Table> tables{summary_table(runs), worlds_table(runs)};
-  for (Table table : {wrong_table(runs), kinds_table(runs), refusals_table(runs)})
+  for (Table table :
+       {pairs_of_sensors_table(runs), wrong_table(runs), kinds_table(runs), refusals_table(runs)})
     if (!table.rows.empty()) tables.push_back(std::move(table));
   return tables;
 }

@@ -110,10 +110,10 @@ struct MergeCounts {
   void add(const MergeRun& run);
 };
 
-/// Summary of each group, policy, sensor and condition; each world; the wrong merges; what kept mergeable
-/// pairs apart; the pairs that share enough and were refused, with the reason. The last three only where
-/// there are any. Variants, which have a second word after the policy's name, appear in the summary and among
-/// the wrong merges only.
+/// Summary of each group, policy, sensor and condition; each world; sums by the sensors of a pair, where
+/// robots of a world have different ones; the wrong merges; what kept mergeable pairs apart; the pairs that
+/// share enough and were refused, with the reason. The last three only where there are any. Variants, which
+/// have a second word after the policy's name, appear in the summary and among the wrong merges only.
 [[nodiscard]] std::vector<Table> merge_tables(const std::vector<MergeRun>& runs);
 
 }  // namespace adit

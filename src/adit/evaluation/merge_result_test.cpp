@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "adit/core/check.hpp"
 
 namespace adit {
@@ -137,6 +139,26 @@ TEST(MergeTables, SumUpSensorsAndConditionsApartWithTheirLimits) {
   EXPECT_EQ(tables[0].rows[1][4], "2");
   EXPECT_EQ(tables[0].rows[1][5], "2 of 6 (33 %; 4 to 78)");
   EXPECT_EQ(tables[0].rows[1][10], "4 of 14 (< 54.0 %)");
+}
+
+TEST(MergeTables, SumUpByTheSensorsOfAPair) {
+  MergeRun run = made_up_run("a", "field");
+  run.sensors = "os2-32, vlp-16";  // of robots 0 and 2, and of robot 1
+  run.pairs = {pair_of(90.0, MergeOutcome::success), pair_of(90.0, MergeOutcome::refused),
+               pair_of(90.0, MergeOutcome::success)};
+  run.pairs[1].robots = {"robot_0", "robot_2"};
+  run.pairs[2].robots = {"robot_1", "robot_2"};
+  const std::vector<Table> tables = merge_tables({run});
+  const auto found = std::ranges::find(tables, "Merging, by the sensors of a pair", &Table::title);
+  ASSERT_NE(found, tables.end());
+  ASSERT_EQ(found->rows.size(), 3U);
+  EXPECT_EQ(found->rows[0][3], "os2-32 and vlp-16");
+  EXPECT_TRUE(found->rows[0][5].starts_with("2 of 2")) << found->rows[0][5];
+  EXPECT_TRUE(found->rows[0][6].starts_with("1 of 2")) << "robot_2 stayed apart: " << found->rows[0][6];
+  EXPECT_EQ(found->rows[1][3], "os2-32 both");
+  EXPECT_TRUE(found->rows[1][5].starts_with("0 of 1")) << found->rows[1][5];
+  EXPECT_EQ(found->rows[2][3], "all");
+  EXPECT_TRUE(found->rows[2][5].starts_with("2 of 3")) << found->rows[2][5];
 }
 
 TEST(MergeTables, LeaveOutWhatDidNotHappen) {

@@ -208,7 +208,7 @@ constexpr double kStart = 4.0;  // metres along the street, of robot 0
 // Robot 0 drove the whole street, robot 1 a part of it, towards it.
 MergeCheck check_of_part(double from, double to) {
   AgentConfig config = adaptive();
-  config.adaptive.merge_check.evidence.error_rate = 1e-4;  // for which 14 m of a street are too little
+  config.adaptive.merge_check.evidence.error_rate = 1e-5;  // for which 14 m of a street are too little
   TwoRobots fleet(3, config);
   const test::BoxWorld world(3, 70.0);
   const auto map_of = [&](RobotId id, const std::vector<Pose>& truth, double drift) {

@@ -37,8 +37,9 @@ TEST(Submap, BringsTheKeyframesWithinReachTogether) {
 TEST(Submap, ReachCountsAlongThePath) {
   // The way back passes the same spots, which are far away along the path.
   const RobotMap map = there_and_back(100);
-  EXPECT_EQ(submap(map, 5, {}).points.size(), 5U) << "the path begins 2.5 m before";
-  EXPECT_EQ(submap(map, 99, {.radius_m = 100.0}).points.size(), 7U)
+  EXPECT_EQ(submap(map, 5, {.reach_m = 6.0, .step_m = 2.0}).points.size(), 5U)
+      << "the path begins 2.5 m before";
+  EXPECT_EQ(submap(map, 99, {.reach_m = 6.0, .step_m = 2.0, .radius_m = 100.0}).points.size(), 7U)
       << "around the turning point both ways are near";
 }
 
