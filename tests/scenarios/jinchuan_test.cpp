@@ -223,7 +223,7 @@ TEST(Jinchuan, RobotsOfHalfThePointsEachFindOneAnotherAndAreNotMergedWrongly) {
   const RealMeeting meeting =
       meet(robot_of(test::part_of(may, 0, 2, 9), way, 0.6, {0}, "half"),
            robot_of(test::part_of(may, 1, 2, 9), way, -0.6, {1}, "other half"), Pose());
-  EXPECT_GE(meeting.num_right, 10);
+  EXPECT_GE(meeting.num_right, 15);
   expect_nothing_wrong(meeting);
 }
 

@@ -125,6 +125,9 @@ Table summary_table(const std::vector<MergeRun>& runs) {
   return table;
 }
 
+/// Ablations name what they leave out after the policy; their worlds and refusals would fill pages.
+bool is_variant(const MergeRun& run) { return run.keyframes.find(' ') != std::string::npos; }
+
 std::vector<std::string> words_of(const std::string& list) {
   constexpr std::string_view kBetween = ", ";
   std::vector<std::string> words;
@@ -171,13 +174,15 @@ Table pairs_of_sensors_table(const std::vector<MergeRun>& runs) {
   const auto is_mixed = [](const MergeRun& run) { return words_of(run.sensors).size() > 1; };
   if (std::ranges::none_of(runs, is_mixed)) return table;
   for (const MergeRun& run : runs) {
+    if (is_variant(run)) continue;
     for (const MergePair& pair : run.pairs) {
       MergeRun alone = run;
       alone.pairs = {pair};
       add({run.group, run.keyframes, run.conditions, sensors_of(pair, run)}, alone);
     }
   }
-  for (const MergeRun& run : runs) add({run.group, run.keyframes, run.conditions, "all"}, run);
+  for (const MergeRun& run : runs)
+    if (!is_variant(run)) add({run.group, run.keyframes, run.conditions, "all"}, run);
   for (const auto& [key, counts] : sums)
     table.rows.push_back(
         {key[0], key[1], key[2], key[3], format("{}", counts.pairs),
@@ -203,9 +208,6 @@ Table kinds_table(const std::vector<MergeRun>& runs) {
   }
   return table;
 }
-
-/// Ablations name what they leave out after the policy; their worlds and refusals would fill pages.
-bool is_variant(const MergeRun& run) { return run.keyframes.find(' ') != std::string::npos; }
 
 /// The worst robot of the pairs that were merged.
 double worst_ate_pct(const MergeRun& run) {

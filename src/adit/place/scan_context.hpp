@@ -55,12 +55,12 @@ struct ScanContext {
   [[nodiscard]] bool empty() const;  ///< No cell was seen, or default-made.
 };
 
-/// The descriptor of a cloud in the base frame (x forward, z up, z = 0 on the floor), seen from `viewpoint`.
-/// Points that are not finite, lie farther out than `max_radius_m`, below -`height_offset_m` or above
-/// `max_elevation_deg` are left out. Sectors count from
-/// the x axis towards y; within rounding of a border a point falls to either side. A cloud without points
-/// gives a context that is `empty()`. Throws ContractViolation when `config` is out of its ranges.
-/// Source: Kim and Kim, "Scan Context", IROS 2018, section III-A.
+/// The descriptor of a cloud in the base frame (x forward, z up, z = 0 on the floor). `viewpoint`: where
+/// the sensor stood, base frame, metres; only `max_elevation_deg` below 90 needs it. Points that are not
+/// finite, lie farther out than `max_radius_m`, below -`height_offset_m` or above `max_elevation_deg` are
+/// left out. Sectors count from the x axis towards y; within rounding of a border a point falls to either
+/// side. A cloud without points gives a context that is `empty()`. Throws ContractViolation when `config` is
+/// out of its ranges. Source: Kim and Kim, "Scan Context", IROS 2018, section III-A.
 [[nodiscard]] ScanContext describe(const PointCloud& cloud_base, const ScanContextConfig& config,
                                    const Vector3& viewpoint = Vector3::Zero());
 
