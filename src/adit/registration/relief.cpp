@@ -54,8 +54,8 @@ double density(const EqualSignShare& found, const OtherWalls& walls) {
 /// Sums over the points of b on a patch.
 struct OnPatch {
   double metres = 0.0;
-  SensorTerms terms = SensorTerms::Zero();
-  Vector6 motion = Vector6::Zero();
+  SensorTerms by_sensors = SensorTerms::Zero();
+  Vector6 by_fit = Vector6::Zero();
   int num_points = 0;
 };
 
@@ -158,39 +158,40 @@ std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& 
     OnPatch& sum = patches[{static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()),
                             static_cast<std::int32_t>(cell.z()), side_of(R_map * pair.normal)}];
     sum.metres += static_cast<double>(off);
-    sum.motion += motion_terms(pair);
-    terms_of.add(pair, 1.0, sum.terms);
+    sum.by_fit += motion_terms(pair);
+    terms_of.add(pair, 1.0, sum.by_sensors);
     ++sum.num_points;
   }
-  const FitShift shift = fit_shift(a, b, T_a_b, registration);
   std::vector<PatchOffset> out;
   for (const auto& [where, sum] : patches)
     if (sum.num_points >= config.min_points)
-      out.push_back({where, sum.metres / sum.num_points,
-                     (sum.terms + shift.transpose() * sum.motion) / sum.num_points});
+      out.push_back(
+          {where, sum.metres / sum.num_points, sum.by_sensors / sum.num_points, sum.by_fit / sum.num_points});
   return out;
 }
 
 void WallOffsets::add(const std::vector<PatchOffset>& of_a_pair) {
+  first_of_pair_.push_back(std::ssize(offsets_));
   offsets_.insert(offsets_.end(), of_a_pair.begin(), of_a_pair.end());
   counted_.reset();
 }
 
-Eigen::VectorXd WallOffsets::left_by_sensors() const {
-  Eigen::VectorXd metres(std::ssize(offsets_));
-  Eigen::MatrixXd terms(std::ssize(offsets_), kSensorErrors);
-  for (Eigen::Index i = 0; i < metres.size(); ++i) {
+OffsetParts WallOffsets::parts() const {
+  const Eigen::Index num = std::ssize(offsets_);
+  OffsetSystem system{Eigen::VectorXd(num), {num, kSensorErrors}, {num, 6}, first_of_pair_};
+  for (Eigen::Index i = 0; i < num; ++i) {
     const PatchOffset& offset = offsets_[static_cast<std::size_t>(i)];
-    metres[i] = offset.metres;
-    terms.row(i) = offset.terms.transpose();
+    system.metres[i] = offset.metres;
+    system.by_sensors.row(i) = offset.by_sensors.transpose();
+    system.by_fit.row(i) = offset.by_fit.transpose();
   }
-  return metres - explained_by_sensors(terms, metres, {});
+  return taken_apart(system, {});
 }
 
 double WallOffsets::share_of_sensors() const {
-  double whole = 0.0;
-  for (const PatchOffset& offset : offsets_) whole += offset.metres * offset.metres;
-  return whole > 0.0 ? std::clamp(1.0 - left_by_sensors().squaredNorm() / whole, 0.0, 1.0) : 0.0;
+  const OffsetParts found = parts();
+  const double whole = (found.by_sensors + found.left).squaredNorm();
+  return whole > 0.0 ? std::clamp(1.0 - found.left.squaredNorm() / whole, 0.0, 1.0) : 0.0;
 }
 
 EqualSignShare WallOffsets::counted() const {
@@ -204,7 +205,7 @@ EqualSignShare WallOffsets::count() const {
     std::size_t num_in_front = 0;
     std::size_t num_behind = 0;
   };
-  const Eigen::VectorXd left = left_by_sensors();
+  const Eigen::VectorXd left = parts().left;
   std::map<WallPatch, double> last;  // offset of each patch
   std::vector<double> apart;         // of two offsets of one patch
   std::map<WallPatch, Sides> patches;

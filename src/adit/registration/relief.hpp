@@ -26,7 +26,8 @@ struct PatchOffset {
   WallPatch patch;
   /// How far b's wall is in front of a's, towards free space; mean over the points of b.
   double metres = 0.0;
-  SensorTerms terms = SensorTerms::Zero();  ///< By how much the errors of the sensors change that.
+  SensorTerms by_sensors = SensorTerms::Zero();  ///< By how much the errors of the sensors change that,
+  Vector6 by_fit = Vector6::Zero();              ///< and an error of the fit (motion_terms).
 };
 
 /// One offset per patch near a that both scans saw well. `T_a_b` is the fit of the points of b to a, in the
@@ -101,8 +102,8 @@ enum class Visits : std::uint8_t { one, two };
 
 /// Offsets from several pairs of scans, no scan in two pairs. For each patch seen by two or more pairs it
 /// counts the pairs whose offsets have equal sign. Noise gives equal signs as often as not, whatever the
-/// number of pairs. What the sensors explain is taken off before, and offsets of less than `min_offset_m`
-/// have no sign.
+/// number of pairs. What the sensors and the fits explain is taken off before, and offsets of less than
+/// `min_offset_m` have no sign.
 class WallOffsets {
  public:
   explicit WallOffsets(const ReliefConfig& config = {}, Visits visits = Visits::two)
@@ -117,17 +118,18 @@ class WallOffsets {
   /// At most log(1 / chance_of_one_mould). Where the share of other walls was not measured, the one believed
   /// before counts. `times`: as if so many times the patches had been seen, with the same share.
   [[nodiscard]] double evidence(const EqualSignShares& shares, double times = 1.0) const;
-  /// The share of the sum of squared offsets that the sensors explain; 0 without offsets.
+  /// The share of the sum of squared offsets, without what the fits explain, that the sensors explain; 0
+  /// without offsets.
   [[nodiscard]] double share_of_sensors() const;
 
  private:
   [[nodiscard]] EqualSignShare count() const;
-  /// Of each offset, what the sensors do not explain.
-  [[nodiscard]] Eigen::VectorXd left_by_sensors() const;
+  [[nodiscard]] OffsetParts parts() const;
 
   ReliefConfig config_;
   Visits visits_;
   std::vector<PatchOffset> offsets_;
+  std::vector<Eigen::Index> first_of_pair_;
   mutable std::optional<EqualSignShare> counted_;
 };
 

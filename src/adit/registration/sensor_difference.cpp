@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "adit/core/angles.hpp"
-#include "adit/registration/plane_aligner.hpp"
 
 namespace adit {
 namespace {
@@ -35,13 +34,55 @@ void add_view(const Eigen::Vector3f& towards, const Eigen::Vector3f& up, const E
   sum[3 + node] += moved * beyond;
 }
 
-Eigen::VectorXd prior_weights(const SensorPrior& prior) {
+Eigen::VectorXd prior_weights(const OffsetPrior& prior) {
   Eigen::VectorXd weights = Eigen::VectorXd::Constant(kSensorErrors, 1.0 / (prior.ring_m * prior.ring_m));
   for (const int first : {0, kErrorsOfSensor}) {
     weights[first] = 1.0 / (prior.bias_m * prior.bias_m);
     weights[first + 1] = 1.0 / (prior.walk_m * prior.walk_m);
   }
   return weights;
+}
+
+/// The rows of one pair of scans, and its errors of fit eliminated from the normal equations of the sensors.
+struct EliminatedFit {
+  Eigen::Index first;
+  Eigen::Index num;
+  Eigen::LDLT<Matrix6> H;
+  Eigen::Matrix<double, 6, kSensorErrors> with_sensors;
+  Vector6 rhs;
+};
+
+/// Weighted least squares; each fit belongs to few rows, so that the sensors alone are left to solve for.
+OffsetParts solved(const OffsetSystem& offsets, const Eigen::VectorXd& weights, const OffsetPrior& prior) {
+  Vector6 fit_prior;
+  fit_prior << Vector3::Constant(1.0 / (prior.fit_m * prior.fit_m)),
+      Vector3::Constant(1.0 / (prior.fit_rad * prior.fit_rad));
+  const Eigen::MatrixXd weighted = offsets.by_sensors.transpose() * weights.asDiagonal();
+  Eigen::MatrixXd H = weighted * offsets.by_sensors;
+  Eigen::VectorXd rhs = weighted * offsets.metres;
+  H.diagonal() += prior_weights(prior);
+  std::vector<EliminatedFit> fits;
+  for (std::size_t pair = 0; pair < offsets.first_of_pair.size(); ++pair) {
+    const Eigen::Index first = offsets.first_of_pair[pair];
+    const Eigen::Index end =
+        pair + 1 < offsets.first_of_pair.size() ? offsets.first_of_pair[pair + 1] : offsets.metres.size();
+    const auto motion = offsets.by_fit.middleRows(first, end - first);
+    const Eigen::MatrixXd of_pair = motion.transpose() * weights.segment(first, end - first).asDiagonal();
+    Matrix6 of_fit = of_pair * motion;
+    of_fit.diagonal() += fit_prior;
+    EliminatedFit& fit = fits.emplace_back(EliminatedFit{
+        first, end - first, of_fit.ldlt(), of_pair * offsets.by_sensors.middleRows(first, end - first),
+        of_pair * offsets.metres.segment(first, end - first)});
+    H -= fit.with_sensors.transpose() * fit.H.solve(fit.with_sensors);
+    rhs -= fit.with_sensors.transpose() * fit.H.solve(fit.rhs);
+  }
+  const Eigen::VectorXd errors = H.llt().solve(rhs);
+  OffsetParts parts{offsets.by_sensors * errors, {}};
+  parts.left = offsets.metres - parts.by_sensors;
+  for (const EliminatedFit& fit : fits)
+    parts.left.segment(fit.first, fit.num) -=
+        offsets.by_fit.middleRows(fit.first, fit.num) * fit.H.solve(fit.rhs - fit.with_sensors * errors);
+  return parts;
 }
 
 /// Of a normal distribution, from the median of absolute values.
@@ -75,62 +116,20 @@ Vector6 motion_terms(const WallPair& pair) {
   return terms;
 }
 
-FitShift fit_shift(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
-                   const RegistrationConfig& config) {
-  constexpr double kDamping = 1e-3;  // as of align_to_planes: along open directions nothing moves
-  const auto distance = static_cast<float>(config.refine_distance_voxels * config.voxel_size);
-  const double squared_kernel = std::pow(config.refine_kernel_voxels * config.voxel_size, 2);
-  const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
-  const Eigen::Vector3f t = T_a_b.translation().cast<float>();
-  const SensorTermsOf terms_of(a, b, T_a_b);
-  Matrix6 H = Matrix6::Zero();
-  FitShift moved = FitShift::Zero();
-  const OrientedPoints& sample = b.some();
-  for (std::size_t i = 0; i < sample.size(); ++i) {
-    const Eigen::Vector3f p = R * sample.points[i] + t;
-    const auto near = a.tree().nearest(p, distance);
-    if (!near) continue;
-    const Eigen::Vector3f& p_a = a.points().points[near->index];
-    const Eigen::Vector3f& normal_a = a.points().normals[near->index];
-    const Eigen::Vector3f normal_b = R * sample.normals[i];
-    if (std::abs(normal_a.dot(normal_b)) < kAgreeingNormals) continue;
-    for (const Eigen::Vector3f& normal : {normal_a, normal_b}) {
-      const WallPair pair{p_a, p, normal};
-      const auto off = static_cast<double>(normal.dot(p - p_a));
-      const double weight = std::pow(squared_kernel / (squared_kernel + off * off), 2);  // Geman and McClure
-      const Vector6 motion = motion_terms(pair);
-      SensorTerms terms = SensorTerms::Zero();
-      terms_of.add(pair, weight, terms);
-      H += weight * motion * motion.transpose();
-      moved += motion * terms.transpose();
-    }
-  }
-  H.diagonal().head<3>().array() += kDamping * H.diagonal().head<3>().mean() + 1e-12;
-  H.diagonal().tail<3>().array() += kDamping * H.diagonal().tail<3>().mean() + 1e-12;
-  return -H.ldlt().solve(moved);
-}
-
-Eigen::VectorXd explained_by_sensors(const Eigen::MatrixXd& terms, const Eigen::VectorXd& offsets,
-                                     const SensorPrior& prior) {
+OffsetParts taken_apart(const OffsetSystem& offsets, const OffsetPrior& prior) {
   constexpr int kRounds = 5;
   constexpr double kHuber = 1.345;  // sigmas: 95 % efficient where errors are normal,
   constexpr double kTukey = 4.685;  // and so is the biweight, to which walls that were moved are nothing
-  if (offsets.size() == 0) return offsets;
-  const Eigen::VectorXd known_before = prior_weights(prior);
-  Eigen::VectorXd errors = Eigen::VectorXd::Zero(kSensorErrors);
+  OffsetParts parts{Eigen::VectorXd::Zero(offsets.metres.size()), offsets.metres};
+  if (offsets.metres.size() == 0) return parts;
   for (int round = 0; round < 2 * kRounds; ++round) {
-    const Eigen::VectorXd residuals = offsets - terms * errors;
-    const double sigma = robust_sigma(residuals);
-    const Eigen::ArrayXd off = residuals.array().abs() / sigma;
+    const double sigma = robust_sigma(parts.left);
+    const Eigen::ArrayXd off = parts.left.array().abs() / sigma;
     const Eigen::ArrayXd huber = (kHuber * off.max(1e-12).inverse()).min(1.0);
     const Eigen::ArrayXd tukey = (1.0 - (off / kTukey).square()).max(0.0).square();
-    const Eigen::VectorXd weights = (round < kRounds ? huber : tukey) / (sigma * sigma);
-    const Eigen::MatrixXd weighted = terms.transpose() * weights.asDiagonal();
-    Eigen::MatrixXd H = weighted * terms;
-    H.diagonal() += known_before;
-    errors = H.llt().solve(weighted * offsets);
+    parts = solved(offsets, (round < kRounds ? huber : tukey) / (sigma * sigma), prior);
   }
-  return terms * errors;
+  return parts;
 }
 
 }  // namespace adit

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 /// What makes two sensors see one wall at different distances: a constant error of range, an error that grows
-/// with the angle of incidence, and one per ring. All move a patch of wall along the ray, so a robust fit
-/// over many patches tells them from relief, which belongs to a place (decision 0035).
+/// with the angle of incidence, and one per ring. All move a patch of wall along the ray. And where two scans
+/// were not fitted exactly, all patches of the pair move together. A robust fit over many patches of many
+/// pairs tells both from relief, which belongs to a place (decisions 0035 and 0052).
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "adit/core/pose.hpp"
 #include "adit/registration/agreement.hpp"
@@ -44,23 +46,32 @@ class SensorTermsOf {
 /// By how much a pair's offset grows when b moves by [translation; rotation] in the frame of a.
 [[nodiscard]] Vector6 motion_terms(const WallPair& pair);
 
-/// How errors of the sensors move the pose that fits b to a (fit_near): [translation; rotation] in the frame
-/// of a, a column for each error.
-using FitShift = Eigen::Matrix<double, 6, kSensorErrors>;
-[[nodiscard]] FitShift fit_shift(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
-                                 const RegistrationConfig& config);
+/// Offsets of patches of wall, metres, and what moves them beside relief; a row for each.
+struct OffsetSystem {
+  Eigen::VectorXd metres;
+  Eigen::Matrix<double, Eigen::Dynamic, kSensorErrors> by_sensors;
+  Eigen::Matrix<double, Eigen::Dynamic, 6> by_fit;  ///< motion_terms
+  std::vector<Eigen::Index> first_of_pair;          ///< Rows of one pair of scans follow one another.
+};
 
-/// Errors of range by sensor, standard deviations in metres: what data sheets allow.
-struct SensorPrior {
+/// Standard deviations: of range by sensor, what data sheets allow, and of the fit of two scans.
+struct OffsetPrior {
   double bias_m = 0.03;
   double walk_m = 0.03;  ///< At grazing incidence.
   double ring_m = 0.01;
+  double fit_m = 0.02;
+  double fit_rad = 0.004;
 };
 
-/// The part of `offsets`, metres, that the sensors explain: a robust fit of their errors with the prior, by
-/// Huber's weights and then by Tukey's (Beaton and Tukey, "The fitting of power series", 1974), to which
-/// walls that were moved between two visits are nothing. `terms` has a row for each.
-[[nodiscard]] Eigen::VectorXd explained_by_sensors(const Eigen::MatrixXd& terms,
-                                                   const Eigen::VectorXd& offsets, const SensorPrior& prior);
+/// What offsets consist of; the rest is owed to the fits.
+struct OffsetParts {
+  Eigen::VectorXd by_sensors;
+  Eigen::VectorXd left;
+};
+
+/// A robust fit of the errors of both sensors and of each pair's fit with their priors, by Huber's weights
+/// and then by Tukey's (Beaton and Tukey, "The fitting of power series", 1974), to which walls that were
+/// moved between two visits are nothing.
+[[nodiscard]] OffsetParts taken_apart(const OffsetSystem& offsets, const OffsetPrior& prior);
 
 }  // namespace adit

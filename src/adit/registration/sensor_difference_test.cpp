@@ -54,68 +54,102 @@ Pose fitted(const SeenSurface& a, const SeenSurface& b) {
 
 double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
 
-struct Offsets {
-  Eigen::VectorXd metres;
-  Eigen::MatrixXd terms;
-  [[nodiscard]] Eigen::VectorXd left() const { return metres - explained_by_sensors(terms, metres, {}); }
-};
-
-Offsets offsets_between(const RangeErrors& of_a, const RangeErrors& of_b) {
+/// Of one pair of scans, fitted.
+OffsetSystem offsets_between(const RangeErrors& of_a, const RangeErrors& of_b) {
   const SeenSurface a = seen_from(kFromA, of_a, 1);
   const SeenSurface b = seen_from(kFromB, of_b, 2);
   const std::vector<PatchOffset> found = patch_offsets(a, b, fitted(a, b), Pose(), {});
-  Offsets out{Eigen::VectorXd(std::ssize(found)), Eigen::MatrixXd(std::ssize(found), kSensorErrors)};
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    out.metres[static_cast<Eigen::Index>(i)] = found[i].metres;
-    out.terms.row(static_cast<Eigen::Index>(i)) = found[i].terms.transpose();
+  const Eigen::Index num = std::ssize(found);
+  OffsetSystem out{Eigen::VectorXd(num), {num, kSensorErrors}, {num, 6}, {0}};
+  for (Eigen::Index i = 0; i < num; ++i) {
+    const PatchOffset& offset = found[static_cast<std::size_t>(i)];
+    out.metres[i] = offset.metres;
+    out.by_sensors.row(i) = offset.by_sensors.transpose();
+    out.by_fit.row(i) = offset.by_fit.transpose();
   }
   return out;
 }
 
-TEST(SensorDifference, TheFitShiftsAsItSays) {
-  constexpr double kBias = 0.04;
-  constexpr int kTrials = 20;  // a bias moves points into other voxels: noise
-  Vector3 shifted = Vector3::Zero();
-  Vector3 predicted = Vector3::Zero();
-  for (int trial = 0; trial < kTrials; ++trial) {
-    const auto seed = static_cast<std::uint64_t>(2 * trial);
-    const SeenSurface a = seen_from(kFromA, {}, seed);
-    const SeenSurface b = seen_from(kFromB, {kBias, 0.0}, seed + 1);
-    const Pose T_with = fitted(a, b);
-    shifted += (T_with.translation() - fitted(a, seen_from(kFromB, {}, seed + 1)).translation()) / kTrials;
-    const Vector6 shift = kBias * fit_shift(a, b, T_with, {}).col(kErrorsOfSensor);  // the bias of b
-    // In the frame of a: the rotation moves the origin of b, too.
-    predicted += (shift.head<3>() + shift.tail<3>().cross(T_with.translation())) / kTrials;
+Eigen::VectorXd left_of(const OffsetSystem& offsets) { return taken_apart(offsets, {}).left; }
+
+TEST(SensorDifference, AnErrorOfTheFitIsNoRelief) {
+  const OffsetSystem exact = offsets_between({}, {});
+  OffsetSystem moved = exact;
+  Vector6 error;
+  error << 0.02, -0.03, 0.01, 0.002, -0.003, 0.004;
+  moved.metres += moved.by_fit * error;
+  ASSERT_GT(rms(moved.metres), 2.0 * rms(exact.metres));
+  EXPECT_LT(rms(left_of(moved) - left_of(exact)), 0.2 * rms(left_of(exact)));
+}
+
+TEST(SensorDifference, SolvesForEachFitAndBothSensorsTogether) {
+  // Three pairs against the same normal equations with nothing eliminated.
+  OffsetSystem all = offsets_between({}, {0.02, 0.0});
+  const OffsetSystem second = offsets_between({}, {0.0, 0.03});
+  const OffsetSystem third = offsets_between({0.01, 0.01}, {});
+  for (const OffsetSystem* more : {&second, &third}) {
+    const Eigen::Index before = all.metres.size();
+    const Eigen::Index num = before + more->metres.size();
+    all.first_of_pair.push_back(before);
+    all.metres.conservativeResize(num);
+    all.by_sensors.conservativeResize(num, Eigen::NoChange);
+    all.by_fit.conservativeResize(num, Eigen::NoChange);
+    all.metres.tail(num - before) = more->metres;
+    all.by_sensors.bottomRows(num - before) = more->by_sensors;
+    all.by_fit.bottomRows(num - before) = more->by_fit;
   }
-  ASSERT_GT(shifted.norm(), 0.005) << "roof and floor pull apart";
-  EXPECT_LT((predicted - shifted).norm(), 0.25 * shifted.norm())
-      << predicted.transpose() << ", was " << shifted.transpose();
+  const Eigen::Index num = all.metres.size();
+  Eigen::MatrixXd design = Eigen::MatrixXd::Zero(num, kSensorErrors + 18);
+  design.leftCols(kSensorErrors) = all.by_sensors;
+  for (Eigen::Index i = 0; i < num; ++i) {
+    const Eigen::Index pair = i < all.first_of_pair[1] ? 0 : i < all.first_of_pair[2] ? 1 : 2;
+    design.block<1, 6>(i, kSensorErrors + 6 * pair) = all.by_fit.row(i);
+  }
+  const OffsetPrior prior;
+  Eigen::VectorXd sigmas = Eigen::VectorXd::Constant(design.cols(), prior.ring_m);
+  for (const int sensor : {0, kErrorsOfSensor}) sigmas.segment<2>(sensor) << prior.bias_m, prior.walk_m;
+  for (int pair = 0; pair < 3; ++pair)
+    sigmas.segment<6>(kSensorErrors + 6 * pair) << Vector3::Constant(prior.fit_m),
+        Vector3::Constant(prior.fit_rad);
+  // What is left is orthogonal to the design, by the weights that it gives itself and but for the prior.
+  const Eigen::VectorXd left = taken_apart(all, prior).left;
+  std::vector<double> sizes(left.begin(), left.end());
+  for (double& size : sizes) size = std::abs(size);
+  std::ranges::nth_element(sizes, sizes.begin() + num / 2);
+  const double sigma = 1.4826 * sizes[static_cast<std::size_t>(num / 2)];
+  const Eigen::VectorXd weights =
+      (1.0 - (left.array() / (4.685 * sigma)).square()).max(0.0).square() / (sigma * sigma);
+  const Eigen::MatrixXd weighted = design.transpose() * weights.asDiagonal();
+  Eigen::MatrixXd H = weighted * design;
+  H.diagonal() += sigmas.array().square().inverse().matrix();
+  const Eigen::VectorXd expected = all.metres - design * H.llt().solve(weighted * all.metres);
+  EXPECT_LT(rms(left - expected), 0.01 * rms(expected));
 }
 
 TEST(SensorDifference, ExplainsWhatUnitsDifferIn) {
-  const double noise = rms(offsets_between({}, {}).left());
+  const double noise = rms(left_of(offsets_between({}, {})));
   ASSERT_LT(noise, 0.006);
   for (const RangeErrors& of_b : {RangeErrors{0.03, 0.0}, {-0.02, 0.02}, {0.06, 0.0}, {0.0, 0.03}}) {
-    const Offsets offsets = offsets_between({-0.01, 0.0}, of_b);
+    const OffsetSystem offsets = offsets_between({-0.01, 0.0}, of_b);
     EXPECT_GT(rms(offsets.metres), 1.5 * noise) << of_b.bias;
-    EXPECT_LT(rms(offsets.left()), 1.25 * noise) << of_b.bias;
+    EXPECT_LT(rms(left_of(offsets)), 1.25 * noise) << of_b.bias;
   }
 }
 
 TEST(SensorDifference, ReliefIsNotOfTheSensors) {
-  Offsets offsets = offsets_between({}, {});
+  OffsetSystem offsets = offsets_between({}, {});
   Rng rng(3);
   for (double& metres : offsets.metres) metres += rng.uniform() < 0.5 ? 0.01 : -0.01;
-  EXPECT_GT(rms(offsets.left()), 0.009);
+  EXPECT_GT(rms(left_of(offsets)), 0.009);
 }
 
 TEST(SensorDifference, ChangedPlacesDoNotDisturbIt) {
-  const Offsets of_units = offsets_between({}, {0.03, 0.0});
-  const Eigen::VectorXd before = of_units.left();
+  const OffsetSystem of_units = offsets_between({}, {0.03, 0.0});
+  const Eigen::VectorXd before = left_of(of_units);
   for (const auto& [every, metres] : {std::pair(8, 0.1), {5, 0.045}}) {  // a fifth of the walls lined anew
-    Offsets offsets = of_units;
+    OffsetSystem offsets = of_units;
     for (Eigen::Index i = 0; i < offsets.metres.size(); i += every) offsets.metres[i] += metres;
-    const Eigen::VectorXd after = offsets.left();
+    const Eigen::VectorXd after = left_of(offsets);
     std::vector<double> moved;
     for (Eigen::Index i = 1; i < after.size(); i += every) moved.push_back(std::abs(after[i] - before[i]));
     std::ranges::nth_element(moved, moved.begin() + std::ssize(moved) / 2);
@@ -124,11 +158,12 @@ TEST(SensorDifference, ChangedPlacesDoNotDisturbIt) {
 }
 
 TEST(SensorDifference, FewOffsetsLeaveThePrior) {
-  EXPECT_EQ(explained_by_sensors(Eigen::MatrixXd(0, kSensorErrors), Eigen::VectorXd(0), {}).size(), 0);
-  Eigen::MatrixXd terms = Eigen::MatrixXd::Zero(1, kSensorErrors);
-  terms(0, kErrorsOfSensor) = -1.0;
-  const Eigen::VectorXd far = Eigen::VectorXd::Constant(1, 0.5);
-  EXPECT_LT(std::abs(explained_by_sensors(terms, far, {})[0]), 0.1);
+  EXPECT_EQ(taken_apart({Eigen::VectorXd(0), {0, kSensorErrors}, {0, 6}, {}}, {}).left.size(), 0);
+  OffsetSystem far{Eigen::VectorXd::Constant(1, 0.5), {1, kSensorErrors}, {1, 6}, {0}};
+  far.by_sensors.setZero();
+  far.by_fit.setZero();
+  far.by_sensors(0, kErrorsOfSensor) = -1.0;
+  EXPECT_LT(std::abs(taken_apart(far, {}).by_sensors[0]), 0.1);
 }
 
 }  // namespace

@@ -136,7 +136,7 @@ Told told_of_walls(double range_error_m) {
           const double metres = i % 2 == 0 ? 0.01 : -0.01;
           for (const double offset : {metres, i % 10 < 7 ? metres : -metres}) {
             place.offsets.push_back({{static_cast<int>(asked.theirs), i, 0, 0}, offset + range_error_m});
-            place.offsets.back().terms[0] = 1.0;
+            place.offsets.back().by_sensors[0] = 1.0;
           }
         }
         return place;
