@@ -36,6 +36,14 @@ std::vector<MessageBody> request_of(const PeerSession& session) {
   return request ? std::vector<MessageBody>{*request} : std::vector<MessageBody>{};
 }
 
+/// Accepted loops that fix the position along the tunnel, too.
+std::vector<LoopClosure> without_sliding(std::vector<LoopClosure> loops) {
+  std::erase_if(loops, [](const LoopClosure& loop) {
+    return loop.verdict != LoopVerdict::accepted || loop.is_free_to_slide();
+  });
+  return loops;
+}
+
 LoopRegistrationConfig registration_of(const AgentConfig& config) {
   LoopRegistrationConfig out{config.registration_in_use()};
   if (config.policy == MergePolicy::adaptive) {
@@ -209,7 +217,7 @@ Agent::Replies Agent::begin_check(RobotId peer) {
   for (const auto& [ends, loop] : known().loops)
     if (ends.first.robot == map_->id && ends.second.robot == peer) loops.push_back(loop);
   checks_.insert_or_assign(peer,
-                           checker_of(distinctive(std::move(loops)), chain_by(map_->id), chain_by(peer)));
+                           checker_of(without_sliding(std::move(loops)), chain_by(map_->id), chain_by(peer)));
   return go_on_checking(peer);
 }
 
@@ -266,7 +274,7 @@ void Agent::find_revisits() {
     }
     ledger_.add_own(loop);
   }
-  loops = distinctive(std::move(loops));
+  loops = without_sliding(std::move(loops));
   if (loops.empty()) return;
   MergeChecker check = checker_of(loops, chain, chain);
   PlaceComparer comparer(*map_, discernment(), config_.registration_in_use());
@@ -332,20 +340,6 @@ MergeChecker Agent::checker_of(const std::vector<LoopClosure>& loops, const Odom
     };
   }
   return {std::move(between), std::move(measurements), config_.adaptive};
-}
-
-std::vector<LoopClosure> Agent::distinctive(std::vector<LoopClosure> loops) {
-  std::erase_if(loops, [](const LoopClosure& loop) {
-    return loop.verdict != LoopVerdict::accepted || loop.is_free_to_slide();
-  });
-  if (loops.empty()) return loops;
-  std::vector<std::uint32_t> own;
-  for (const LoopClosure& loop : loops) own.push_back(loop.from.index);
-  const std::vector<bool> is_distinctive = discernment().distinctive(own);
-  std::vector<LoopClosure> out;
-  for (std::size_t l = 0; l < loops.size(); ++l)
-    if (is_distinctive[l]) out.push_back(std::move(loops[l]));
-  return out;
 }
 
 }  // namespace adit

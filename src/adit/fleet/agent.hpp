@@ -126,9 +126,6 @@ class Agent {
   [[nodiscard]] Discernment& discernment();
   [[nodiscard]] MergeChecker checker_of(const std::vector<LoopClosure>& loops, const OdometryChain& own,
                                         const OdometryChain& theirs);
-  /// Accepted loops that start where a displacement along the tunnel would show: others do not fix the
-  /// position.
-  [[nodiscard]] std::vector<LoopClosure> distinctive(std::vector<LoopClosure> loops);
 
   std::shared_ptr<const RobotMap> map_;
   AgentConfig config_;
