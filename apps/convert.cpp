@@ -123,6 +123,7 @@ void add_convert(Program& program) {
       .one_of({"pcd", "ply", "bin"})
       .default_shown();
   add_recording_options(command, options->recording);
+  add_truth_topic(command, options->recording);
   command.footer(
       "recording (.mcap, .db3, .bag, bag folder, folder of clouds, FOLDER@even) -> .mcap, folder, or its "
       "poses "

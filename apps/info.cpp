@@ -47,6 +47,7 @@ void add_info(Program& program) {
       });
   command.add_option("FILE", options->input, "File or folder").required();
   add_recording_options(command, options->recording);
+  add_truth_topic(command, options->recording);
 }
 
 }  // namespace adit::app

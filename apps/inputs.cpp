@@ -47,6 +47,13 @@ void add_recording_options(const Command& command, RecordingConfig& config) {
   command.add_option("--imu", config.imu, "Topic of the IMU, for recordings with several; none: without");
   command.add_option("--imu-mount", config.imu_mount, "Pose of the IMU on the robot, as --mount")
       .check(mount_fault);
+  command.add_option("--point-times", config.point_times,
+                     "Unit of the times of points, s, ms, us or ns (default: as found)");
+}
+
+void add_truth_topic(const Command& command, RecordingConfig& config) {
+  command.add_option("--truth", config.truth,
+                     "Topic of ground truth, for recordings with several; none: without");
 }
 
 Result<Recording> open_input(const std::string& input, const RecordingConfig& config) {
@@ -65,6 +72,8 @@ RecordingConfig recording_config(RecordingConfig config, const RecordingConfig& 
   if (!options.wheel.empty()) config.wheel = options.wheel;
   if (!options.imu.empty()) config.imu = options.imu;
   if (!options.imu_mount.empty()) config.imu_mount = options.imu_mount;
+  if (!options.truth.empty()) config.truth = options.truth;
+  if (!options.point_times.empty()) config.point_times = options.point_times;
   return config;
 }
 

@@ -17,6 +17,8 @@ namespace adit::app {
 
 /// The options --mount, --points, --wheel, --imu and --imu-mount of a command that opens recordings.
 void add_recording_options(const Command& command, RecordingConfig& config);
+/// --truth TOPIC, where --truth is no file.
+void add_truth_topic(const Command& command, RecordingConfig& config);
 
 /// A recording (see open_recording). What had to be assumed to read it goes to stderr, one line per
 /// assumption.

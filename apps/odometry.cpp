@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +12,7 @@
 #include "adit/evaluation/statistics.hpp"
 #include "adit/io/tum.hpp"
 #include "adit/odometry/methods.hpp"
+#include "adit/robot/nothing_mapped.hpp"
 #include "adit/robot/robot_slam.hpp"
 #include "adit/robot/sensor_checks.hpp"
 #include "command_line.hpp"
@@ -74,15 +76,21 @@ Result<> odometry(const OdometryOptions& options, const Common& common) {
     if (const Result<> set = set_field(fields_of(method), "method", options.method); !set)
       usage_error(set.error().message);
   }
-  Result<Recording> recording =
-      open_input(options.input, recording_config(config->recording, options.recording));
+  std::error_code ignored;
+  const bool is_truth_topic = !options.truth.empty() && !std::filesystem::exists(options.truth, ignored);
+  RecordingConfig how = recording_config(config->recording, options.recording);
+  if (is_truth_topic) how.truth = options.truth;
+  Result<Recording> recording = open_input(options.input, how);
   if (!recording) return tl::unexpected(recording.error());
   if (config->slam.check_sensors) print_notes("odometry", checked_sensors(*recording));
   Result<Trajectory> truth = recording->truth;
-  if (!options.truth.empty()) truth = read_tum(options.truth);
+  if (!options.truth.empty() && !is_truth_topic) truth = read_tum(options.truth);
   if (!truth) return tl::unexpected(truth.error());
   const Result<Run> done = run(*recording, method);
   if (!done) return tl::unexpected(done.error());
+  const auto refused = done->statuses.find(StepStatus::too_few_points);
+  if (refused != done->statuses.end() && static_cast<std::size_t>(refused->second) == done->trajectory.size())
+    return fail(why_nothing_mapped(*recording));
   if (const Result<> written = write_tum(options.out, done->trajectory); !written) return written;
 
   nlohmann::ordered_json report = {{"scans", done->trajectory.size()},
@@ -116,7 +124,7 @@ void add_odometry(Program& program) {
       .one_of({"plane-icp", "kinematic-icp", "kiss-icp"});
   command.add_option("--out", options->out, "Trajectory to write (TUM)").required();
   command.add_option("--truth", options->truth,
-                     "True trajectory (TUM) for the error (default: the recording's own)");
+                     "True trajectory for the error, a file (TUM) or a topic (default: the recording's own)");
   add_recording_options(command, options->recording);
 }
 

@@ -163,6 +163,7 @@ void add_slam(Program& program) {
   command.add_option("--rerun", options->rerun,
                      "session.toml of a session to reproduce byte for byte from the same inputs");
   add_recording_options(command, options->recording);
+  add_truth_topic(command, options->recording);
   command.footer(
       "A recording that cannot be mapped is reported with the reason; the others go on, and the exit code is "
       "1.");

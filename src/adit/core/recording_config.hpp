@@ -12,6 +12,9 @@ namespace adit {
 /// As RecordingConfig::imu: do without an IMU.
 inline constexpr std::string_view kNoImu = "none";
 
+/// As RecordingConfig::truth: do without ground truth.
+inline constexpr std::string_view kNoTruth = "none";
+
 /// As RecordingConfig::wheel: do without wheels.
 inline constexpr std::string_view kNoWheel = "none";
 
@@ -25,6 +28,12 @@ struct RecordingConfig {
   std::string imu =
       {};  ///< Topic of the IMU, where a file has several. "": the only one; "none": do without.
   std::string imu_mount = {};  ///< As `mount`, of the IMU.
+  std::string truth = {};  ///< Topic of ground truth. "": the only one whose name says so; "none": without.
+  /// Unit of the times of points, "s", "ms", "us" or "ns". "": as found (io/packed_cloud.hpp).
+  std::string point_times = {};
+  /// "start": a sweep's stamp is that of its start, or of wherever its points' times are 0; "end": of its
+  /// end, while the times count from its start.
+  std::string stamp_at = "start";
 };
 
 [[nodiscard]] inline Fields fields_of(RecordingConfig& c) {
@@ -39,7 +48,15 @@ struct RecordingConfig {
       {"imu", &c.imu, "", 0, 0,
        "topic of the IMU, where a recording has several; empty: the only one; none: without an IMU"},
       {"imu_mount", &c.imu_mount, "m, deg", 0, 0,
-       "pose of the IMU on the robot, as 'mount'; empty: as each recording says"}};
+       "pose of the IMU on the robot, as 'mount'; empty: as each recording says"},
+      {"truth", &c.truth, "", 0, 0,
+       "topic of ground truth; empty: the only one whose name says that it is; none: without"},
+      {"point_times", &c.point_times, "", 0, 0,
+       "unit of the times of points, s, ms, us or ns; empty: the one that makes a sweep last 2 ms to 2 s"},
+      {"stamp_at", &c.stamp_at, "", 0, 0,
+       "start: a sweep's stamp is of its start, or of wherever its points' times are 0; end: of its end, "
+       "while "
+       "the times count from its start"}};
 }
 
 }  // namespace adit

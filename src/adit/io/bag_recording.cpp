@@ -3,6 +3,7 @@
 #include "adit/io/bag_recording.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <memory>
 #include <optional>
@@ -46,12 +47,16 @@ Topics find_topics(const Bag& bag) {
   for (std::size_t i = 0; i < bag.topics.size(); ++i) {
     const auto& [name, type, encoding] = bag.topics[i];
     if (encoding != "cdr" && encoding != "ros1") continue;
-    if (type == ros::kPointCloud2) topics.points.push_back(i);
+    if (ros::is_cloud(type)) topics.points.push_back(i);
     if (type == ros::kImu) topics.imu.push_back(i);
     if (type == ros::kOdometry) (is_truth(name) ? topics.truth : topics.wheel).push_back(i);
     if (type == ros::kTransforms && name.ends_with("tf_static")) topics.transforms.push_back(i);
   }
   return topics;
+}
+
+std::size_t num_messages(const Bag& bag, std::size_t topic) {
+  return static_cast<std::size_t>(std::ranges::count(bag.messages, topic, &BagMessage::topic));
 }
 
 std::string names_of(const Bag& bag, const TopicIndices& topics) {
@@ -60,14 +65,32 @@ std::string names_of(const Bag& bag, const TopicIndices& topics) {
   return format("{}", fmt::join(names, ", "));
 }
 
-Result<> check_single(const Bag& bag, const TopicIndices& topics, std::string_view what) {
-  if (topics.size() < 2) return {};
-  return fail(format("several topics of {}: {}; keep one of them in the file", what, names_of(bag, topics)));
+/// How likely a topic is the one that is meant: by its name, then by its messages.
+std::pair<int, std::size_t> likelihood(const Bag& bag, std::size_t topic) {
+  constexpr std::array kOfTheRobot = {"lidar",  "velodyne", "ouster", "livox", "hesai",   "rslidar",
+                                      "points", "wheel",    "base",   "robot", "odometry"};
+  constexpr std::array kDerived = {"camera", "depth",    "filtered", "map",
+                                   "ground", "obstacle", "visual",   "icp"};
+  const std::string name = lower_case(bag.topics[topic].name);
+  const auto in_name = [&](const char* word) { return name.find(word) != std::string::npos; };
+  const int words = static_cast<int>(std::ranges::any_of(kOfTheRobot, in_name)) -
+                    2 * static_cast<int>(std::ranges::any_of(kDerived, in_name));
+  return {words, num_messages(bag, topic)};
+}
+
+/// "--points /lidar/points (120 messages) or --points /camera/points (40 messages)", the likeliest first.
+std::string choices(const Bag& bag, TopicIndices topics, std::string_view option) {
+  std::ranges::stable_sort(topics, std::ranges::greater(),
+                           [&](std::size_t topic) { return likelihood(bag, topic); });
+  std::vector<std::string> texts;
+  for (const std::size_t topic : topics)
+    texts.push_back(format("{} {} ({} messages)", option, bag.topics[topic].name, num_messages(bag, topic)));
+  return format("{}", fmt::join(texts, " or "));
 }
 
 /// How people choose one of several topics.
 struct TopicChoice {
-  std::string_view type;    ///< "PointCloud2"
+  std::string_view type;    ///< "clouds"
   std::string_view option;  ///< "--points"
   std::string topic;        ///< "": the only one.
 };
@@ -78,30 +101,44 @@ Result<> choose_one(const Bag& bag, TopicIndices& topics, const TopicChoice& cho
   if (!choice.topic.empty())
     std::erase_if(topics, [&](std::size_t topic) { return bag.topics[topic].name != choice.topic; });
   if (topics.empty() && !choice.topic.empty()) {
-    return fail(format("no {} topic '{}'; there {}", choice.type, choice.topic,
+    return fail(format("no topic of {} '{}'; there {}", choice.type, choice.topic,
                        all.empty() ? "is none" : "are: " + all));
   }
   if (topics.size() < 2) return {};
-  return fail(format("several topics of {}: {}; choose one with {} TOPIC", choice.type, all, choice.option));
+  return fail(format("several topics of {}; give one of them, the likeliest first: {}", choice.type,
+                     choices(bag, topics, choice.option)));
+}
+
+/// What people call ground truth is no wheel odometry, whatever its name says.
+void take_truth(const Bag& bag, Topics& topics, const std::string& chosen) {
+  if (chosen == kNoTruth) topics.truth.clear();
+  const auto is_chosen = [&](std::size_t topic) { return bag.topics[topic].name == chosen; };
+  std::ranges::copy_if(topics.wheel, std::back_inserter(topics.truth), is_chosen);
+  std::erase_if(topics.wheel, is_chosen);
 }
 
 /// Leaves one topic of clouds and at most one of each other kind.
 Result<Topics> choose_topics(const Bag& bag, const RecordingConfig& config) {
   Topics topics = find_topics(bag);
   if (topics.points.empty())
-    return fail("no topic of sensor_msgs/msg/PointCloud2; there are no scans to read");
+    return fail(
+        "no topic of sensor_msgs/msg/PointCloud2 or of Livox's CustomMsg; there are no scans to read");
   if (config.imu == kNoImu) topics.imu.clear();
+  take_truth(bag, topics, config.truth);
   const std::string imu = config.imu == kNoImu ? "" : config.imu;
   const bool has_wheels = config.wheel != kNoWheel;
-  return choose_one(bag, topics.points, {"PointCloud2", "--points", config.points})
+  return choose_one(bag, topics.points, {"clouds", "--points", config.points})
       .and_then([&] {
-        return choose_one(bag, topics.imu, {"Imu", "--imu", imu});
+        return choose_one(bag, topics.imu, {"IMUs", "--imu", imu});
       })
       .and_then([&]() -> Result<> {
         if (!has_wheels) return {};
         return choose_one(bag, topics.wheel, {"wheel odometry", "--wheel", config.wheel});
       })
-      .and_then([&] { return check_single(bag, topics.truth, "ground truth"); })
+      .and_then([&] {
+        return choose_one(bag, topics.truth,
+                          {"ground truth", "--truth", config.truth == kNoTruth ? "" : config.truth});
+      })
       .map([&] { return std::move(topics); });
 }
 
@@ -252,8 +289,19 @@ Result<> take_mounts(Recording& recording, const FrameTree& tree, const FrameNam
   return {};
 }
 
-Result<ros::CloudMessage> read_cloud_message(const Bag& bag, const BagMessage& message) {
-  return decoded(bag, message, ros::decode_cloud);
+Result<ros::CloudMessage> read_cloud_message(const Bag& bag, const BagMessage& message,
+                                             std::optional<TimeUnit> time_unit) {
+  const bool from_livox = ros::is_livox(bag.topics[message.topic].type);
+  return decoded(bag, message, [&](std::string_view content, MessageEncoding encoding) {
+    return from_livox ? ros::decode_livox(content, encoding)
+                      : ros::decode_cloud(content, encoding, time_unit);
+  });
+}
+
+/// adit's own times are nanoseconds.
+Result<std::optional<TimeUnit>> time_unit_of(const Bag& bag, const RecordingConfig& config) {
+  if (bag.own && config.point_times.empty()) return std::optional(TimeUnit::nanoseconds);
+  return parse_time_unit(config.point_times);
 }
 
 /// Name, sensor and assumptions: adit's own metadata say them. Elsewhere "/robot_0/points" is of robot_0.
@@ -274,16 +322,31 @@ void take_metadata(Recording& recording, const Bag& bag, const std::string& topi
 }
 
 std::function<Result<Scan>(std::size_t)> scan_reader(std::shared_ptr<const Bag> bag,
-                                                     std::vector<BagMessage> scans,
-                                                     std::vector<Stamp> stamps) {
-  return [bag = std::move(bag), scans = std::move(scans),
-          stamps = std::move(stamps)](std::size_t i) -> Result<Scan> {
+                                                     std::vector<BagMessage> scans, std::vector<Stamp> stamps,
+                                                     std::optional<TimeUnit> time_unit) {
+  return [bag = std::move(bag), scans = std::move(scans), stamps = std::move(stamps),
+          time_unit](std::size_t i) -> Result<Scan> {
     ADIT_CHECK(i < scans.size(), "no scan of that index");
-    Result<ros::CloudMessage> message = read_cloud_message(*bag, scans[i]);
+    Result<ros::CloudMessage> message = read_cloud_message(*bag, scans[i], time_unit);
     if (!message) return fail(format("scan {}", i), message.error());
     if (message->scan.stamp != stamps[i]) return fail(format("scan {}: its stamp differs from the index", i));
     return std::move(message->scan);
   };
+}
+
+/// What was found about the times of points, unless it is what floats and integers usually are.
+void note_point_times(Recording& recording, const ros::CloudMessage& first, const RecordingConfig& config) {
+  if (!first.time_unit) {
+    recording.assumptions.push_back(
+        "point times: none, so that scans are not corrected for the motion during a sweep");
+    return;
+  }
+  if (config.point_times.empty() && first.time_unit != TimeUnit::seconds &&
+      first.time_unit != TimeUnit::nanoseconds)
+    recording.assumptions.push_back(
+        format("point times: in {}, in which a sweep lasts as long as sweeps do; if that is wrong, give "
+               "--point-times",
+               to_string(*first.time_unit)));
 }
 
 /// Stamps, wheels, ground truth and IMU.
@@ -317,6 +380,8 @@ Result<Tracks> read_tracks(const Bag& bag, const Topics& topics, const Recording
 Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, const RecordingConfig& config) {
   const Result<Topics> topics = choose_topics(*bag, config);
   if (!topics) return tl::unexpected(topics.error());
+  const Result<std::optional<TimeUnit>> time_unit = time_unit_of(*bag, config);
+  if (!time_unit) return tl::unexpected(time_unit.error());
   Result<Tracks> tracks = read_tracks(*bag, *topics, config);
   if (!tracks) return tl::unexpected(tracks.error());
   Recording recording;
@@ -330,9 +395,10 @@ Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, const Reco
   std::ranges::copy(tracks->imu.remarks, std::back_inserter(recording.assumptions));
   if (Result<> checked = check_fits_mcap(recording); !checked) return tl::unexpected(checked.error());
   const std::vector<BagMessage> scans = messages_of(*bag, topics->points);
-  recording.read_scan = scan_reader(bag, scans, recording.scan_stamps);
+  recording.read_scan = scan_reader(bag, scans, recording.scan_stamps, *time_unit);
   const Result<> mounted =
-      read_cloud_message(*bag, scans.front()).and_then([&](const ros::CloudMessage& first) {
+      read_cloud_message(*bag, scans.front(), *time_unit).and_then([&](const ros::CloudMessage& first) {
+        if (!bag->own) note_point_times(recording, first, config);
         return read_frames(*bag, *topics).and_then([&](const FrameTree& tree) {
           return take_mounts(recording, tree, {tracks->wheel.child, first.frame, tracks->imu.frame}, config);
         });

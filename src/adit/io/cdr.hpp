@@ -83,6 +83,13 @@ class MessageReader {
     return value;
   }
   [[nodiscard]] std::string_view blob() { return take(number<std::uint32_t>()); }
+  /// What has not been read; its first byte is aligned to four.
+  [[nodiscard]] std::string_view rest() {
+    if (encoding_ == MessageEncoding::cdr) offset_ = (offset_ + 3) / 4 * 4;
+    ok_ = ok_ && offset_ <= body_.size();
+    return ok_ ? body_.substr(offset_) : std::string_view();
+  }
+  [[nodiscard]] std::endian order() const { return order_; }
   [[nodiscard]] bool ok() const { return ok_; }
   [[nodiscard]] MessageEncoding encoding() const { return encoding_; }
   /// Behind the last value, for messages about damage.

@@ -20,12 +20,12 @@ Result<CloudFormat> format_of(const std::filesystem::path& path) {
                      extension));
 }
 
-Result<CloudFile> parse(CloudFormat format, std::string_view bytes) {
+Result<CloudFile> parse(CloudFormat format, std::string_view bytes, std::optional<TimeUnit> time_unit) {
   switch (format) {
     case CloudFormat::pcd:
-      return read_pcd(bytes);
+      return read_pcd(bytes, time_unit);
     case CloudFormat::ply:
-      return read_ply(bytes);
+      return read_ply(bytes, time_unit);
     case CloudFormat::kitti:
       break;
   }
@@ -46,6 +46,28 @@ std::string bytes_of(CloudFormat format, const PointCloud& cloud, const Pose& vi
 
 }  // namespace
 
+std::string_view to_string(TimeUnit unit) {
+  switch (unit) {
+    case TimeUnit::seconds:
+      return "s";
+    case TimeUnit::milliseconds:
+      return "ms";
+    case TimeUnit::microseconds:
+      return "us";
+    case TimeUnit::nanoseconds:
+      break;
+  }
+  return "ns";
+}
+
+Result<std::optional<TimeUnit>> parse_time_unit(std::string_view text) {
+  using enum TimeUnit;
+  if (text.empty()) return std::optional<TimeUnit>();
+  for (const TimeUnit unit : {seconds, milliseconds, microseconds, nanoseconds})
+    if (text == to_string(unit)) return std::optional(unit);
+  return fail(format("'{}' is not a unit of point times; s, ms, us and ns are", text));
+}
+
 std::string_view extension_of(CloudFormat format) {
   switch (format) {
     case CloudFormat::pcd:
@@ -58,12 +80,12 @@ std::string_view extension_of(CloudFormat format) {
   return ".bin";
 }
 
-Result<CloudFile> read_cloud_file(const std::filesystem::path& path) {
+Result<CloudFile> read_cloud_file(const std::filesystem::path& path, std::optional<TimeUnit> time_unit) {
   const Result<CloudFormat> format = format_of(path);
   if (!format) return tl::unexpected(format.error());
   const Result<std::string> bytes = read_bytes(path);
   if (!bytes) return tl::unexpected(bytes.error());
-  Result<CloudFile> file = parse(*format, *bytes);
+  Result<CloudFile> file = parse(*format, *bytes, time_unit);
   if (!file) return fail(path.string(), file.error());
   return file;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string_view>
@@ -17,6 +18,13 @@ enum class CloudFormat { pcd, ply, kitti };
 /// With its point: ".bin" for KITTI.
 [[nodiscard]] std::string_view extension_of(CloudFormat format);
 
+/// Of the times of points.
+enum class TimeUnit : std::uint8_t { seconds, milliseconds, microseconds, nanoseconds };
+/// "s", "ms", "us" or "ns".
+[[nodiscard]] std::string_view to_string(TimeUnit unit);
+/// None for "", as RecordingConfig::point_times has it.
+Result<std::optional<TimeUnit>> parse_time_unit(std::string_view text);
+
 /// What a cloud reader found. Points with a NaN or infinite coordinate are left out and counted.
 struct CloudFile {
   PointCloud cloud;
@@ -24,11 +32,13 @@ struct CloudFile {
   /// PCD's VIEWPOINT, the pose of the sensor: p_world = viewpoint * p. None for the identity, which is what
   /// writers put there that do not know it, and for formats without one.
   std::optional<Pose> viewpoint;
+  std::optional<TimeUnit> time_unit = {};  ///< Of the times as they are stored; none where there are none.
 };
 
 /// Reads a cloud, in the frame and unit of the file. A missing, truncated or empty file, an unknown extension
 /// and a cloud without any finite point are errors that name the file and the place.
-Result<CloudFile> read_cloud_file(const std::filesystem::path& path);
+/// `time_unit`: of point times, where it is known (packed_cloud.hpp says how it is found else).
+Result<CloudFile> read_cloud_file(const std::filesystem::path& path, std::optional<TimeUnit> time_unit = {});
 
 /// The same without the count.
 Result<PointCloud> read_cloud(const std::filesystem::path& path);

@@ -128,20 +128,23 @@ TEST_P(CloudFormats, DamagedBytesAreAnErrorOrACloudOfFinitePoints) {
   }
 }
 
+Result<CloudFile> read_any_pcd(std::string_view bytes) { return read_pcd(bytes); }
+Result<CloudFile> read_any_ply(std::string_view bytes) { return read_ply(bytes); }
+
 INSTANTIATE_TEST_SUITE_P(
     All, CloudFormats,
     ::testing::Values(
-        CloudCase{"pcd_ascii", [](const PointCloud& c) { return write_pcd(c, PcdData::ascii); }, read_pcd,
+        CloudCase{"pcd_ascii", [](const PointCloud& c) { return write_pcd(c, PcdData::ascii); }, read_any_pcd,
                   true, true},
-        CloudCase{"pcd_binary", [](const PointCloud& c) { return write_pcd(c); }, read_pcd, true, false},
+        CloudCase{"pcd_binary", [](const PointCloud& c) { return write_pcd(c); }, read_any_pcd, true, false},
         CloudCase{"pcd_compressed",
-                  [](const PointCloud& c) { return write_pcd(c, PcdData::binary_compressed); }, read_pcd,
+                  [](const PointCloud& c) { return write_pcd(c, PcdData::binary_compressed); }, read_any_pcd,
                   true, false},
-        CloudCase{"ply_ascii", [](const PointCloud& c) { return write_ply(c, PlyData::ascii); }, read_ply,
+        CloudCase{"ply_ascii", [](const PointCloud& c) { return write_ply(c, PlyData::ascii); }, read_any_ply,
                   true, true},
-        CloudCase{"ply_little", [](const PointCloud& c) { return write_ply(c); }, read_ply, true, false},
+        CloudCase{"ply_little", [](const PointCloud& c) { return write_ply(c); }, read_any_ply, true, false},
         CloudCase{"ply_big", [](const PointCloud& c) { return write_ply(c, PlyData::binary_big_endian); },
-                  read_ply, true, false},
+                  read_any_ply, true, false},
         CloudCase{"kitti",
                   [](const PointCloud& c) {
                     PointCloud with_intensity = c;
@@ -194,7 +197,46 @@ TEST(Pcd, TimesInSecondsNanosecondsAndAbsolute) {
   // Absolute clocks: relative to the earliest point, to the nanosecond where the file has it.
   EXPECT_EQ(times("8", "U", "1700000000123456789", "1700000000123456799"), Times({0, 10}));
   EXPECT_EQ(times("8", "F", "1700000000.5", "1700000000.25"), Times({250'000'000, 0}));
-  EXPECT_ERROR(times("8", "F", "0", "100"), "span 100.000 s, more than 2.1 s: wrong time field or unit?");
+  EXPECT_ERROR(times("8", "F", "0", "100"),
+               "span 100.000 s, more than 2.1 s; if they are in another unit, give --point-times");
+}
+
+// A sweep of 0.1 s, as drivers write it: the unit follows from how long a sweep lasts.
+TEST(Pcd, TimesAreInTheUnitThatMakesASweepLastAsLongAsSweepsDo) {
+  constexpr int kNum = 201;
+  const auto sweep = [](std::string_view type, std::string_view size, double per_second, double start,
+                        std::optional<TimeUnit> unit = {}) {
+    std::string rows;
+    for (int i = 0; i < kNum; ++i) rows += format("1 2 3 {:.17g}\n", start + 0.0005 * i * per_second);
+    return read_pcd(
+        pcd_header("x y z t", "4 4 4 " + std::string(size), "F F F " + std::string(type), kNum, "ascii") +
+            rows,
+        unit);
+  };
+  const auto expect = [](const Result<CloudFile>& file, TimeUnit unit, int tolerance_ns) {
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(to_string(*file->time_unit), to_string(unit));
+    const std::vector<std::int32_t>& offsets = file->cloud.time_offsets_ns;
+    ASSERT_EQ(offsets.size(), static_cast<std::size_t>(kNum));
+    for (int i = 0; i < kNum; ++i)
+      ASSERT_NEAR(offsets[static_cast<std::size_t>(i)], 500'000 * i, tolerance_ns) << i;
+  };
+  expect(sweep("F", "4", 1.0, 0.0), TimeUnit::seconds, 10);          // Velodyne
+  expect(sweep("U", "4", 1e9, 0.0), TimeUnit::nanoseconds, 0);       // Ouster
+  expect(sweep("F", "8", 1.0, 1.7e9), TimeUnit::seconds, 300);       // Hesai, Robosense
+  expect(sweep("F", "8", 1e9, 1.7e18), TimeUnit::nanoseconds, 300);  // Livox
+  expect(sweep("U", "4", 1e6, 0.0), TimeUnit::microseconds, 0);
+  expect(sweep("F", "4", 1e3, 0.0), TimeUnit::milliseconds, 10);
+  // What is given counts, and too few times, or a sweep like no other, are as they usually are.
+  EXPECT_EQ(*sweep("U", "4", 1e6, 0.0, TimeUnit::nanoseconds)->time_unit, TimeUnit::nanoseconds);
+  EXPECT_EQ(sweep("U", "4", 1e6, 0.0, TimeUnit::nanoseconds)->cloud.time_offsets_ns.back(), 100'000);
+  EXPECT_EQ(*sweep("U", "4", 1e1, 0.0)->time_unit, TimeUnit::nanoseconds);
+}
+
+TEST(CloudFiles, UnitsOfTimesAreNamed) {
+  EXPECT_EQ(*parse_time_unit(""), std::nullopt);
+  EXPECT_EQ(*parse_time_unit("us"), TimeUnit::microseconds);
+  EXPECT_ERROR(parse_time_unit("sec"), "'sec' is not a unit of point times; s, ms, us and ns are");
 }
 
 TEST(Pcd, TheViewpointIsThePoseOfTheSensor) {
@@ -278,6 +320,19 @@ TEST(Kitti, BytesAreFourFloatsAPoint) {
   PointCloud cloud;
   cloud.points = {{1, 2, 3}};
   EXPECT_EQ(write_kitti(cloud).size(), 16U);
+}
+
+TEST(Kitti, AFifthColumnOfWholeNumbersIsTheRing) {
+  std::string bytes;
+  for (int i = 0; i < 8; ++i)  // 160 bytes are whole rows of four columns, too
+    for (const float value : {0.5F + static_cast<float>(i), 2.25F, -1.5F, 0.75F, static_cast<float>(i)})
+      append_little_endian(bytes, value);
+  const Result<CloudFile> file = read_kitti(bytes);
+  ASSERT_TRUE(file) << file.error().message;
+  ASSERT_EQ(file->cloud.size(), 8U);
+  EXPECT_EQ(file->cloud.points[7], Eigen::Vector3f(7.5F, 2.25F, -1.5F));
+  EXPECT_EQ(file->cloud.intensities[7], 0.75F);
+  EXPECT_ERROR(read_kitti(std::string_view(bytes).substr(0, 150)), "not a whole number of points");
 }
 
 TEST(CloudFiles, FormatFollowsTheExtension) {

@@ -2,26 +2,44 @@
 // SPDX-License-Identifier: MIT
 #include "adit/io/kitti.hpp"
 
+#include <cmath>
+
 #include "adit/core/format.hpp"
 #include "adit/io/packed_cloud.hpp"
 
 namespace adit {
 
+namespace {
+
+constexpr std::size_t kFour = 16;  ///< Bytes of a row of four columns,
+constexpr std::size_t kFive = 20;  ///< and of five.
+
+bool has_rings(std::string_view bytes) {
+  if (bytes.empty() || bytes.size() % kFive != 0) return false;
+  for (std::size_t at = kFour; at < bytes.size(); at += kFive) {
+    const double ring = load_scalar(ScalarType::float32, bytes.data() + at, std::endian::little);
+    if (!(ring >= 0.0 && ring <= 255.0 && ring == std::floor(ring))) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 Result<CloudFile> read_kitti(std::string_view bytes) {
-  constexpr std::size_t kRow = 16;
-  if (bytes.size() % kRow != 0) {
+  const std::size_t row = has_rings(bytes) ? kFive : kFour;
+  if (bytes.size() % row != 0) {
     return fail(format(
         "{} bytes are not a whole number of points (x y z intensity, 16 bytes each); the last whole one "
         "ends at byte {}: the file is truncated or not a KITTI file",
-        bytes.size(), bytes.size() / kRow * kRow));
+        bytes.size(), bytes.size() / row * row));
   }
   PackedCloud packed;
   packed.bytes = bytes;
-  packed.num_points = bytes.size() / kRow;
-  packed.x = {ScalarType::float32, 0, kRow};
-  packed.y = {ScalarType::float32, 4, kRow};
-  packed.z = {ScalarType::float32, 8, kRow};
-  packed.intensity = {ScalarType::float32, 12, kRow};
+  packed.num_points = bytes.size() / row;
+  packed.x = {ScalarType::float32, 0, row};
+  packed.y = {ScalarType::float32, 4, row};
+  packed.z = {ScalarType::float32, 8, row};
+  packed.intensity = {ScalarType::float32, 12, row};
   return unpack(packed);
 }
 

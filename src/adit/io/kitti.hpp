@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// KITTI's velodyne .bin: float32 x, y, z, intensity, one after the other, little-endian, nothing else.
+/// KITTI's velodyne .bin: float32 x, y, z, intensity, one after the other, little-endian, nothing else; and
+/// what others write with a fifth column, the ring.
 #pragma once
 
 #include <string>
@@ -11,7 +12,9 @@
 
 namespace adit {
 
-/// A size that is not a multiple of 16 bytes is a truncated file: an error that names the last whole point.
+/// The fifth column is there where the size is a multiple of 20 bytes and every fifth number is a whole one
+/// from 0 to 255. A size that is a multiple neither of 16 bytes nor of these is a truncated file: an error
+/// that names the last whole point.
 Result<CloudFile> read_kitti(std::string_view bytes);
 
 /// Points without intensity get 0.

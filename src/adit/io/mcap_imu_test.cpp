@@ -82,8 +82,10 @@ TEST(McapImu, OneOfSeveralImusCanBeChosenOrNone) {
                                .imu("/os/imu", imu_messages())
                                .imu("/camera/imu", second)
                                .links({test::link("base", "os_lidar", test::T_base_ouster)});
-  EXPECT_ERROR(file.read(), "several topics of Imu: /os/imu, /camera/imu; choose one with --imu TOPIC");
-  EXPECT_ERROR(file.read({.imu = "/left"}), "no Imu topic '/left'; there are: /os/imu, /camera/imu");
+  EXPECT_ERROR(file.read(),
+               "several topics of IMUs; give one of them, the likeliest first: --imu /os/imu (3 messages) or "
+               "--imu /camera/imu (2 messages)");
+  EXPECT_ERROR(file.read({.imu = "/left"}), "no topic of IMUs '/left'; there are: /os/imu, /camera/imu");
   EXPECT_EQ(file.read({.imu = "/os/imu"})->imu.size(), 3U);
   EXPECT_EQ(file.read({.imu = "/camera/imu"})->imu.size(), 2U);
   const Result<Recording> none = file.read({.imu = "none"});

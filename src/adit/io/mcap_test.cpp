@@ -309,12 +309,39 @@ TEST(Mcap, GroundTruthIsNamedByAWholeWord) {
 TEST(Mcap, OneOfSeveralTopicsOfCloudsCanBeChosen) {
   const ForeignFile file = ForeignFile().clouds("/front").clouds("/rear").links(
       {test::link("base", "os_lidar", test::T_base_ouster)});
-  EXPECT_ERROR(file.read(), "several topics of PointCloud2: /front, /rear; choose one with --points TOPIC");
-  EXPECT_ERROR(file.read({.points = "/left"}), "no PointCloud2 topic '/left'; there are: /front, /rear");
+  EXPECT_ERROR(file.read(),
+               "several topics of clouds; give one of them, the likeliest first: --points /front (3 "
+               "messages) or --points /rear (3 messages)");
+  EXPECT_ERROR(file.read({.points = "/left"}), "no topic of clouds '/left'; there are: /front, /rear");
   const Result<Recording> rear = file.read({.points = "/rear"});
   ASSERT_TRUE(rear) << rear.error().message;
   EXPECT_EQ(rear->num_scans(), 3U);
   EXPECT_EQ(rear->name, "rear");
+}
+
+TEST(Mcap, TheLikeliestTopicIsNamedFirst) {
+  EXPECT_ERROR(
+      ForeignFile().clouds("/camera/depth/points").clouds("/os_cloud").clouds("/velodyne_points").read(),
+      "--points /velodyne_points (3 messages) or --points /os_cloud (3 messages) or --points "
+      "/camera/depth/points (3 messages)");
+}
+
+TEST(Mcap, GroundTruthCanBeChosenOrLeftOut) {
+  ForeignFile file;
+  file.clouds("/points")
+      .odometry("/wheel/odom")
+      .odometry("/total_station")
+      .odometry("/gt")
+      .links({test::link("base_link", "os_lidar", test::T_base_ouster)});
+  const Result<Recording> chosen = file.read({.wheel = "/wheel/odom", .truth = "/total_station"});
+  ASSERT_TRUE(chosen) << chosen.error().message;
+  EXPECT_EQ(chosen->truth.size(), 3U);
+  EXPECT_ERROR(file.read({.truth = "/gt"}), "several topics of wheel odometry");
+  const Result<Recording> only = file.read({.truth = "/total_station"});
+  ASSERT_TRUE(only) << "what is ground truth is no choice for the wheels: " << only.error().message;
+  EXPECT_TRUE(file.read({.wheel = "/wheel/odom", .truth = "none"})->truth.empty());
+  EXPECT_ERROR(file.read({.wheel = "/wheel/odom", .truth = "/left"}),
+               "no topic of ground truth '/left'; there are: /gt");
 }
 
 TEST(Mcap, WhatWasAssumedIsKept) {

@@ -22,9 +22,10 @@ TEST(McapWheel, OneOfSeveralTopicsCanBeChosenOrNone) {
   ForeignFile file = file_with_links();
   file.odometry("/wheels/odom").odometry("/fused/odom");
   EXPECT_ERROR(file.read(),
-               "several topics of wheel odometry: /wheels/odom, /fused/odom; choose one with --wheel TOPIC");
+               "several topics of wheel odometry; give one of them, the likeliest first: --wheel "
+               "/wheels/odom (3 messages) or --wheel /fused/odom (3 messages)");
   EXPECT_ERROR(file.read({.wheel = "/left"}),
-               "no wheel odometry topic '/left'; there are: /wheels/odom, /fused/odom");
+               "no topic of wheel odometry '/left'; there are: /wheels/odom, /fused/odom");
   EXPECT_EQ(file.read({.wheel = "/fused/odom"})->wheel.size(), 3U);
   const Result<Recording> none = file.read({.wheel = "none"});
   ASSERT_TRUE(none) << none.error().message;

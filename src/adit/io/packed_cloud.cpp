@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <vector>
 
 #include "adit/core/format.hpp"
 #include "adit/io/text.hpp"
@@ -59,21 +60,70 @@ std::optional<T> parse_number(std::string_view word) {
   return value;
 }
 
+std::int64_t nanoseconds_in(TimeUnit unit) {
+  switch (unit) {
+    case TimeUnit::seconds:
+      return 1'000'000'000;
+    case TimeUnit::milliseconds:
+      return 1'000'000;
+    case TimeUnit::microseconds:
+      return 1'000;
+    case TimeUnit::nanoseconds:
+      break;
+  }
+  return 1;
+}
+
 /// Nanoseconds; integers stay integers, since absolute times need all 64 bits. Nothing when not finite or too
 /// large.
-std::optional<std::int64_t> load_time(ScalarType type, const char* bytes, std::endian order) {
-  if (type == ScalarType::uint64) {
-    const auto ns = load<std::uint64_t>(bytes, order);
-    if (ns > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) return std::nullopt;
-    return static_cast<std::int64_t>(ns);
+std::optional<std::int64_t> load_time(const PackedField& field, const char* bytes, std::endian order,
+                                      TimeUnit unit) {
+  constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max();
+  const std::int64_t in_unit = nanoseconds_in(unit);
+  if (is_float(field.type)) {
+    const double value = load_scalar(field.type, bytes, order);
+    if (!(std::abs(value) < 0.99 * static_cast<double>(kLargest) / static_cast<double>(in_unit)))
+      return std::nullopt;
+    // Whole ones apart from the rest: in one product an absolute time would lose its last 100 ns.
+    const double whole = std::floor(value);
+    return static_cast<std::int64_t>(whole) * in_unit +
+           std::llround((value - whole) * static_cast<double>(in_unit));
   }
-  if (type == ScalarType::int64) return load<std::int64_t>(bytes, order);
-  const double value = load_scalar(type, bytes, order);
-  if (!is_float(type)) return static_cast<std::int64_t>(value);
-  if (!(std::abs(value) < 9.2e9)) return std::nullopt;
-  // Whole seconds apart from the rest: in one product an absolute time would lose its last 100 ns.
-  const double seconds = std::floor(value);
-  return static_cast<std::int64_t>(seconds) * 1'000'000'000 + std::llround((value - seconds) * 1e9);
+  if (field.type == ScalarType::uint64 && load<std::uint64_t>(bytes, order) > kLargest) return std::nullopt;
+  const std::int64_t value = field.type == ScalarType::uint64 || field.type == ScalarType::int64
+                                 ? load<std::int64_t>(bytes, order)
+                                 : static_cast<std::int64_t>(load_scalar(field.type, bytes, order));
+  if (value > kLargest / in_unit || value < -kLargest / in_unit) return std::nullopt;
+  return value * in_unit;
+}
+
+/// The unit in which the sweep lasts as long as sweeps do.
+TimeUnit unit_of_times(const PackedCloud& packed) {
+  constexpr double kShortest = 0.002;  // seconds
+  constexpr double kLongest = 2.0;
+  constexpr std::size_t kEnough = 100;  // times
+  const PackedField& field = *packed.time;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  std::size_t num = 0;
+  for (std::size_t i = 0; i < packed.num_points; ++i) {
+    const double time =
+        load_scalar(field.type, packed.bytes.data() + field.offset + i * field.stride, packed.order);
+    if (!std::isfinite(time)) continue;
+    low = std::min(low, time);
+    high = std::max(high, time);
+    ++num;
+  }
+  using enum TimeUnit;
+  // No sensor counts whole seconds.
+  const std::vector<TimeUnit> likeliest_first =
+      is_float(field.type) ? std::vector{seconds, nanoseconds, microseconds, milliseconds}
+                           : std::vector{nanoseconds, microseconds, milliseconds};
+  for (const TimeUnit unit : likeliest_first) {
+    const double span = (high - low) * 1e-9 * static_cast<double>(nanoseconds_in(unit));
+    if (num >= kEnough && span >= kShortest && span <= kLongest) return unit;
+  }
+  return likeliest_first.front();
 }
 
 Result<> check_field(const PackedCloud& cloud, const std::optional<PackedField>& field, const char* name) {
@@ -113,7 +163,8 @@ Result<std::vector<std::int32_t>> relative_times(const std::vector<std::int64_t>
   const std::int64_t origin = fits(0) ? 0 : from_stamp;
   if (!fits(origin)) {
     return fail(
-        format("the point times of the sweep span {:.3f} s, more than 2.1 s: wrong time field or unit?",
+        format("the point times of the sweep span {:.3f} s, more than 2.1 s; if they are in another unit, "
+               "give --point-times s, ms, us or ns",
                static_cast<double>(Wide{high} - low) * 1e-9));
   }
   std::vector<std::int32_t> offsets(times.size());
@@ -170,13 +221,14 @@ Result<CloudFile> unpack(const PackedCloud& packed) {
   const auto at = [&](const PackedField& field, std::size_t i) {
     return packed.bytes.data() + field.offset + i * field.stride;
   };
+  if (packed.time) file.time_unit = packed.time_unit ? *packed.time_unit : unit_of_times(packed);
   const auto coordinate = [&](const PackedField& field, std::size_t i) {
     return static_cast<float>(load_scalar(field.type, at(field, i), packed.order));
   };
   for (std::size_t i = 0; i < packed.num_points; ++i) {
     const Eigen::Vector3f point(coordinate(*packed.x, i), coordinate(*packed.y, i), coordinate(*packed.z, i));
     std::optional<std::int64_t> time = 0;
-    if (packed.time) time = load_time(packed.time->type, at(*packed.time, i), packed.order);
+    if (packed.time) time = load_time(*packed.time, at(*packed.time, i), packed.order, *file.time_unit);
     if (!point.allFinite() || !time) {
       ++file.num_skipped_nan;
       continue;

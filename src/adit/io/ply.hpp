@@ -16,7 +16,7 @@ namespace adit {
 /// scalar properties x, y, z (needed), intensity (also intensities, i, scalar_Intensity) and t (also time,
 /// time_offset, timestamp; units as in pcd.hpp). Other properties, list properties and elements are stepped
 /// over. Errors name the header line or the byte offset.
-Result<CloudFile> read_ply(std::string_view bytes);
+Result<CloudFile> read_ply(std::string_view bytes, std::optional<TimeUnit> time_unit = {});
 
 /// Reads the vertices and the polygons of a mesh: the lists `vertex_indices` (or `vertex_index`) of the
 /// element `face`, each cut into the fan of triangles around its first corner, which is right for convex

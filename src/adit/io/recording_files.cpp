@@ -25,6 +25,20 @@ std::optional<ScanSelection> parse_selection(const std::string& text) {
   return ScanSelection{*first, *step};
 }
 
+/// Times count from the start of the sweep and the stamp is of its end: the last point has the stamp.
+Recording with_stamps_at_end(Recording recording) {
+  recording.read_scan = [read = std::move(recording.read_scan)](std::size_t i) {
+    return read(i).map([](Scan scan) {
+      std::vector<std::int32_t>& offsets = scan.cloud.time_offsets_ns;
+      if (offsets.empty()) return scan;
+      const std::int32_t last = std::ranges::max(offsets);
+      for (std::int32_t& offset : offsets) offset -= last;
+      return scan;
+    });
+  };
+  return recording;
+}
+
 /// Beside a folder of clouds lies at most one file of wheels, so that there is nothing to choose.
 Recording with_chosen_wheels(Recording recording, const RecordingConfig& config) {
   if (config.wheel == kNoWheel) recording.wheel.clear();
@@ -32,35 +46,46 @@ Recording with_chosen_wheels(Recording recording, const RecordingConfig& config)
 }
 
 Result<Recording> open_part(const std::filesystem::path& folder, const std::string& part,
-                            const std::optional<Pose>& mount) {
+                            const FolderReading& reading) {
   const std::optional<ScanSelection> selection = parse_selection(part);
   if (!selection)
     return fail(
         format("{}@{}: a part is @even, @odd or @FIRST:STEP, not '@{}'", folder.string(), part, part));
-  return read_scan_folder(folder, *selection, mount).map([&](Recording recording) {
+  return read_scan_folder(folder, *selection, reading).map([&](Recording recording) {
     recording.name += "_" + part;
     std::ranges::replace(recording.name, ':', '_');
     return recording;
   });
 }
 
-}  // namespace
-
-Result<Recording> open_recording(const std::string& input, const RecordingConfig& config) {
+Result<Recording> open_input(const std::string& input, const RecordingConfig& config) {
   const Result<std::optional<Pose>> mount = mount_of(config);
   if (!mount) return tl::unexpected(mount.error());
+  const Result<std::optional<TimeUnit>> time_unit = parse_time_unit(config.point_times);
+  if (!time_unit) return tl::unexpected(time_unit.error());
+  const FolderReading reading{*mount, *time_unit};
   std::error_code ignored;
   const auto choose = [&](Recording recording) { return with_chosen_wheels(std::move(recording), config); };
   if (is_bag_file(input) || is_bag_folder(input)) return read_recording(input, config);
-  if (std::filesystem::is_directory(input, ignored)) return read_scan_folder(input, {}, *mount).map(choose);
+  if (std::filesystem::is_directory(input, ignored)) return read_scan_folder(input, {}, reading).map(choose);
   const std::size_t at = input.rfind('@');
   if (at != std::string::npos && std::filesystem::is_directory(input.substr(0, at), ignored))
-    return open_part(input.substr(0, at), input.substr(at + 1), *mount).map(choose);
+    return open_part(input.substr(0, at), input.substr(at + 1), reading).map(choose);
   if (std::filesystem::exists(input, ignored))
     return fail(input + ": is not a recording; a bag (.mcap, .db3, .bag or folder) or a folder of clouds is");
   return fail(input +
               ": no such file or folder; a recording is a bag (.mcap, .db3, .bag or folder) or a folder "
               "of clouds");
+}
+
+}  // namespace
+
+Result<Recording> open_recording(const std::string& input, const RecordingConfig& config) {
+  if (config.stamp_at != "start" && config.stamp_at != "end")
+    return fail(format("recording.stamp_at: '{}' is neither start nor end", config.stamp_at));
+  return open_input(input, config).map([&](Recording recording) {
+    return config.stamp_at == "end" ? with_stamps_at_end(std::move(recording)) : std::move(recording);
+  });
 }
 
 }  // namespace adit

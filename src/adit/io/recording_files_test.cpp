@@ -32,6 +32,21 @@ TEST(OpenRecording, SelectsPartsOfAFolder) {
   EXPECT_ERROR(open_recording(path + "/a.txt"), "is not a recording");
 }
 
+TEST(OpenRecording, StampsOfTheEndOfTheSweep) {
+  const TemporaryFolder folder;
+  PointCloud cloud;
+  cloud.points = {{1, 2, 3}, {2, 2, 3}, {3, 2, 3}};
+  cloud.time_offsets_ns = {0, 50'000'000, 100'000'000};
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(write_cloud(folder / (std::to_string(i) + ".pcd"), cloud));
+  const std::string path = folder.path().string();
+  EXPECT_EQ(open_recording(path)->read_scan(1)->cloud.time_offsets_ns, cloud.time_offsets_ns);
+  EXPECT_EQ(open_recording(path, {.stamp_at = "end"})->read_scan(1)->cloud.time_offsets_ns,
+            std::vector<std::int32_t>({-100'000'000, -50'000'000, 0}));
+  EXPECT_ERROR(open_recording(path, {.point_times = "us"})->read_scan(1), "span 100.000 s");
+  EXPECT_ERROR(open_recording(path, {.stamp_at = "middle"}), "'middle' is neither start nor end");
+  EXPECT_ERROR(open_recording(path, {.point_times = "min"}), "'min' is not a unit of point times");
+}
+
 TEST(OpenRecording, RealFolderAsTwoRobots) {
   ADIT_NEED_DATA("scans/nclt/0000.pcd");
   const std::string path = test::shared_data("scans/nclt").string();

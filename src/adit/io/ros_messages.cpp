@@ -103,6 +103,14 @@ std::optional<ScalarType> scalar_type(std::uint8_t datatype) {
   return kTypes[datatype - 1];
 }
 
+Result<CloudMessage> unpacked(const PackedCloud& packed, CloudMessage out) {
+  return unpack(packed).map([&](CloudFile file) {
+    out.scan.cloud = std::move(file.cloud);
+    out.time_unit = file.time_unit;
+    return std::move(out);
+  });
+}
+
 struct CloudField {
   std::string name;
   std::uint32_t offset = 0;
@@ -189,7 +197,8 @@ std::string encode_cloud(const Scan& scan, std::string_view frame) {
   return writer.take();
 }
 
-Result<CloudMessage> decode_cloud(std::string_view message, MessageEncoding encoding) {
+Result<CloudMessage> decode_cloud(std::string_view message, MessageEncoding encoding,
+                                  std::optional<TimeUnit> time_unit) {
   MessageReader reader(message, encoding);
   CloudMessage out;
   out.scan.stamp = read_stamp(reader);
@@ -214,16 +223,44 @@ Result<CloudMessage> decode_cloud(std::string_view message, MessageEncoding enco
   packed.num_points = std::size_t{width} * height;
   packed.order = is_big_endian ? std::endian::big : std::endian::little;
   packed.stamp = out.scan.stamp;
+  packed.time_unit = time_unit;
   for (const CloudField& field : fields) {
     if (const auto type = scalar_type(field.datatype))
       assign_field(packed, field.name, {*type, field.offset, point_step});
   }
   if (point_step == 0 && packed.num_points > 1)
     return fail("the points of the PointCloud2 message have zero bytes");
-  return unpack(packed).map([&](CloudFile file) {
-    out.scan.cloud = std::move(file.cloud);
-    return std::move(out);
-  });
+  return unpacked(packed, std::move(out));
+}
+
+bool is_livox(std::string_view type) {
+  return type == "livox_ros_driver2/msg/CustomMsg" || type == "livox_ros_driver/msg/CustomMsg" ||
+         type == "livox_interfaces/msg/CustomMsg";
+}
+
+Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding encoding) {
+  MessageReader reader(message, encoding);
+  CloudMessage out;
+  out.scan.stamp = read_stamp(reader);
+  out.frame = reader.text();
+  static_cast<void>(reader.number<std::uint64_t>());  // the time base, which the stamp repeats
+  static_cast<void>(reader.number<std::uint32_t>());  // the number of points, which their sequence repeats
+  for (int i = 0; i < 4; ++i) static_cast<void>(reader.number<std::uint8_t>());  // which LiDAR; reserved
+  PackedCloud packed;
+  packed.num_points = reader.number<std::uint32_t>();
+  packed.bytes = reader.rest();
+  packed.order = reader.order();
+  // offset_time uint32, x y z float32, reflectivity tag line uint8; CDR pads each to a multiple of four.
+  const std::size_t stride = encoding == MessageEncoding::cdr ? 20 : 19;
+  packed.time = {ScalarType::uint32, 0, stride};
+  packed.x = {ScalarType::float32, 4, stride};
+  packed.y = {ScalarType::float32, 8, stride};
+  packed.z = {ScalarType::float32, 12, stride};
+  packed.intensity = {ScalarType::uint8, 16, stride};
+  packed.time_unit = TimeUnit::nanoseconds;
+  packed.stamp = out.scan.stamp;
+  if (!reader.ok()) return fail(format("byte {}: the CustomMsg message ends early", reader.offset()));
+  return unpacked(packed, std::move(out));
 }
 
 std::string encode_odometry(const OdometryMessage& odometry) {

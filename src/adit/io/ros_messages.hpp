@@ -4,6 +4,7 @@
 /// MCAP's `ros2msg` schemas; read in CDR and as ROS 1 writes them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,6 +20,11 @@ inline constexpr std::string_view kOdometry = "nav_msgs/msg/Odometry";
 inline constexpr std::string_view kImu = "sensor_msgs/msg/Imu";
 inline constexpr std::string_view kTransforms = "tf2_msgs/msg/TFMessage";
 
+/// Whether messages of that type are clouds: PointCloud2 (decode_cloud), and the CustomMsg of Livox's drivers
+/// (decode_livox).
+[[nodiscard]] bool is_livox(std::string_view type);
+[[nodiscard]] inline bool is_cloud(std::string_view type) { return type == kPointCloud2 || is_livox(type); }
+
 /// The full text of a message type and all types in it; the type must be one of the above.
 [[nodiscard]] std::string definition_of(std::string_view type);
 
@@ -26,11 +32,17 @@ inline constexpr std::string_view kTransforms = "tf2_msgs/msg/TFMessage";
 struct CloudMessage {
   std::string frame;
   Scan scan;
+  std::optional<TimeUnit> time_unit = {};  ///< As CloudFile::time_unit.
 };
 /// The stamp's seconds must fit 32 bits: see `fits_ros`.
 [[nodiscard]] std::string encode_cloud(const Scan& scan, std::string_view frame);
 /// Takes the fields that pcd.hpp lists, of any type and byte order. Points that are not finite are left out.
-Result<CloudMessage> decode_cloud(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
+/// `time_unit`: of the times of points, where it is known (packed_cloud.hpp).
+Result<CloudMessage> decode_cloud(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr,
+                                  std::optional<TimeUnit> time_unit = {});
+/// The same of Livox's CustomMsg: intensity is the reflectivity, times are nanoseconds from its time base,
+/// which the stamp states.
+Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
 
 /// T_frame_child at a time.
 struct TransformMessage {

@@ -33,6 +33,48 @@ TEST(RosMessages, EveryTruncationIsAnError) {
     EXPECT_FALSE(ros::decode_odometry(odometry.substr(0, size))) << size;
 }
 
+/// Laid out by hand from the definition of CustomMsg: header, timebase, point_num, lidar_id, rsvd[3], points
+/// of offset_time x y z reflectivity tag line.
+TEST(RosMessages, LivoxCustomMessagesAreClouds) {
+  constexpr std::uint32_t kNum = 3;
+  CdrWriter cdr;
+  std::string ros1;
+  const auto put = [&](auto value) {
+    cdr.number(value);
+    append_little_endian(ros1, value);
+  };
+  append_little_endian(ros1, std::uint32_t{7});  // ROS 1 counts its headers
+  put(std::int32_t{1'700'000'000});
+  put(std::uint32_t{500});
+  cdr.text("livox_frame");
+  append_little_endian(ros1, std::uint32_t{11});
+  ros1 += "livox_frame";
+  put(std::uint64_t{1'700'000'000'000'000'500});
+  put(kNum);
+  for (int i = 0; i < 4; ++i) put(std::uint8_t{0});
+  put(kNum);
+  for (std::uint32_t i = 0; i < kNum; ++i) {
+    put(i * 10'000);
+    for (const float value : {1.0F + static_cast<float>(i), -2.0F, 0.5F}) put(value);
+    for (const std::uint8_t value : {static_cast<std::uint8_t>(100 + i), std::uint8_t{16}, std::uint8_t{2}})
+      put(value);
+  }
+  const std::string of_ros2 = cdr.take();
+  for (const auto& [message, encoding] :
+       {std::pair(of_ros2, MessageEncoding::cdr), {ros1, MessageEncoding::ros1}}) {
+    const Result<ros::CloudMessage> cloud = ros::decode_livox(message, encoding);
+    ASSERT_TRUE(cloud) << cloud.error().message;
+    EXPECT_EQ(cloud->frame, "livox_frame");
+    EXPECT_EQ(cloud->scan.stamp.ns, 1'700'000'000'000'000'500);
+    ASSERT_EQ(cloud->scan.cloud.size(), kNum);
+    EXPECT_EQ(cloud->scan.cloud.points[2], Eigen::Vector3f(3.0F, -2.0F, 0.5F));
+    EXPECT_EQ(cloud->scan.cloud.intensities[2], 102.0F);
+    EXPECT_EQ(cloud->scan.cloud.time_offsets_ns, std::vector<std::int32_t>({0, 10'000, 20'000}));
+    for (std::size_t size = 0; size < 120 && size < message.size() - 2; ++size)
+      EXPECT_FALSE(ros::decode_livox(message.substr(0, size), encoding)) << size;
+  }
+}
+
 /// The bytes of the message, laid out by hand from the definition of nav_msgs/msg/Odometry.
 TEST(RosMessages, OdometryHasTheLayoutOfItsDefinition) {
   ros::OdometryMessage odometry;

@@ -203,8 +203,8 @@ Result<> read_offsets(const fs::path& path, const CloudFile& file, PointCloud& c
   return {};
 }
 
-Result<PointCloud> read_points(const fs::path& path) {
-  Result<CloudFile> file = read_cloud_file(path);
+Result<PointCloud> read_points(const fs::path& path, std::optional<TimeUnit> time_unit) {
+  Result<CloudFile> file = read_cloud_file(path, time_unit);
   if (!file) return tl::unexpected(file.error());
   PointCloud cloud = std::move(file->cloud);
   // A column of zeros is what KITTI's format makes of clouds without intensities.
@@ -218,11 +218,12 @@ Result<PointCloud> read_points(const fs::path& path) {
 
 /// Reads scan i in the LiDAR's frame. Clouds that are in it already keep every bit.
 std::function<Result<Scan>(std::size_t)> scan_reader(std::vector<fs::path> files, std::vector<Stamp> stamps,
-                                                     const Pose& T_lidar_cloud) {
+                                                     const Pose& T_lidar_cloud,
+                                                     std::optional<TimeUnit> time_unit) {
   const bool is_moved = T_lidar_cloud.log().norm() > 0.0;
   return [=, files = std::move(files), stamps = std::move(stamps)](std::size_t i) {
     ADIT_CHECK(i < files.size(), "no scan of that index");
-    return read_points(files[i]).map([&](PointCloud cloud) {
+    return read_points(files[i], time_unit).map([&](PointCloud cloud) {
       return Scan{stamps[i], is_moved ? transformed(T_lidar_cloud, std::move(cloud)) : std::move(cloud)};
     });
   };
@@ -256,7 +257,7 @@ Result<> write_tracks(const fs::path& folder, const Recording& recording) {
 }  // namespace
 
 Result<Recording> read_scan_folder(const fs::path& folder, ScanSelection selection,
-                                   const std::optional<Pose>& T_base_lidar) {
+                                   const FolderReading& reading) {
   if (selection.step == 0) return fail(folder.string() + ": every 0-th scan; the step is 1 or more");
   const Result<std::vector<ScanFile>> scans = list_scans(folder);
   if (!scans) return tl::unexpected(scans.error());
@@ -268,16 +269,17 @@ Result<Recording> read_scan_folder(const fs::path& folder, ScanSelection selecti
   std::vector<fs::path> clouds;
   for (const ScanFile& scan : select(*scans, selection)) clouds.push_back(scan.path);
   const Wheels wheels = recording->wheel.empty() ? Wheels::absent : Wheels::present;
-  const Result<FolderMount> mount = mount_of_folder(clouds, *file, T_base_lidar, wheels);
+  const Result<FolderMount> mount = mount_of_folder(clouds, *file, reading.T_base_lidar, wheels);
   if (!mount) return fail(folder.string(), mount.error());
   recording->name = file->robot.empty() ? name_of(folder) : file->robot;
   recording->lidar = file->lidar;
   std::ranges::copy(lines_of(file->assumed), std::back_inserter(recording->assumptions));
   if (!mount->assumption.empty()) recording->assumptions.push_back(mount->assumption);
-  if (T_base_lidar) set_mount(*recording, mount->T_base_lidar);
+  if (reading.T_base_lidar) set_mount(*recording, mount->T_base_lidar);
   recording->T_base_lidar = mount->T_base_lidar;
   recording->mount_source = mount->source;
-  recording->read_scan = scan_reader(std::move(clouds), recording->scan_stamps, mount->T_lidar_cloud);
+  recording->read_scan =
+      scan_reader(std::move(clouds), recording->scan_stamps, mount->T_lidar_cloud, reading.time_unit);
   return recording;
 }
 

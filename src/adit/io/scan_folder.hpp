@@ -38,11 +38,17 @@ struct ScanSelection {
   std::size_t step = 1;
 };
 
-/// `T_base_lidar` overrides what the folder says of the mount. Scans are read when asked for, from any
+/// What is known of the clouds of a folder.
+struct FolderReading {
+  std::optional<Pose> T_base_lidar = {};   ///< Overrides what the folder says of the mount.
+  std::optional<TimeUnit> time_unit = {};  ///< Of the times of points (packed_cloud.hpp).
+};
+
+/// Scans are read when asked for, from any
 /// thread. Errors: no clouds, clouds of several kinds, two scans of one number, a single scan, stamps not
 /// ascending or not as many as scans, an odometry that does not cover the scans, wheels without a mount.
 Result<Recording> read_scan_folder(const std::filesystem::path& folder, ScanSelection selection = {},
-                                   const std::optional<Pose>& T_base_lidar = {});
+                                   const FolderReading& reading = {});
 
 /// Writes NNNNNN.pcd (.ply, .bin) in the LiDAR's frame, stamps.txt, recording.toml, and odometry.tum and
 /// groundtruth.tum where the recording has them: all that `read_scan_folder` takes, so that nothing is lost.

@@ -8,6 +8,7 @@
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/geometry/voxel_grid.hpp"
+#include "adit/robot/nothing_mapped.hpp"
 
 namespace adit {
 namespace {
@@ -178,10 +179,7 @@ Result<std::vector<RobotMap>> map_recording(const Recording& recording, RobotId 
   if (!done) return tl::unexpected(done.error());
   std::vector<RobotMap> maps;
   for (const RobotSlam& robot : robots) {
-    if (robot.map().keyframes.empty()) {
-      return fail(format("{}: none of {} scans became a keyframe: each had too few points for the odometry",
-                         recording.name, recording.num_scans()));
-    }
+    if (robot.map().keyframes.empty()) return fail(why_nothing_mapped(recording));
     maps.push_back(robot.map());
   }
   return maps;
