@@ -121,6 +121,7 @@ void add_merge_curves(Program& program);
 void add_loop_study(Program& program);
 void add_uncertainty_study(Program& program);
 void add_evaluate(Program& program);
+void add_explain(Program& program);
 void add_register(Program& program);
 void add_solve(Program& program);
 void add_convert(Program& program);

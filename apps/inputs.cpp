@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "adit/io/bag_recording.hpp"
 #include "adit/io/recording_files.hpp"
 #include "adit/io/routes_yaml.hpp"
 #include "adit/io/world_files.hpp"
@@ -25,6 +26,36 @@ Result<Inputs> simulated(const std::string& routes_file, const ScenarioConfig& s
       .map([&](std::vector<Recording> recordings) {
         return Inputs{std::move(recordings), routes->world.string()};
       });
+}
+
+void print_remarks(const std::string& input, const Recording& recording) {
+  for (const std::string& warning : recording.warnings)
+    std::fprintf(stderr, "adit: %s: warning: %s\n", input.c_str(), warning.c_str());
+  for (const std::string& assumption : recording.assumptions)
+    std::fprintf(stderr, "adit: %s: assumed %s\n", input.c_str(), assumption.c_str());
+}
+
+/// One recording of each robot in a bag.
+Result<std::vector<Recording>> open_robots(const std::string& path, RecordingConfig config) {
+  if (!config.topics_under.empty())
+    return fail("recording.topics_under names one robot, and --namespaces asks for all; give one of them");
+  if (!is_bag_file(path) && !is_bag_folder(path))
+    return fail(path + ": is no bag; --namespaces is for bags of several robots");
+  const Result<Bag> bag = open_bag(path);
+  if (!bag) return tl::unexpected(bag.error());
+  const std::vector<std::string> robots = namespaces_of(*bag);
+  if (robots.empty())
+    return fail(path + ": no topic of clouds lies in a namespace (/ROBOT/points); leave --namespaces out");
+  std::vector<Recording> recordings;
+  for (const std::string& robot : robots) {
+    config.topics_under = robot;
+    Result<Recording> recording = open_recording(path, config);
+    if (!recording) return fail(robot, recording.error());
+    if (!recordings.empty()) recording->warnings.clear();  // of the file: said of the first
+    print_remarks(path + ": " + robot, *recording);
+    recordings.push_back(std::move(*recording));
+  }
+  return recordings;
 }
 
 std::string mount_fault(const std::string& text) {
@@ -58,10 +89,7 @@ void add_truth_topic(const Command& command, RecordingConfig& config) {
 
 Result<Recording> open_input(const std::string& input, const RecordingConfig& config) {
   return open_recording(input, config).map([&](Recording recording) {
-    for (const std::string& warning : recording.warnings)
-      std::fprintf(stderr, "adit: %s: warning: %s\n", input.c_str(), warning.c_str());
-    for (const std::string& assumption : recording.assumptions)
-      std::fprintf(stderr, "adit: %s: assumed %s\n", input.c_str(), assumption.c_str());
+    print_remarks(input, recording);
     return recording;
   });
 }
@@ -74,6 +102,7 @@ RecordingConfig recording_config(RecordingConfig config, const RecordingConfig& 
   if (!options.imu_mount.empty()) config.imu_mount = options.imu_mount;
   if (!options.truth.empty()) config.truth = options.truth;
   if (!options.point_times.empty()) config.point_times = options.point_times;
+  config.namespaces |= options.namespaces;
   return config;
 }
 
@@ -89,6 +118,15 @@ Result<Inputs> open_inputs(const std::vector<std::string>& inputs, const RunConf
     if (is_routes_file(input))
       return fail(input + ": a routes file names all robots; give no other input with it");
     const auto [name, path] = name_and_path(input);
+    if (config.recording.namespaces) {
+      Result<std::vector<Recording>> robots = open_robots(path, config.recording);
+      if (!robots) return tl::unexpected(robots.error());
+      for (Recording& robot : *robots) {
+        if (!name.empty()) robot.name = name + "_" + robot.name;
+        opened.recordings.push_back(std::move(robot));
+      }
+      continue;
+    }
     Result<Recording> recording = open_input(path, config.recording);
     if (!recording) return tl::unexpected(recording.error());
     if (!name.empty()) recording->name = name;

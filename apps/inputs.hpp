@@ -15,7 +15,8 @@
 
 namespace adit::app {
 
-/// The options --mount, --points, --wheel, --imu and --imu-mount of a command that opens recordings.
+/// The options --mount, --points, --wheel, --imu, --imu-mount and --point-times of a command that opens
+/// recordings.
 void add_recording_options(const Command& command, RecordingConfig& config);
 /// --truth TOPIC, where --truth is no file.
 void add_truth_topic(const Command& command, RecordingConfig& config);
@@ -34,7 +35,8 @@ struct Inputs {
 };
 
 /// Recordings and folders of scans, or one routes.yaml that is simulated on the fly. NAME=INPUT gives the
-/// robot of a recording another name. Fails on an input that cannot be read and on a routes.yaml among
+/// robot of a recording another name; with `recording.namespaces` a bag is one recording of each robot in it,
+/// and NAME stands before their names. Fails on an input that cannot be read and on a routes.yaml among
 /// others.
 Result<Inputs> open_inputs(const std::vector<std::string>& inputs, const RunConfig& config);
 

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   add_register(program);
   add_solve(program);
   add_evaluate(program);
+  add_explain(program);
   add_convert(program);
   add_info(program);
   add_config(program);

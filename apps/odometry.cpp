@@ -10,6 +10,7 @@
 #include "adit/core/progress.hpp"
 #include "adit/evaluation/ate.hpp"
 #include "adit/evaluation/statistics.hpp"
+#include "adit/io/bag.hpp"
 #include "adit/io/tum.hpp"
 #include "adit/odometry/methods.hpp"
 #include "adit/robot/nothing_mapped.hpp"
@@ -76,8 +77,9 @@ Result<> odometry(const OdometryOptions& options, const Common& common) {
     if (const Result<> set = set_field(fields_of(method), "method", options.method); !set)
       usage_error(set.error().message);
   }
-  std::error_code ignored;
-  const bool is_truth_topic = !options.truth.empty() && !std::filesystem::exists(options.truth, ignored);
+  const bool is_truth_topic = options.truth == kNoTruth ||
+                              ((is_bag_file(options.input) || is_bag_folder(options.input)) &&
+                               options.truth.starts_with('/') && !std::filesystem::exists(options.truth));
   RecordingConfig how = recording_config(config->recording, options.recording);
   if (is_truth_topic) how.truth = options.truth;
   Result<Recording> recording = open_input(options.input, how);

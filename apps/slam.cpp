@@ -53,12 +53,17 @@ Result<Job> job_of(const SlamOptions& options, const Common& common) {
   return Job{*config, provenance};
 }
 
+bool is_default(RecordingConfig options) {
+  RecordingConfig defaults;
+  return to_toml(fields_of(options)) == to_toml(fields_of(defaults));
+}
+
 /// The job of an earlier session, from the provenance in its session.toml.
 Result<Job> job_again(const SlamOptions& options, const Common& common) {
   if (!options.inputs.empty() || !options.simulation.lidar.empty() ||
       !options.simulation.conditions.empty() || !options.keyframes.empty() ||
-      !options.recording.mount.empty() || !options.recording.points.empty() || !common.sets.empty() ||
-      !common.config_file.empty() || common.profile != Profile::standard)
+      !is_default(options.recording) || !common.sets.empty() || !common.config_file.empty() ||
+      common.profile != Profile::standard)
     usage_error("--rerun repeats a session as it was; give no inputs and no configuration with it");
   const Result<std::string> text = read_bytes(options.rerun);
   if (!text) return tl::unexpected(text.error());
@@ -164,6 +169,9 @@ void add_slam(Program& program) {
                      "session.toml of a session to reproduce byte for byte from the same inputs");
   add_recording_options(command, options->recording);
   add_truth_topic(command, options->recording);
+  command.add_flag(
+      "--namespaces", options->recording.namespaces,
+      "A bag has several robots: one in every namespace with clouds (/husky1/points, /husky2/points)");
   command.footer(
       "A recording that cannot be mapped is reported with the reason; the others go on, and the exit code is "
       "1.");

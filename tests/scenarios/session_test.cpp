@@ -119,6 +119,25 @@ TEST(Session, IsEvaluatedByNameInAnyOrder) {
                  "not the truth of this drive");
 }
 
+TEST(Session, ExplainsItsMerges) {
+  const test::TemporaryFolder folder;
+  put_two_drives(folder.path());
+  const std::string session = (folder / "session").string();
+  expect_done("slam " + (folder / "routes.yaml").string() + " --lidar os2-32 --out " + session);
+  const test::ProgramRun text = run_adit("explain " + session + " ahead behind");
+  ASSERT_EQ(text.exit_code, 0) << text.err;
+  for (const char* part : {"ahead and behind: merged", "places along the shared stretch agree", "accepted"})
+    EXPECT_NE(text.out.find(part), std::string::npos) << text.out;
+  const nlohmann::json pairs = nlohmann::json::parse(run_adit("explain " + session + " behind --json").out);
+  ASSERT_GE(pairs.size(), 1U);
+  const nlohmann::json& best = pairs[0]["hypotheses"][0];
+  EXPECT_TRUE(pairs[0]["merged"]);
+  EXPECT_GE(best["evidence"].get<double>(), pairs[0]["evidence_needed"].get<double>());
+  EXPECT_GT(best["places_agreeing"].get<int>(), 0);
+  expect_refused("explain " + session + " nobody", 1, "no merge with a robot 'nobody' in it");
+  expect_refused("explain " + folder.path().string(), 1, "not a session directory");
+}
+
 TEST(Session, RobotsOfOneNameGetDifferentNames) {
   const test::TemporaryFolder folder;
   put_two_drives(folder.path());

@@ -34,6 +34,10 @@ struct RecordingConfig {
   /// "start": a sweep's stamp is that of its start, or of wherever its points' times are 0; "end": of its
   /// end, while the times count from its start.
   std::string stamp_at = "start";
+  /// Topics of the robot begin with this and a slash, "/husky1", beside /tf_static. "": all are the robot's.
+  std::string topics_under = {};
+  bool namespaces =
+      false;  ///< A bag has a robot in every namespace that has clouds (namespaces_of, io/bag_recording.hpp).
 };
 
 [[nodiscard]] inline Fields fields_of(RecordingConfig& c) {
@@ -54,9 +58,13 @@ struct RecordingConfig {
       {"point_times", &c.point_times, "", 0, 0,
        "unit of the times of points, s, ms, us or ns; empty: the one that makes a sweep last 2 ms to 2 s"},
       {"stamp_at", &c.stamp_at, "", 0, 0,
-       "start: a sweep's stamp is of its start, or of wherever its points' times are 0; end: of its end, "
-       "while "
-       "the times count from its start"}};
+       "start: a sweep's stamp is of its start, or of the moment at which its points' times are 0; end: of "
+       "its "
+       "end, while the times count from its start"},
+      {"topics_under", &c.topics_under, "", 0, 0,
+       "the robot's topics begin with this and a slash, as '/husky1'; empty: all topics are the robot's"},
+      {"namespaces", &c.namespaces, "", 0, 0,
+       "a bag has a robot in every namespace that has clouds, each named after its namespace"}};
 }
 
 }  // namespace adit

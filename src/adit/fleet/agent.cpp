@@ -36,7 +36,7 @@ std::vector<MessageBody> request_of(const PeerSession& session) {
   return request ? std::vector<MessageBody>{*request} : std::vector<MessageBody>{};
 }
 
-/// Accepted loops that fix the position along the tunnel, too.
+/// Accepted loops that registration does not leave free to slide.
 std::vector<LoopClosure> without_sliding(std::vector<LoopClosure> loops) {
   std::erase_if(loops, [](const LoopClosure& loop) {
     return loop.verdict != LoopVerdict::accepted || loop.is_free_to_slide();

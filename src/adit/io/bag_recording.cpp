@@ -42,15 +42,23 @@ bool is_truth(const std::string& topic) {
   });
 }
 
-Topics find_topics(const Bag& bag) {
+bool is_under(const std::string& topic, const std::string& name) {
+  return name.empty() || topic.starts_with(name + "/");
+}
+
+/// Those of the robot.
+Topics find_topics(const Bag& bag, const std::string& under) {
   Topics topics;
   for (std::size_t i = 0; i < bag.topics.size(); ++i) {
     const auto& [name, type, encoding] = bag.topics[i];
     if (encoding != "cdr" && encoding != "ros1") continue;
+    if (type == ros::kTransforms &&
+        (name == "/tf_static" || (name.ends_with("tf_static") && is_under(name, under))))
+      topics.transforms.push_back(i);
+    if (!is_under(name, under)) continue;
     if (ros::is_cloud(type)) topics.points.push_back(i);
     if (type == ros::kImu) topics.imu.push_back(i);
     if (type == ros::kOdometry) (is_truth(name) ? topics.truth : topics.wheel).push_back(i);
-    if (type == ros::kTransforms && name.ends_with("tf_static")) topics.transforms.push_back(i);
   }
   return topics;
 }
@@ -64,6 +72,20 @@ std::string names_of(const Bag& bag, const TopicIndices& topics) {
   for (const std::size_t topic : topics) names.push_back(bag.topics[topic].name);
   return format("{}", fmt::join(names, ", "));
 }
+
+/// Below `topics_under`, names without a slash at the front count from there.
+std::string whole_name(const std::string& topic, const std::string& under) {
+  const bool is_relative = !topic.empty() && !under.empty() && !topic.starts_with('/');
+  return is_relative ? under + "/" + topic : topic;
+}
+
+/// How people choose one of several topics.
+struct TopicChoice {
+  std::string_view type;    ///< "clouds"
+  std::string_view option;  ///< "--points"
+  std::string topic;        ///< "": the only one.
+  std::string under;        ///< RecordingConfig::topics_under.
+};
 
 /// How likely a topic is the one that is meant: by its name, then by its messages.
 std::pair<int, std::size_t> likelihood(const Bag& bag, std::size_t topic) {
@@ -79,39 +101,37 @@ std::pair<int, std::size_t> likelihood(const Bag& bag, std::size_t topic) {
 }
 
 /// "--points /lidar/points (120 messages) or --points /camera/points (40 messages)", the likeliest first.
-std::string choices(const Bag& bag, TopicIndices topics, std::string_view option) {
+std::string choices(const Bag& bag, TopicIndices topics, const TopicChoice& choice) {
   std::ranges::stable_sort(topics, std::ranges::greater(),
                            [&](std::size_t topic) { return likelihood(bag, topic); });
   std::vector<std::string> texts;
   for (const std::size_t topic : topics)
-    texts.push_back(format("{} {} ({} messages)", option, bag.topics[topic].name, num_messages(bag, topic)));
+    texts.push_back(format("{} {} ({} messages)", choice.option,
+                           bag.topics[topic].name.substr(choice.under.empty() ? 0 : choice.under.size() + 1),
+                           num_messages(bag, topic)));
   return format("{}", fmt::join(texts, " or "));
 }
-
-/// How people choose one of several topics.
-struct TopicChoice {
-  std::string_view type;    ///< "clouds"
-  std::string_view option;  ///< "--points"
-  std::string topic;        ///< "": the only one.
-};
 
 /// Leaves the topic asked for, or the only one, if there is any.
 Result<> choose_one(const Bag& bag, TopicIndices& topics, const TopicChoice& choice) {
   const std::string all = names_of(bag, topics);
   if (!choice.topic.empty())
-    std::erase_if(topics, [&](std::size_t topic) { return bag.topics[topic].name != choice.topic; });
+    std::erase_if(topics, [&](std::size_t topic) {
+      return bag.topics[topic].name != whole_name(choice.topic, choice.under);
+    });
   if (topics.empty() && !choice.topic.empty()) {
     return fail(format("no topic of {} '{}'; there {}", choice.type, choice.topic,
                        all.empty() ? "is none" : "are: " + all));
   }
   if (topics.size() < 2) return {};
   return fail(format("several topics of {}; give one of them, the likeliest first: {}", choice.type,
-                     choices(bag, topics, choice.option)));
+                     choices(bag, topics, choice)));
 }
 
 /// What people call ground truth is no wheel odometry, whatever its name says.
-void take_truth(const Bag& bag, Topics& topics, const std::string& chosen) {
-  if (chosen == kNoTruth) topics.truth.clear();
+void take_truth(const Bag& bag, Topics& topics, const RecordingConfig& config) {
+  if (config.truth == kNoTruth) return topics.truth.clear();
+  const std::string chosen = whole_name(config.truth, config.topics_under);
   const auto is_chosen = [&](std::size_t topic) { return bag.topics[topic].name == chosen; };
   std::ranges::copy_if(topics.wheel, std::back_inserter(topics.truth), is_chosen);
   std::erase_if(topics.wheel, is_chosen);
@@ -119,25 +139,28 @@ void take_truth(const Bag& bag, Topics& topics, const std::string& chosen) {
 
 /// Leaves one topic of clouds and at most one of each other kind.
 Result<Topics> choose_topics(const Bag& bag, const RecordingConfig& config) {
-  Topics topics = find_topics(bag);
+  Topics topics = find_topics(bag, config.topics_under);
   if (topics.points.empty())
-    return fail(
-        "no topic of sensor_msgs/msg/PointCloud2 or of Livox's CustomMsg; there are no scans to read");
+    return fail(format(
+        "no topic of sensor_msgs/msg/PointCloud2 or of Livox's CustomMsg{}; there are no scans to read",
+        config.topics_under.empty() ? "" : " under " + config.topics_under));
   if (config.imu == kNoImu) topics.imu.clear();
-  take_truth(bag, topics, config.truth);
+  take_truth(bag, topics, config);
   const std::string imu = config.imu == kNoImu ? "" : config.imu;
   const bool has_wheels = config.wheel != kNoWheel;
-  return choose_one(bag, topics.points, {"clouds", "--points", config.points})
+  return choose_one(bag, topics.points, {"clouds", "--points", config.points, config.topics_under})
       .and_then([&] {
-        return choose_one(bag, topics.imu, {"IMUs", "--imu", imu});
+        return choose_one(bag, topics.imu, {"IMUs", "--imu", imu, config.topics_under});
       })
       .and_then([&]() -> Result<> {
         if (!has_wheels) return {};
-        return choose_one(bag, topics.wheel, {"wheel odometry", "--wheel", config.wheel});
+        return choose_one(bag, topics.wheel,
+                          {"wheel odometry", "--wheel", config.wheel, config.topics_under});
       })
       .and_then([&] {
-        return choose_one(bag, topics.truth,
-                          {"ground truth", "--truth", config.truth == kNoTruth ? "" : config.truth});
+        return choose_one(
+            bag, topics.truth,
+            {"ground truth", "--truth", config.truth == kNoTruth ? "" : config.truth, config.topics_under});
       })
       .map([&] { return std::move(topics); });
 }
@@ -334,19 +357,13 @@ std::function<Result<Scan>(std::size_t)> scan_reader(std::shared_ptr<const Bag> 
   };
 }
 
-/// What was found about the times of points, unless it is what floats and integers usually are.
-void note_point_times(Recording& recording, const ros::CloudMessage& first, const RecordingConfig& config) {
-  if (!first.time_unit) {
+/// What was found about the times of points.
+void note_point_times(Recording& recording, const ros::CloudMessage& first) {
+  if (!first.scan.cloud.has_times())
     recording.assumptions.push_back(
         "point times: none, so that scans are not corrected for the motion during a sweep");
-    return;
-  }
-  if (config.point_times.empty() && first.time_unit != TimeUnit::seconds &&
-      first.time_unit != TimeUnit::nanoseconds)
-    recording.assumptions.push_back(
-        format("point times: in {}, in which a sweep lasts as long as sweeps do; if that is wrong, give "
-               "--point-times",
-               to_string(*first.time_unit)));
+  else if (!first.has_usual_time_unit)
+    recording.assumptions.push_back(point_times_note(*first.time_unit));
 }
 
 /// Stamps, wheels, ground truth and IMU.
@@ -377,7 +394,8 @@ Result<Tracks> read_tracks(const Bag& bag, const Topics& topics, const Recording
   });
 }
 
-Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, const RecordingConfig& config) {
+Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, RecordingConfig config) {
+  while (config.topics_under.ends_with('/')) config.topics_under.pop_back();
   const Result<Topics> topics = choose_topics(*bag, config);
   if (!topics) return tl::unexpected(topics.error());
   const Result<std::optional<TimeUnit>> time_unit = time_unit_of(*bag, config);
@@ -386,6 +404,8 @@ Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, const Reco
   if (!tracks) return tl::unexpected(tracks.error());
   Recording recording;
   take_metadata(recording, *bag, names_of(*bag, topics->points));
+  if (!config.topics_under.empty())
+    recording.name = config.topics_under.substr(config.topics_under.rfind('/') + 1);
   recording.scan_stamps = std::move(tracks->scans);
   recording.wheel = std::move(tracks->wheel.poses);
   recording.wheel_covariance = tracks->wheel.covariance;
@@ -395,19 +415,49 @@ Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, const Reco
   std::ranges::copy(tracks->imu.remarks, std::back_inserter(recording.assumptions));
   if (Result<> checked = check_fits_mcap(recording); !checked) return tl::unexpected(checked.error());
   const std::vector<BagMessage> scans = messages_of(*bag, topics->points);
-  recording.read_scan = scan_reader(bag, scans, recording.scan_stamps, *time_unit);
-  const Result<> mounted =
-      read_cloud_message(*bag, scans.front(), *time_unit).and_then([&](const ros::CloudMessage& first) {
-        if (!bag->own) note_point_times(recording, first, config);
-        return read_frames(*bag, *topics).and_then([&](const FrameTree& tree) {
-          return take_mounts(recording, tree, {tracks->wheel.child, first.frame, tracks->imu.frame}, config);
-        });
-      });
+  const Result<ros::CloudMessage> first = read_cloud_message(*bag, scans.front(), *time_unit);
+  if (!first) return tl::unexpected(first.error());
+  if (!bag->own) note_point_times(recording, *first);
+  // What the first scan has shown holds for all.
+  recording.read_scan = scan_reader(bag, scans, recording.scan_stamps, first->time_unit);
+  const Result<> mounted = read_frames(*bag, *topics).and_then([&](const FrameTree& tree) {
+    return take_mounts(recording, tree, {tracks->wheel.child, first->frame, tracks->imu.frame}, config);
+  });
   if (!mounted) return tl::unexpected(mounted.error());
   return recording;
 }
 
 }  // namespace
+
+std::vector<std::string> namespaces_of(const Bag& bag) {
+  std::vector<std::vector<std::string>> topics;  // of clouds, in their parts
+  for (const std::size_t topic : find_topics(bag, "").points) {
+    if (!bag.topics[topic].name.starts_with('/')) continue;
+    std::vector<std::string> parts;
+    std::string words = bag.topics[topic].name;
+    std::ranges::replace(words, '/', ' ');
+    for (const std::string_view part : split_words(words)) parts.emplace_back(part);
+    topics.push_back(std::move(parts));
+  }
+  if (topics.empty()) return {};
+  // What all begin with names no robot.
+  std::size_t shared = 0;
+  const auto all_share = [&] {
+    return std::ranges::all_of(topics, [&](const std::vector<std::string>& parts) {
+      return shared + 1 < parts.size() && parts[shared] == topics.front()[shared];
+    });
+  };
+  while (topics.size() > 1 && all_share()) ++shared;
+  std::vector<std::string> names;
+  for (const std::vector<std::string>& parts : topics) {
+    if (parts.size() < shared + 2) continue;  // no namespace, only a topic
+    std::string name;
+    for (std::size_t i = 0; i <= shared; ++i) name += "/" + parts[i];
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  }
+  std::ranges::sort(names);
+  return names;
+}
 
 Result<Recording> read_recording(Bag bag, const RecordingConfig& config) {
   return recording_in(std::make_shared<const Bag>(std::move(bag)), config);

@@ -83,7 +83,7 @@ class MessageReader {
     return value;
   }
   [[nodiscard]] std::string_view blob() { return take(number<std::uint32_t>()); }
-  /// What has not been read; its first byte is aligned to four.
+  /// What has not been read; in CDR from the next byte on that is aligned to four.
   [[nodiscard]] std::string_view rest() {
     if (encoding_ == MessageEncoding::cdr) offset_ = (offset_ + 3) / 4 * 4;
     ok_ = ok_ && offset_ <= body_.size();

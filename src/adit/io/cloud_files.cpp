@@ -60,6 +60,13 @@ std::string_view to_string(TimeUnit unit) {
   return "ns";
 }
 
+std::string point_times_note(TimeUnit unit) {
+  return format(
+      "point times: in {}, in which a sweep lasts as long as sweeps do; if that is wrong, give "
+      "--point-times",
+      to_string(unit));
+}
+
 Result<std::optional<TimeUnit>> parse_time_unit(std::string_view text) {
   using enum TimeUnit;
   if (text.empty()) return std::optional<TimeUnit>();

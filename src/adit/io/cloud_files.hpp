@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "adit/core/point_cloud.hpp"
@@ -25,6 +26,9 @@ enum class TimeUnit : std::uint8_t { seconds, milliseconds, microseconds, nanose
 /// None for "", as RecordingConfig::point_times has it.
 Result<std::optional<TimeUnit>> parse_time_unit(std::string_view text);
 
+/// What to say of times that are not in seconds as floats or nanoseconds as integers.
+[[nodiscard]] std::string point_times_note(TimeUnit unit);
+
 /// What a cloud reader found. Points with a NaN or infinite coordinate are left out and counted.
 struct CloudFile {
   PointCloud cloud;
@@ -32,7 +36,9 @@ struct CloudFile {
   /// PCD's VIEWPOINT, the pose of the sensor: p_world = viewpoint * p. None for the identity, which is what
   /// writers put there that do not know it, and for formats without one.
   std::optional<Pose> viewpoint;
-  std::optional<TimeUnit> time_unit = {};  ///< Of the times as they are stored; none where there are none.
+  /// Of the times as they are stored: given, or found; none where there are no times or too few to tell.
+  std::optional<TimeUnit> time_unit = {};
+  bool has_usual_time_unit = true;  ///< Seconds of floats, nanoseconds of integers.
 };
 
 /// Reads a cloud, in the frame and unit of the file. A missing, truncated or empty file, an unknown extension

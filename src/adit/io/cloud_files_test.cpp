@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "adit/core/format.hpp"
 #include "adit/core/rng.hpp"
 #include "adit/io/kitti.hpp"
 #include "adit/io/packed_cloud.hpp"
@@ -197,19 +198,22 @@ TEST(Pcd, TimesInSecondsNanosecondsAndAbsolute) {
   // Absolute clocks: relative to the earliest point, to the nanosecond where the file has it.
   EXPECT_EQ(times("8", "U", "1700000000123456789", "1700000000123456799"), Times({0, 10}));
   EXPECT_EQ(times("8", "F", "1700000000.5", "1700000000.25"), Times({250'000'000, 0}));
-  EXPECT_ERROR(times("8", "F", "0", "100"),
-               "span 100.000 s, more than 2.1 s; if they are in another unit, give --point-times");
+  EXPECT_ERROR(
+      times("8", "F", "0", "100"),
+      "span 100.000 s, more than 2.1 s: another field, or another unit than was taken (--point-times)");
 }
 
 // A sweep of 0.1 s, as drivers write it: the unit follows from how long a sweep lasts.
 TEST(Pcd, TimesAreInTheUnitThatMakesASweepLastAsLongAsSweepsDo) {
   constexpr int kNum = 201;
-  const auto sweep = [](std::string_view type, std::string_view size, double per_second, double start,
+  // `step`: of half a millisecond, in the unit.
+  const auto sweep = [](std::string_view type, std::string_view size, auto step, auto start,
                         std::optional<TimeUnit> unit = {}) {
-    std::string rows;
-    for (int i = 0; i < kNum; ++i) rows += format("1 2 3 {:.17g}\n", start + 0.0005 * i * per_second);
+    // A point that was not seen, with a time that means nothing.
+    std::string rows = "nan nan nan 0\n";
+    for (int i = 0; i < kNum; ++i) rows += format("1 2 3 {}\n", start + i * step);
     return read_pcd(
-        pcd_header("x y z t", "4 4 4 " + std::string(size), "F F F " + std::string(type), kNum, "ascii") +
+        pcd_header("x y z t", "4 4 4 " + std::string(size), "F F F " + std::string(type), kNum + 1, "ascii") +
             rows,
         unit);
   };
@@ -221,16 +225,23 @@ TEST(Pcd, TimesAreInTheUnitThatMakesASweepLastAsLongAsSweepsDo) {
     for (int i = 0; i < kNum; ++i)
       ASSERT_NEAR(offsets[static_cast<std::size_t>(i)], 500'000 * i, tolerance_ns) << i;
   };
-  expect(sweep("F", "4", 1.0, 0.0), TimeUnit::seconds, 10);          // Velodyne
-  expect(sweep("U", "4", 1e9, 0.0), TimeUnit::nanoseconds, 0);       // Ouster
-  expect(sweep("F", "8", 1.0, 1.7e9), TimeUnit::seconds, 300);       // Hesai, Robosense
-  expect(sweep("F", "8", 1e9, 1.7e18), TimeUnit::nanoseconds, 300);  // Livox
-  expect(sweep("U", "4", 1e6, 0.0), TimeUnit::microseconds, 0);
-  expect(sweep("F", "4", 1e3, 0.0), TimeUnit::milliseconds, 10);
-  // What is given counts, and too few times, or a sweep like no other, are as they usually are.
-  EXPECT_EQ(*sweep("U", "4", 1e6, 0.0, TimeUnit::nanoseconds)->time_unit, TimeUnit::nanoseconds);
-  EXPECT_EQ(sweep("U", "4", 1e6, 0.0, TimeUnit::nanoseconds)->cloud.time_offsets_ns.back(), 100'000);
-  EXPECT_EQ(*sweep("U", "4", 1e1, 0.0)->time_unit, TimeUnit::nanoseconds);
+  using Int = std::int64_t;
+  expect(sweep("F", "4", 0.0005, 0.0), TimeUnit::seconds, 10);              // Velodyne
+  expect(sweep("U", "4", Int{500'000}, Int{0}), TimeUnit::nanoseconds, 0);  // Ouster
+  expect(sweep("F", "8", 0.0005, 1.7e9), TimeUnit::seconds, 300);           // Hesai
+  expect(sweep("F", "8", Int{500'000}, Int{1'700'000'000'000'000'000}), TimeUnit::nanoseconds, 300);  // Livox
+  expect(sweep("U", "4", Int{500}, Int{0}), TimeUnit::microseconds, 0);
+  expect(sweep("F", "4", 0.5, 0.0), TimeUnit::milliseconds, 10);
+  EXPECT_FALSE(sweep("U", "4", Int{500}, Int{0})->has_usual_time_unit);
+  EXPECT_TRUE(sweep("U", "4", Int{500'000}, Int{0})->has_usual_time_unit);
+  // What is given counts; signed times, as adit writes them, are nanoseconds, and so is a sweep like no
+  // other.
+  const Result<CloudFile> given = sweep("U", "4", Int{500}, Int{0}, TimeUnit::nanoseconds);
+  EXPECT_EQ(given->cloud.time_offsets_ns.back(), 100'000);
+  EXPECT_EQ(sweep("I", "4", Int{500}, Int{0})->cloud.time_offsets_ns.back(), 100'000);
+  EXPECT_EQ(sweep("U", "4", Int{5'000'000}, Int{0})->time_unit, TimeUnit::nanoseconds);
+  EXPECT_EQ(sweep("U", "4", Int{5}, Int{0})->time_unit, std::nullopt);
+  EXPECT_EQ(sweep("U", "4", Int{5}, Int{0})->cloud.time_offsets_ns.back(), 1000);
 }
 
 TEST(CloudFiles, UnitsOfTimesAreNamed) {
@@ -323,16 +334,24 @@ TEST(Kitti, BytesAreFourFloatsAPoint) {
 }
 
 TEST(Kitti, AFifthColumnOfWholeNumbersIsTheRing) {
-  std::string bytes;
-  for (int i = 0; i < 8; ++i)  // 160 bytes are whole rows of four columns, too
-    for (const float value : {0.5F + static_cast<float>(i), 2.25F, -1.5F, 0.75F, static_cast<float>(i)})
-      append_little_endian(bytes, value);
-  const Result<CloudFile> file = read_kitti(bytes);
-  ASSERT_TRUE(file) << file.error().message;
-  ASSERT_EQ(file->cloud.size(), 8U);
-  EXPECT_EQ(file->cloud.points[7], Eigen::Vector3f(7.5F, 2.25F, -1.5F));
-  EXPECT_EQ(file->cloud.intensities[7], 0.75F);
-  EXPECT_ERROR(read_kitti(std::string_view(bytes).substr(0, 150)), "not a whole number of points");
+  const auto rows = [](int num, int num_rings) {
+    std::string bytes;
+    for (int i = 0; i < num; ++i)
+      for (const float value :
+           {0.5F + static_cast<float>(i), 2.25F, -1.5F, 0.75F, static_cast<float>(i % num_rings)})
+        append_little_endian(bytes, value);
+    return bytes;
+  };
+  for (const int num : {7, 201, 200}) {  // 200 rows have a size of whole rows of four columns, too
+    const Result<CloudFile> file = read_kitti(rows(num, 16));
+    ASSERT_TRUE(file) << file.error().message;
+    ASSERT_EQ(file->cloud.size(), static_cast<std::size_t>(num));
+    EXPECT_EQ(file->cloud.points.back(), Eigen::Vector3f(static_cast<float>(num) - 0.5F, 2.25F, -1.5F));
+    EXPECT_EQ(file->cloud.intensities.back(), 0.75F);
+  }
+  EXPECT_EQ(read_kitti(rows(200, 1))->cloud.size(), 250U) << "one ring alone is no ring";
+  EXPECT_EQ(read_kitti(rows(8, 4))->cloud.size(), 10U);
+  EXPECT_ERROR(read_kitti(std::string_view(rows(8, 4)).substr(0, 150)), "not a whole number of points");
 }
 
 TEST(CloudFiles, FormatFollowsTheExtension) {

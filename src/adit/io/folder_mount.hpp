@@ -11,6 +11,7 @@
 
 #include "adit/core/records.hpp"
 #include "adit/core/result.hpp"
+#include "adit/io/cloud_files.hpp"
 #include "adit/io/recording_toml.hpp"
 
 namespace adit {
@@ -29,6 +30,6 @@ enum class Wheels { absent, present };
 /// unknown.
 Result<FolderMount> mount_of_folder(const std::vector<std::filesystem::path>& clouds,
                                     const RecordingToml& file, const std::optional<Pose>& override,
-                                    Wheels wheels);
+                                    Wheels wheels, std::optional<TimeUnit> time_unit = {});
 
 }  // namespace adit

@@ -14,13 +14,21 @@ namespace {
 constexpr std::size_t kFour = 16;  ///< Bytes of a row of four columns,
 constexpr std::size_t kFive = 20;  ///< and of five.
 
+/// Where the size fits four columns, too, it takes many rows of several rings to tell.
 bool has_rings(std::string_view bytes) {
+  constexpr std::size_t kEnough = 100;  // rows
   if (bytes.empty() || bytes.size() % kFive != 0) return false;
-  for (std::size_t at = kFour; at < bytes.size(); at += kFive) {
-    const double ring = load_scalar(ScalarType::float32, bytes.data() + at, std::endian::little);
+  const auto ring_at = [&](std::size_t row) {
+    return load_scalar(ScalarType::float32, bytes.data() + row * kFive + kFour, std::endian::little);
+  };
+  const std::size_t num = bytes.size() / kFive;
+  bool are_several = false;
+  for (std::size_t row = 0; row < num; ++row) {
+    const double ring = ring_at(row);
     if (!(ring >= 0.0 && ring <= 255.0 && ring == std::floor(ring))) return false;
+    are_several |= ring != ring_at(0);
   }
-  return true;
+  return bytes.size() % kFour != 0 || (num >= kEnough && are_several);
 }
 
 }  // namespace
@@ -28,10 +36,11 @@ bool has_rings(std::string_view bytes) {
 Result<CloudFile> read_kitti(std::string_view bytes) {
   const std::size_t row = has_rings(bytes) ? kFive : kFour;
   if (bytes.size() % row != 0) {
-    return fail(format(
-        "{} bytes are not a whole number of points (x y z intensity, 16 bytes each); the last whole one "
-        "ends at byte {}: the file is truncated or not a KITTI file",
-        bytes.size(), bytes.size() / row * row));
+    return fail(
+        format("{} bytes are not a whole number of points (x y z intensity, 16 bytes each, or 20 with the "
+               "ring); the last whole one "
+               "ends at byte {}: the file is truncated or not a KITTI file",
+               bytes.size(), bytes.size() / row * row));
   }
   PackedCloud packed;
   packed.bytes = bytes;

@@ -12,9 +12,9 @@
 
 namespace adit {
 
-/// The fifth column is there where the size is a multiple of 20 bytes and every fifth number is a whole one
-/// from 0 to 255. A size that is a multiple neither of 16 bytes nor of these is a truncated file: an error
-/// that names the last whole point.
+/// The fifth column is there where the size is a multiple of 20 bytes and every fifth number a whole one from
+/// 0 to 255; where it is a multiple of 16 bytes as well, only if there are a hundred rows of several rings.
+/// Other sizes are those of truncated files: an error that names the last whole point.
 Result<CloudFile> read_kitti(std::string_view bytes);
 
 /// Points without intensity get 0.

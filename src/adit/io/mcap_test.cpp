@@ -319,6 +319,30 @@ TEST(Mcap, OneOfSeveralTopicsOfCloudsCanBeChosen) {
   EXPECT_EQ(rear->name, "rear");
 }
 
+TEST(Mcap, RobotsOfOneBagAreTakenByTheirNamespaces) {
+  ForeignFile file;
+  file.clouds("/fleet/husky2/points", "husky2/lidar")
+      .clouds("/fleet/husky1/front/points", "husky1/lidar")
+      .odometry("/fleet/husky1/odom", "husky1/base_link")
+      .odometry("/fleet/husky2/odom", "husky2/base_link")
+      .links({test::link("husky1/base_link", "husky1/lidar", test::T_base_ouster),
+              test::link("husky2/base_link", "husky2/lidar", test::T_ouster_lidar)});
+  EXPECT_EQ(namespaces_of(open_mcap_bag(memory_source(file.bytes())).value()),
+            std::vector<std::string>({"/fleet/husky1", "/fleet/husky2"}));
+  EXPECT_ERROR(file.read(), "several topics of clouds");
+  for (const auto& [robot, mount] :
+       {std::pair("husky1", test::T_base_ouster), {"husky2", test::T_ouster_lidar}}) {
+    const Result<Recording> recording = file.read({.topics_under = std::string("/fleet/") + robot});
+    ASSERT_TRUE(recording) << recording.error().message;
+    EXPECT_EQ(recording->name, robot);
+    EXPECT_EQ(recording->wheel.size(), 3U);
+    EXPECT_EQ(recording->T_base_lidar.translation(), mount.translation());
+  }
+  EXPECT_ERROR(file.read({.topics_under = "/fleet/husky"}), "under /fleet/husky; there are no scans");
+  EXPECT_TRUE(
+      namespaces_of(open_mcap_bag(memory_source(ForeignFile().clouds("/points").bytes())).value()).empty());
+}
+
 TEST(Mcap, TheLikeliestTopicIsNamedFirst) {
   EXPECT_ERROR(
       ForeignFile().clouds("/camera/depth/points").clouds("/os_cloud").clouds("/velodyne_points").read(),

@@ -97,33 +97,40 @@ std::optional<std::int64_t> load_time(const PackedField& field, const char* byte
   return value * in_unit;
 }
 
-/// The unit in which the sweep lasts as long as sweeps do.
-TimeUnit unit_of_times(const PackedCloud& packed) {
+/// What such times usually are.
+TimeUnit usual_unit(ScalarType type) { return is_float(type) ? TimeUnit::seconds : TimeUnit::nanoseconds; }
+
+/// The unit in which the sweep lasts as long as sweeps do; none where too few times are there, or none does.
+std::optional<TimeUnit> unit_of_times(const PackedCloud& packed) {
   constexpr double kShortest = 0.002;  // seconds
   constexpr double kLongest = 2.0;
   constexpr std::size_t kEnough = 100;  // times
-  const PackedField& field = *packed.time;
+  const auto value = [&](const PackedField& field, std::size_t i) {
+    return load_scalar(field.type, packed.bytes.data() + field.offset + i * field.stride, packed.order);
+  };
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   std::size_t num = 0;
   for (std::size_t i = 0; i < packed.num_points; ++i) {
-    const double time =
-        load_scalar(field.type, packed.bytes.data() + field.offset + i * field.stride, packed.order);
-    if (!std::isfinite(time)) continue;
+    const double time = value(*packed.time, i);
+    // Drivers write anything beside points that they did not see.
+    if (!std::isfinite(time + value(*packed.x, i) + value(*packed.y, i) + value(*packed.z, i))) continue;
     low = std::min(low, time);
     high = std::max(high, time);
     ++num;
   }
+  if (num < kEnough) return {};
   using enum TimeUnit;
-  // No sensor counts whole seconds.
-  const std::vector<TimeUnit> likeliest_first =
-      is_float(field.type) ? std::vector{seconds, nanoseconds, microseconds, milliseconds}
-                           : std::vector{nanoseconds, microseconds, milliseconds};
+  // Integers are never coarser than microseconds, and signed ones, as adit writes them, are nanoseconds.
+  std::vector<TimeUnit> likeliest_first = {nanoseconds};
+  if (is_float(packed.time->type)) likeliest_first = {seconds, nanoseconds, microseconds, milliseconds};
+  if (packed.time->type == ScalarType::uint32 || packed.time->type == ScalarType::uint64)
+    likeliest_first = {nanoseconds, microseconds};
   for (const TimeUnit unit : likeliest_first) {
     const double span = (high - low) * 1e-9 * static_cast<double>(nanoseconds_in(unit));
-    if (num >= kEnough && span >= kShortest && span <= kLongest) return unit;
+    if (span >= kShortest && span <= kLongest) return unit;
   }
-  return likeliest_first.front();
+  return {};
 }
 
 Result<> check_field(const PackedCloud& cloud, const std::optional<PackedField>& field, const char* name) {
@@ -161,10 +168,14 @@ Result<std::vector<std::int32_t>> relative_times(const std::vector<std::int64_t>
   const auto fits = [&](Wide origin) { return low - origin >= -kLimit && high - origin <= kLimit; };
   const std::int64_t from_stamp = stamp ? stamp->ns : low;
   const std::int64_t origin = fits(0) ? 0 : from_stamp;
+  if (!fits(origin) && Wide{high} - low <= kLimit)
+    return fail(format(
+        "the point times lie {:.3f} s from the scan's stamp: another clock, or another unit (--point-times)",
+        static_cast<double>(Wide{low} - from_stamp) * 1e-9));
   if (!fits(origin)) {
     return fail(
-        format("the point times of the sweep span {:.3f} s, more than 2.1 s; if they are in another unit, "
-               "give --point-times s, ms, us or ns",
+        format("the point times of the sweep span {:.3f} s, more than 2.1 s: another field, or another "
+               "unit than was taken (--point-times)",
                static_cast<double>(Wide{high} - low) * 1e-9));
   }
   std::vector<std::int32_t> offsets(times.size());
@@ -221,14 +232,17 @@ Result<CloudFile> unpack(const PackedCloud& packed) {
   const auto at = [&](const PackedField& field, std::size_t i) {
     return packed.bytes.data() + field.offset + i * field.stride;
   };
-  if (packed.time) file.time_unit = packed.time_unit ? *packed.time_unit : unit_of_times(packed);
+  if (packed.time) file.time_unit = packed.time_unit ? packed.time_unit : unit_of_times(packed);
+  const TimeUnit usual = usual_unit(packed.time ? packed.time->type : ScalarType::float32);
+  const TimeUnit unit = file.time_unit.value_or(usual);
+  file.has_usual_time_unit = unit == usual;
   const auto coordinate = [&](const PackedField& field, std::size_t i) {
     return static_cast<float>(load_scalar(field.type, at(field, i), packed.order));
   };
   for (std::size_t i = 0; i < packed.num_points; ++i) {
     const Eigen::Vector3f point(coordinate(*packed.x, i), coordinate(*packed.y, i), coordinate(*packed.z, i));
     std::optional<std::int64_t> time = 0;
-    if (packed.time) time = load_time(*packed.time, at(*packed.time, i), packed.order, *file.time_unit);
+    if (packed.time) time = load_time(*packed.time, at(*packed.time, i), packed.order, unit);
     if (!point.allFinite() || !time) {
       ++file.num_skipped_nan;
       continue;

@@ -53,9 +53,10 @@ struct PackedCloud {
 void assign_field(PackedCloud& cloud, std::string_view name, PackedField field);
 
 /// Where the unit of point times is not given, it is the one that makes the sweep last 2 ms to 2 s; where
-/// none does, or a hundred times are not there to tell, floats are seconds and integers nanoseconds. Fails
-/// when x, y or z is absent, a field reaches past the bytes, no point is finite, or times span more than 2.1
-/// s.
+/// none does, or a hundred times are not there to tell, floats are seconds and integers nanoseconds. Signed
+/// integers are nanoseconds.
+/// Fails when x, y or z is absent, a field reaches past the bytes, no point is finite, or times span more
+/// than 2.1 s.
 Result<CloudFile> unpack(const PackedCloud& packed);
 
 /// x y z float32, [intensity float32], [t int32 ns], point after point, little-endian: what adit writes

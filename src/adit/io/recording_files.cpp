@@ -3,7 +3,9 @@
 #include "adit/io/recording_files.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 
 #include "adit/core/format.hpp"
@@ -28,20 +30,23 @@ std::optional<ScanSelection> parse_selection(const std::string& text) {
 /// Times count from the start of the sweep and the stamp is of its end: the last point has the stamp.
 Recording with_stamps_at_end(Recording recording) {
   recording.read_scan = [read = std::move(recording.read_scan)](std::size_t i) {
-    return read(i).map([](Scan scan) {
+    return read(i).and_then([i](Scan scan) -> Result<Scan> {
       std::vector<std::int32_t>& offsets = scan.cloud.time_offsets_ns;
       if (offsets.empty()) return scan;
-      const std::int32_t last = std::ranges::max(offsets);
-      for (std::int32_t& offset : offsets) offset -= last;
+      const auto [earliest, latest] = std::ranges::minmax(offsets);
+      if (std::int64_t{earliest} - latest < -std::numeric_limits<std::int32_t>::max())
+        return fail(format("scan {}: its points' times span more than 2.1 s", i));
+      for (std::int32_t& offset : offsets) offset = static_cast<std::int32_t>(std::int64_t{offset} - latest);
       return scan;
     });
   };
   return recording;
 }
 
-/// Beside a folder of clouds lies at most one file of wheels, so that there is nothing to choose.
-Recording with_chosen_wheels(Recording recording, const RecordingConfig& config) {
+/// Beside a folder of clouds lies at most one file of each kind, so that there is nothing to choose.
+Recording without_left_out(Recording recording, const RecordingConfig& config) {
   if (config.wheel == kNoWheel) recording.wheel.clear();
+  if (config.truth == kNoTruth) recording.truth.clear();
   return recording;
 }
 
@@ -58,14 +63,14 @@ Result<Recording> open_part(const std::filesystem::path& folder, const std::stri
   });
 }
 
-Result<Recording> open_input(const std::string& input, const RecordingConfig& config) {
+Result<Recording> open_as_stamped(const std::string& input, const RecordingConfig& config) {
   const Result<std::optional<Pose>> mount = mount_of(config);
   if (!mount) return tl::unexpected(mount.error());
   const Result<std::optional<TimeUnit>> time_unit = parse_time_unit(config.point_times);
   if (!time_unit) return tl::unexpected(time_unit.error());
   const FolderReading reading{*mount, *time_unit};
   std::error_code ignored;
-  const auto choose = [&](Recording recording) { return with_chosen_wheels(std::move(recording), config); };
+  const auto choose = [&](Recording recording) { return without_left_out(std::move(recording), config); };
   if (is_bag_file(input) || is_bag_folder(input)) return read_recording(input, config);
   if (std::filesystem::is_directory(input, ignored)) return read_scan_folder(input, {}, reading).map(choose);
   const std::size_t at = input.rfind('@');
@@ -83,7 +88,7 @@ Result<Recording> open_input(const std::string& input, const RecordingConfig& co
 Result<Recording> open_recording(const std::string& input, const RecordingConfig& config) {
   if (config.stamp_at != "start" && config.stamp_at != "end")
     return fail(format("recording.stamp_at: '{}' is neither start nor end", config.stamp_at));
-  return open_input(input, config).map([&](Recording recording) {
+  return open_as_stamped(input, config).map([&](Recording recording) {
     return config.stamp_at == "end" ? with_stamps_at_end(std::move(recording)) : std::move(recording);
   });
 }

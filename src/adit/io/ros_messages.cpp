@@ -107,6 +107,7 @@ Result<CloudMessage> unpacked(const PackedCloud& packed, CloudMessage out) {
   return unpack(packed).map([&](CloudFile file) {
     out.scan.cloud = std::move(file.cloud);
     out.time_unit = file.time_unit;
+    out.has_usual_time_unit = file.has_usual_time_unit;
     return std::move(out);
   });
 }

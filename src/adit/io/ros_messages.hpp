@@ -20,9 +20,9 @@ inline constexpr std::string_view kOdometry = "nav_msgs/msg/Odometry";
 inline constexpr std::string_view kImu = "sensor_msgs/msg/Imu";
 inline constexpr std::string_view kTransforms = "tf2_msgs/msg/TFMessage";
 
-/// Whether messages of that type are clouds: PointCloud2 (decode_cloud), and the CustomMsg of Livox's drivers
-/// (decode_livox).
+/// The CustomMsg of Livox's drivers (decode_livox).
 [[nodiscard]] bool is_livox(std::string_view type);
+/// What decode_cloud or decode_livox take.
 [[nodiscard]] inline bool is_cloud(std::string_view type) { return type == kPointCloud2 || is_livox(type); }
 
 /// The full text of a message type and all types in it; the type must be one of the above.
@@ -32,7 +32,8 @@ inline constexpr std::string_view kTransforms = "tf2_msgs/msg/TFMessage";
 struct CloudMessage {
   std::string frame;
   Scan scan;
-  std::optional<TimeUnit> time_unit = {};  ///< As CloudFile::time_unit.
+  std::optional<TimeUnit> time_unit = {};  ///< As in CloudFile, like the next.
+  bool has_usual_time_unit = true;
 };
 /// The stamp's seconds must fit 32 bits: see `fits_ros`.
 [[nodiscard]] std::string encode_cloud(const Scan& scan, std::string_view frame);

@@ -269,7 +269,8 @@ Result<Recording> read_scan_folder(const fs::path& folder, ScanSelection selecti
   std::vector<fs::path> clouds;
   for (const ScanFile& scan : select(*scans, selection)) clouds.push_back(scan.path);
   const Wheels wheels = recording->wheel.empty() ? Wheels::absent : Wheels::present;
-  const Result<FolderMount> mount = mount_of_folder(clouds, *file, reading.T_base_lidar, wheels);
+  const Result<FolderMount> mount =
+      mount_of_folder(clouds, *file, reading.T_base_lidar, wheels, reading.time_unit);
   if (!mount) return fail(folder.string(), mount.error());
   recording->name = file->robot.empty() ? name_of(folder) : file->robot;
   recording->lidar = file->lidar;
@@ -278,8 +279,12 @@ Result<Recording> read_scan_folder(const fs::path& folder, ScanSelection selecti
   if (reading.T_base_lidar) set_mount(*recording, mount->T_base_lidar);
   recording->T_base_lidar = mount->T_base_lidar;
   recording->mount_source = mount->source;
+  // What the first cloud shows of the times holds for all.
+  const Result<CloudFile> first = read_cloud_file(clouds.front(), reading.time_unit);
+  if (!first) return tl::unexpected(first.error());
+  if (!first->has_usual_time_unit) recording->assumptions.push_back(point_times_note(*first->time_unit));
   recording->read_scan =
-      scan_reader(std::move(clouds), recording->scan_stamps, mount->T_lidar_cloud, reading.time_unit);
+      scan_reader(std::move(clouds), recording->scan_stamps, mount->T_lidar_cloud, first->time_unit);
   return recording;
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "adit/io/session_toml.hpp"
 #include "support/files.hpp"
 
 namespace adit {
@@ -124,6 +125,59 @@ TEST(SessionDir, TheProvenanceListsTheHypotheses) {
        {"'10 of 10 places agree'", "outcome = 'accepted'", "outcome = 'refuted'", "places_compared = 8",
         "places_differing = 5", "compared_m = 123.5", "changes = 3", "from_best_m = 5.0", "[ 3, 8 ]"})
     EXPECT_NE(toml.find(part), std::string::npos) << part << "\n" << toml;
+}
+
+TEST(SessionDir, MergesAreReadBackAsTheyWereTested) {
+  Session session = session_of_two();
+  MergeCheck& check = session.fleet.checks.at({{0}, {1}});
+  check.accepted = false;
+  check.refused_kind = RefusalKind::too_little;
+  check.advice = MergeAdvice{143.5, 183.25, {51.25, -8.0, 0.5}, 5.25, 4.0};
+  session.solution = solve(session.fleet, {});
+  MergeCheck revisits = check;
+  revisits.b = revisits.a;
+  revisits.accepted = true;
+  session.fleet.checks[{{0}, {0}}] = revisits;
+  const Result<std::vector<SavedMerge>> merges = parse_session_merges(session_toml(session));
+  ASSERT_TRUE(merges.has_value()) << merges.error().message;
+  ASSERT_EQ(merges->size(), 2U);
+  const SavedMerge& merge = merges->front();
+  EXPECT_EQ(merge.a + " " + merge.b, "ada bo");
+  EXPECT_FALSE(merge.merged);
+  EXPECT_FALSE(merge.refusal.empty());
+  EXPECT_EQ(merge.check.reason, check.reason);
+  EXPECT_EQ(merge.check.refused_kind, RefusalKind::too_little);
+  EXPECT_EQ(merge.check.needed, check.needed);
+  EXPECT_EQ(merge.check.loops, check.loops);
+  ASSERT_TRUE(merge.check.advice.has_value());
+  EXPECT_EQ(merge.check.advice->from, check.advice->from);
+  EXPECT_EQ(merge.check.advice->gain, 5.25);
+  ASSERT_EQ(merge.check.hypotheses.size(), 2U);
+  const MergeHypothesis& second = merge.check.hypotheses[1];
+  EXPECT_EQ(second.outcome, HypothesisOutcome::refuted);
+  EXPECT_EQ(second.num_differing(), 5U);
+  EXPECT_EQ(second.from_best_m, 5.0);
+  EXPECT_EQ(second.counts.num_wall_patches, 456U);
+  EXPECT_EQ(second.counts.equal_signs, 0.75);
+  EXPECT_EQ(merges->back().a, merges->back().b);
+  EXPECT_TRUE(merges->back().check.accepted);
+}
+
+TEST(SessionDir, APairIsListedAlsoWhereNothingWasTested) {
+  Session session = session_of_two();
+  session.fleet.checks.clear();
+  for (const MergePolicy policy : {MergePolicy::adaptive, MergePolicy::paper}) {
+    session.fleet.policy = policy;
+    session.solution = solve(session.fleet, {});
+    const Result<std::vector<SavedMerge>> merges = parse_session_merges(session_toml(session));
+    ASSERT_TRUE(merges.has_value()) << merges.error().message;
+    ASSERT_EQ(merges->size(), 1U);
+    EXPECT_TRUE(merges->front().check.hypotheses.empty());
+    EXPECT_EQ(merges->front().merged, policy == MergePolicy::paper) << "PCM needs no test";
+    EXPECT_EQ(merges->front().share_a_map, merges->front().merged);
+    EXPECT_EQ(merges->front().refusal.empty(), merges->front().merged);
+  }
+  EXPECT_FALSE(parse_session_merges("robots = [").has_value());
 }
 
 TEST(SessionDir, LoopsOfEarlierVersionsAreReadToo) {

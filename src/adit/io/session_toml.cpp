@@ -5,7 +5,11 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <sstream>
+#include <tuple>
+#include <utility>
 
 #include "adit/core/format.hpp"
 #include "adit/core/version.hpp"
@@ -112,11 +116,16 @@ void insert_solution(const Session& session, toml::table& table) {
   }
   table.insert("components", components);
   toml::array refusals;
+  toml::array merged;
   for (const PairOutcome& pair : session.solution.pairs) {
-    if (pair.merged) continue;
+    if (pair.merged) {
+      merged.push_back(toml::array{name_of(session.fleet, pair.a), name_of(session.fleet, pair.b)});
+      continue;
+    }
     refusals.push_back(format("{} and {}: {}", name_of(session.fleet, pair.a), name_of(session.fleet, pair.b),
                               pair.refused_reason));
   }
+  table.insert("merged_pairs", merged);
   table.insert("refusals", refusals);
 }
 
@@ -181,6 +190,118 @@ Provenance provenance_in(const toml::table& table) {
   return provenance;
 }
 
+HypothesisOutcome outcome_in(const std::string& words) {
+  using enum HypothesisOutcome;
+  for (const HypothesisOutcome outcome : {accepted, unsure, rival, behind})
+    if (words == to_string(outcome)) return outcome;
+  return refuted;
+}
+
+std::uint32_t count_of(std::int64_t value) {
+  return static_cast<std::uint32_t>(
+      std::clamp<std::int64_t>(value, 0, std::numeric_limits<std::uint32_t>::max()));
+}
+
+std::uint32_t count_in(const toml::table& table, const char* key) {
+  return count_of(table[key].value_or(std::int64_t{0}));
+}
+
+MergeHypothesis hypothesis_in(const toml::table& table) {
+  MergeHypothesis h;
+  h.outcome = outcome_in(table["outcome"].value_or(std::string()));
+  h.evidence = table["evidence"].value_or(0.0);
+  h.num_checked = count_in(table, "places_compared");
+  h.num_passed = h.num_checked - std::min(count_in(table, "places_differing"), h.num_checked);
+  h.from_best_m = table["from_best_m"].value_or(0.0);
+  h.walls = table["evidence_of_walls"].value_or(0.0);
+  h.counts = {count_in(table, "places_distinctive"),
+              count_in(table, "changes"),
+              count_in(table, "things"),
+              count_in(table, "wall_patches"),
+              table["compared_m"].value_or(0.0),
+              table["equal_signs"].value_or(0.5),
+              0.0};
+  if (const toml::array* loops = table["loops"].as_array())
+    for (const toml::node& node : *loops)
+      if (const toml::array* loop = node.as_array(); loop != nullptr && loop->size() == 2)
+        h.loops.emplace_back(count_of((*loop)[0].value_or(std::int64_t{0})),
+                             count_of((*loop)[1].value_or(std::int64_t{0})));
+  return h;
+}
+
+MergeAdvice advice_in(const toml::table& table) {
+  MergeAdvice advice{table["from_m"].value_or(0.0), table["to_m"].value_or(0.0), Vector3::Zero(),
+                     table["gain"].value_or(0.0), table["missing"].value_or(0.0)};
+  if (const toml::array* from = table["from"].as_array(); from != nullptr && from->size() == 3)
+    for (std::size_t i = 0; i < 3; ++i) advice.from[static_cast<Eigen::Index>(i)] = (*from)[i].value_or(0.0);
+  return advice;
+}
+
+SavedMerge merge_in(const toml::table& table) {
+  SavedMerge merge;
+  const std::vector<std::string> robots = strings_of(table["robots"].node());
+  if (robots.size() == 2) std::tie(merge.a, merge.b) = std::pair(robots[0], robots[1]);
+  MergeCheck& check = merge.check;
+  check.accepted = table["accepted"].value_or(false);
+  merge.merged = table["merged"].value_or(false);
+  check.needed = table["evidence_needed"].value_or(0.0);
+  check.reason = table["reason"].value_or(std::string());
+  check.refused_kind = refusal_kind(table["refused_kind"].value_or(std::string()));
+  if (const toml::table* advice = table["where_to_drive"].as_table()) check.advice = advice_in(*advice);
+  if (const toml::array* hypotheses = table["hypotheses"].as_array())
+    for (const toml::node& node : *hypotheses)
+      if (const toml::table* h = node.as_table()) check.hypotheses.push_back(hypothesis_in(*h));
+  if (!check.hypotheses.empty()) {
+    const MergeHypothesis& best = check.hypotheses.front();
+    check.evidence = best.evidence;
+    check.num_checked = best.num_checked;
+    check.num_passed = best.num_passed;
+    check.loops = best.loops;
+  }
+  if (const toml::table* sigma = table["sigma"].as_table()) {
+    MergeAccuracy& accuracy = merge.accuracy.emplace();
+    accuracy.along_m = (*sigma)["along_m"].value_or(0.0);
+    accuracy.across_m = (*sigma)["across_m"].value_or(0.0);
+    accuracy.up_m = (*sigma)["up_m"].value_or(0.0);
+    accuracy.turn_deg = (*sigma)["turn_deg"].value_or(0.0);
+    accuracy.num_loops = count_in(*sigma, "loops_in_use");
+  }
+  return merge;
+}
+
+std::vector<SavedMerge> merges_in(const toml::table& table, const char* key) {
+  std::vector<SavedMerge> merges;
+  if (const toml::array* array = table[key].as_array())
+    for (const toml::node& node : *array)
+      if (const toml::table* merge = node.as_table()) merges.push_back(merge_in(*merge));
+  return merges;
+}
+
+/// Whether both are named by one of the lists.
+bool are_together(const std::string& a, const std::string& b, const toml::array* lists) {
+  return lists != nullptr && std::ranges::any_of(*lists, [&](const toml::node& node) {
+           const std::vector<std::string> names = strings_of(&node);
+           return std::ranges::find(names, a) != names.end() && std::ranges::find(names, b) != names.end();
+         });
+}
+
+/// What became of two robots, tested or not.
+SavedMerge merge_of(const std::string& a, const std::string& b, const toml::table& table,
+                    const std::vector<SavedMerge>& tested) {
+  const auto found =
+      std::ranges::find_if(tested, [&](const SavedMerge& merge) { return merge.a == a && merge.b == b; });
+  SavedMerge merge;
+  if (found != tested.end()) merge = *found;
+  merge.a = a;
+  merge.b = b;
+  merge.merged = merge.merged || are_together(a, b, table["merged_pairs"].as_array());
+  merge.share_a_map = are_together(a, b, table["components"].as_array());
+  const std::string start = format("{} and {}: ", a, b);
+  for (const std::string& refusal : strings_of(table["refusals"].node()))
+    if (refusal.starts_with(start)) merge.refusal = refusal.substr(start.size());
+  return merge;
+}
+
 }  // namespace
 
 std::string session_toml(const Session& session) {
@@ -208,6 +329,22 @@ Result<SessionHeader> parse_session_toml(std::string_view text) {
     if (const toml::array* components = table["components"].as_array())
       for (const toml::node& node : *components) header.components.push_back(strings_of(&node));
     return header;
+  } catch (const toml::parse_error& error) {
+    return fail(format("line {}: {}", error.source().begin.line, error.description()));
+  }
+}
+
+Result<std::vector<SavedMerge>> parse_session_merges(std::string_view text) {
+  try {
+    const toml::table table = toml::parse(text);
+    const std::vector<std::string> robots = strings_of(table["robots"].node());
+    const std::vector<SavedMerge> tested = merges_in(table, "merges");
+    std::vector<SavedMerge> merges;
+    for (std::size_t a = 0; a < robots.size(); ++a)
+      for (std::size_t b = a + 1; b < robots.size(); ++b)
+        merges.push_back(merge_of(robots[a], robots[b], table, tested));
+    std::ranges::copy(merges_in(table, "revisits"), std::back_inserter(merges));
+    return merges;
   } catch (const toml::parse_error& error) {
     return fail(format("line {}: {}", error.source().begin.line, error.description()));
   }

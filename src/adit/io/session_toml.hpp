@@ -3,6 +3,7 @@
 /// session.toml: where a session came from and what was decided in it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,19 @@ struct SessionHeader {
   std::vector<std::string> robots;                   ///< In id order.
   std::vector<std::vector<std::string>> components;  ///< Names that share one frame.
 };
+/// What became of two robots, or of the places of its own map that a robot came back to.
+struct SavedMerge {
+  std::string a, b;  ///< The robots; the same twice: a robot's own map.
+  MergeCheck check =
+      {};  ///< Without hypotheses where nothing was tested. Ids, places and covariances were not saved.
+  bool merged = false;       ///< By loops between the two; an accepted check may be taken back.
+  bool share_a_map = false;  ///< Be it through other robots.
+  std::string refusal = {};  ///< Why they are not merged, one sentence.
+  std::optional<MergeAccuracy> accuracy = {};
+};
+/// Every pair of robots in id order, tested or not, then the revisits. Fails like parse_session_toml.
+[[nodiscard]] Result<std::vector<SavedMerge>> parse_session_merges(std::string_view text);
+
 /// Fails with the line on text that is not TOML. What is missing, as in sessions of earlier versions, is left
 /// empty.
 [[nodiscard]] Result<SessionHeader> parse_session_toml(std::string_view text);

@@ -32,11 +32,11 @@ View view_of(const PointCloud& cloud) {
   }
   View view{ranges.size()};
   if (ranges.empty()) return view;
+  mean.normalize();
   std::vector<double> angles;
   for (const Eigen::Vector3f& p : cloud.points) {
     const double range = p.cast<double>().norm();
-    if (range > 0.0)
-      angles.push_back(std::acos(std::clamp(mean.normalized().dot(p.cast<double>()) / range, -1.0, 1.0)));
+    if (range > 0.0) angles.push_back(std::acos(std::clamp(mean.dot(p.cast<double>()) / range, -1.0, 1.0)));
   }
   const auto last = static_cast<std::ptrdiff_t>(kNearlyAll * static_cast<double>(ranges.size() - 1));
   std::ranges::nth_element(angles, angles.begin() + last);
@@ -50,7 +50,8 @@ View view_of(const PointCloud& cloud) {
 }  // namespace
 
 std::string why_nothing_mapped(const Recording& recording) {
-  constexpr double kNarrow = 130.0;  // degrees
+  constexpr double kNarrow = 130.0;     // degrees
+  constexpr std::size_t kEnough = 500;  // points, to tell what sensor they are of
   const std::string all =
       format("{}: none of {} scans could be mapped", recording.name, recording.num_scans());
   const Result<Scan> first = recording.read_scan(0);
@@ -58,15 +59,13 @@ std::string why_nothing_mapped(const Recording& recording) {
   const View view = view_of(first->cloud);
   const std::string seen = format("{}: the first has {} points, {:.1f} to {:.1f} m away", all,
                                   view.num_points, view.nearest_m, view.farthest_m);
-  if (view.width_deg < kNarrow)
+  if (view.num_points >= kEnough && view.width_deg < kNarrow)
     return format(
         "{}, within a view of {:.0f} degrees, like a depth camera's; adit maps with LiDARs that see the "
         "walls "
         "around them",
         seen, view.width_deg);
-  return seen +
-         "; too few of them lie within the ranges that odometry uses (robot.odometry), or on what was seen "
-         "before";
+  return seen + "; too few points lie within the ranges that odometry uses, or on what was seen before";
 }
 
 }  // namespace adit

@@ -39,6 +39,14 @@ TEST(NothingMapped, NamesADepthCameraByItsView) {
   EXPECT_NE(lidar.find("12 points"), std::string::npos) << lidar;
 }
 
+TEST(NothingMapped, FewPointsAreNoCamera) {
+  for (const std::size_t num : {std::size_t{0}, std::size_t{5}}) {
+    const std::string few = why_nothing_mapped(recording_of(3.0, num));
+    EXPECT_EQ(few.find("depth camera"), std::string::npos) << few;
+    EXPECT_NE(few.find("too few points"), std::string::npos) << few;
+  }
+}
+
 TEST(NothingMapped, PassesOnWhyAScanCannotBeRead) {
   Recording torn = recording_of(80.0, 10);
   torn.read_scan = [](std::size_t) -> Result<Scan> { return fail("scan 0: ends early"); };

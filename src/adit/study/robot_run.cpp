@@ -12,6 +12,7 @@
 #include "adit/evaluation/statistics.hpp"
 #include "adit/slam/mapping.hpp"
 #include "adit/slam/robot_facts.hpp"
+#include "adit/robot/nothing_mapped.hpp"
 
 namespace adit {
 namespace {
@@ -111,7 +112,7 @@ Result<RobotRun> run_robot(const Recording& recording, RobotId id, const RunConf
   run.map = std::make_shared<const RobotMap>(drives.front().map());
   run.paper_map = drives.size() == 1 ? run.map : std::make_shared<const RobotMap>(drives.back().map());
   if (run.map->keyframes.empty() || run.paper_map->keyframes.empty())
-    return fail(recording.name + ": no scan became a keyframe");
+    return fail(why_nothing_mapped(recording));
   run.truth = recording.truth;
   run.result = robot_facts(*run.map, run.truth);
   comparison.add_result(run.truth, run.result.odometry);
