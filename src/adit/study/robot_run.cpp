@@ -10,9 +10,9 @@
 #include "adit/core/robot_ids.hpp"
 #include "adit/evaluation/ate.hpp"
 #include "adit/evaluation/statistics.hpp"
+#include "adit/robot/nothing_mapped.hpp"
 #include "adit/slam/mapping.hpp"
 #include "adit/slam/robot_facts.hpp"
-#include "adit/robot/nothing_mapped.hpp"
 
 namespace adit {
 namespace {
