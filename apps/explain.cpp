@@ -48,14 +48,12 @@ std::string why(const SavedMerge& merge) {
 Table hypotheses_of(const SavedMerge& merge) {
   Table table{.title = {},
               .caption = format("One line for each alignment that loops put forward and that was tested (at "
-                                "most {}), the best first. A "
-                                "merge needs an evidence of {:.1f}, and every other alignment has to stay "
-                                "behind by as much. Evidence is "
-                                "the logarithm of a likelihood ratio: of loops and places, where only "
-                                "distinctive places that agree speak "
-                                "for it and changes against it, and of the relief of walls (share of patches "
-                                "on the same side: half for "
-                                "one wall). Things may come and go.",
+                                "most {}), the best first. A merge needs an evidence of {:.1f}, and every "
+                                "other alignment has to stay behind by as much. Evidence is the logarithm of "
+                                "a likelihood ratio: of loops and places, where only distinctive places that "
+                                "agree speak for it and changes against it, and of the relief of walls "
+                                "(share of patches on the same side: half for one wall). Things may come and "
+                                "go.",
                                 kHypothesesPerCheck, merge.check.needed),
               .groups = {},
               .header = {"alignment", "loops", "evidence", "of walls", "compared m", "places", "agree",

@@ -102,7 +102,7 @@ TimeUnit usual_unit(ScalarType type) { return is_float(type) ? TimeUnit::seconds
 
 /// The unit in which the sweep lasts as long as sweeps do; none where too few times are there, or none does.
 std::optional<TimeUnit> unit_of_times(const PackedCloud& packed) {
-  constexpr double kShortest = 0.002;  // seconds
+  constexpr double kShortest = 0.002;  // seconds; LiDARs take 0.05 to 0.2
   constexpr double kLongest = 2.0;
   constexpr std::size_t kEnough = 100;  // times
   const auto value = [&](const PackedField& field, std::size_t i) {

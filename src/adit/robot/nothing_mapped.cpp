@@ -50,7 +50,7 @@ View view_of(const PointCloud& cloud) {
 }  // namespace
 
 std::string why_nothing_mapped(const Recording& recording) {
-  constexpr double kNarrow = 130.0;     // degrees
+  constexpr double kNarrow = 130.0;     // degrees, wider than depth cameras see and narrower than LiDARs
   constexpr std::size_t kEnough = 500;  // points, to tell what sensor they are of
   const std::string all =
       format("{}: none of {} scans could be mapped", recording.name, recording.num_scans());
@@ -62,8 +62,7 @@ std::string why_nothing_mapped(const Recording& recording) {
   if (view.num_points >= kEnough && view.width_deg < kNarrow)
     return format(
         "{}, within a view of {:.0f} degrees, like a depth camera's; adit maps with LiDARs that see the "
-        "walls "
-        "around them",
+        "walls around them",
         seen, view.width_deg);
   return seen + "; too few points lie within the ranges that odometry uses, or on what was seen before";
 }
