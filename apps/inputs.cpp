@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "adit/io/bag_recording.hpp"
+#include "adit/io/bag_topics.hpp"
 #include "adit/io/recording_files.hpp"
 #include "adit/io/routes_yaml.hpp"
 #include "adit/io/world_files.hpp"

@@ -37,7 +37,7 @@ struct RecordingConfig {
   /// Topics of the robot begin with this and a slash, "/husky1", beside /tf_static. "": all are the robot's.
   std::string topics_under = {};
   bool namespaces =
-      false;  ///< A bag has a robot in every namespace that has clouds (namespaces_of, io/bag_recording.hpp).
+      false;  ///< A bag has a robot in every namespace that has clouds (namespaces_of, io/bag_topics.hpp).
 };
 
 [[nodiscard]] inline Fields fields_of(RecordingConfig& c) {

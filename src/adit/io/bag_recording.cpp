@@ -3,12 +3,11 @@
 #include "adit/io/bag_recording.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <memory>
 #include <optional>
 
 #include "adit/core/format.hpp"
+#include "adit/io/bag_topics.hpp"
 #include "adit/io/frame_tree.hpp"
 #include "adit/io/imu_topic.hpp"
 #include "adit/io/ros_messages.hpp"
@@ -18,152 +17,6 @@
 
 namespace adit {
 namespace {
-
-/// Indices into Bag::topics.
-using TopicIndices = std::vector<std::size_t>;
-
-struct Topics {
-  TopicIndices points;
-  TopicIndices wheel;
-  TopicIndices truth;
-  TopicIndices imu;
-  TopicIndices transforms;
-};
-
-/// Whether "gt", "truth" or "groundtruth" is a whole word of the topic: "/robot_0/ground_truth" is ground
-/// truth,
-/// "/length/odom" is not.
-bool is_truth(const std::string& topic) {
-  std::string words = lower_case(topic);
-  std::ranges::replace_if(
-      words, [](unsigned char c) { return std::isalnum(c) == 0; }, ' ');
-  return std::ranges::any_of(split_words(words), [](std::string_view word) {
-    return word == "gt" || word == "truth" || word == "groundtruth";
-  });
-}
-
-bool is_under(const std::string& topic, const std::string& name) {
-  return name.empty() || topic.starts_with(name + "/");
-}
-
-/// Those of the robot.
-Topics find_topics(const Bag& bag, const std::string& under) {
-  Topics topics;
-  for (std::size_t i = 0; i < bag.topics.size(); ++i) {
-    const auto& [name, type, encoding] = bag.topics[i];
-    if (encoding != "cdr" && encoding != "ros1") continue;
-    if (type == ros::kTransforms &&
-        (name == "/tf_static" || (name.ends_with("tf_static") && is_under(name, under))))
-      topics.transforms.push_back(i);
-    if (!is_under(name, under)) continue;
-    if (ros::is_cloud(type)) topics.points.push_back(i);
-    if (type == ros::kImu) topics.imu.push_back(i);
-    if (type == ros::kOdometry) (is_truth(name) ? topics.truth : topics.wheel).push_back(i);
-  }
-  return topics;
-}
-
-std::size_t num_messages(const Bag& bag, std::size_t topic) {
-  return static_cast<std::size_t>(std::ranges::count(bag.messages, topic, &BagMessage::topic));
-}
-
-std::string names_of(const Bag& bag, const TopicIndices& topics) {
-  std::vector<std::string> names;
-  for (const std::size_t topic : topics) names.push_back(bag.topics[topic].name);
-  return format("{}", fmt::join(names, ", "));
-}
-
-/// Below `topics_under`, names without a slash at the front count from there.
-std::string whole_name(const std::string& topic, const std::string& under) {
-  const bool is_relative = !topic.empty() && !under.empty() && !topic.starts_with('/');
-  return is_relative ? under + "/" + topic : topic;
-}
-
-/// How people choose one of several topics.
-struct TopicChoice {
-  std::string_view type;    ///< "clouds"
-  std::string_view option;  ///< "--points"
-  std::string topic;        ///< "": the only one.
-  std::string under;        ///< RecordingConfig::topics_under.
-};
-
-/// How likely a topic is the one that is meant: by its name, then by its messages.
-std::pair<int, std::size_t> likelihood(const Bag& bag, std::size_t topic) {
-  constexpr std::array kOfTheRobot = {"lidar",  "velodyne", "ouster", "livox", "hesai",   "rslidar",
-                                      "points", "wheel",    "base",   "robot", "odometry"};
-  constexpr std::array kDerived = {"camera", "depth",    "filtered", "map",
-                                   "ground", "obstacle", "visual",   "icp"};
-  const std::string name = lower_case(bag.topics[topic].name);
-  const auto in_name = [&](const char* word) { return name.find(word) != std::string::npos; };
-  const int words = static_cast<int>(std::ranges::any_of(kOfTheRobot, in_name)) -
-                    2 * static_cast<int>(std::ranges::any_of(kDerived, in_name));
-  return {words, num_messages(bag, topic)};
-}
-
-/// "--points /lidar/points (120 messages) or --points /camera/points (40 messages)", the likeliest first.
-std::string choices(const Bag& bag, TopicIndices topics, const TopicChoice& choice) {
-  std::ranges::stable_sort(topics, std::ranges::greater(),
-                           [&](std::size_t topic) { return likelihood(bag, topic); });
-  std::vector<std::string> texts;
-  for (const std::size_t topic : topics)
-    texts.push_back(format("{} {} ({} messages)", choice.option,
-                           bag.topics[topic].name.substr(choice.under.empty() ? 0 : choice.under.size() + 1),
-                           num_messages(bag, topic)));
-  return format("{}", fmt::join(texts, " or "));
-}
-
-/// Leaves the topic asked for, or the only one, if there is any.
-Result<> choose_one(const Bag& bag, TopicIndices& topics, const TopicChoice& choice) {
-  const std::string all = names_of(bag, topics);
-  if (!choice.topic.empty())
-    std::erase_if(topics, [&](std::size_t topic) {
-      return bag.topics[topic].name != whole_name(choice.topic, choice.under);
-    });
-  if (topics.empty() && !choice.topic.empty()) {
-    return fail(format("no topic of {} '{}'; there {}", choice.type, choice.topic,
-                       all.empty() ? "is none" : "are: " + all));
-  }
-  if (topics.size() < 2) return {};
-  return fail(format("several topics of {}; give one of them, the likeliest first: {}", choice.type,
-                     choices(bag, topics, choice)));
-}
-
-/// What people call ground truth is no wheel odometry, whatever its name says.
-void take_truth(const Bag& bag, Topics& topics, const RecordingConfig& config) {
-  if (config.truth == kNoTruth) return topics.truth.clear();
-  const std::string chosen = whole_name(config.truth, config.topics_under);
-  const auto is_chosen = [&](std::size_t topic) { return bag.topics[topic].name == chosen; };
-  std::ranges::copy_if(topics.wheel, std::back_inserter(topics.truth), is_chosen);
-  std::erase_if(topics.wheel, is_chosen);
-}
-
-/// Leaves one topic of clouds and at most one of each other kind.
-Result<Topics> choose_topics(const Bag& bag, const RecordingConfig& config) {
-  Topics topics = find_topics(bag, config.topics_under);
-  if (topics.points.empty())
-    return fail(format(
-        "no topic of sensor_msgs/msg/PointCloud2 or of Livox's CustomMsg{}; there are no scans to read",
-        config.topics_under.empty() ? "" : " under " + config.topics_under));
-  if (config.imu == kNoImu) topics.imu.clear();
-  take_truth(bag, topics, config);
-  const std::string imu = config.imu == kNoImu ? "" : config.imu;
-  const bool has_wheels = config.wheel != kNoWheel;
-  return choose_one(bag, topics.points, {"clouds", "--points", config.points, config.topics_under})
-      .and_then([&] {
-        return choose_one(bag, topics.imu, {"IMUs", "--imu", imu, config.topics_under});
-      })
-      .and_then([&]() -> Result<> {
-        if (!has_wheels) return {};
-        return choose_one(bag, topics.wheel,
-                          {"wheel odometry", "--wheel", config.wheel, config.topics_under});
-      })
-      .and_then([&] {
-        return choose_one(
-            bag, topics.truth,
-            {"ground truth", "--truth", config.truth == kNoTruth ? "" : config.truth, config.topics_under});
-      })
-      .map([&] { return std::move(topics); });
-}
 
 std::vector<BagMessage> messages_of(const Bag& bag, const TopicIndices& topics) {
   std::vector<BagMessage> messages;
@@ -218,7 +71,7 @@ Result<std::vector<Stamp>> read_stamps(const Bag& bag, const std::vector<BagMess
   return stamps;
 }
 
-Result<FrameTree> read_frames(const Bag& bag, const Topics& topics) {
+Result<FrameTree> read_frames(const Bag& bag, const BagTopics& topics) {
   FrameTree tree;
   for (const BagMessage& message : messages_of(bag, topics.transforms)) {
     const auto transforms = decoded(bag, message, ros::decode_transforms);
@@ -375,14 +228,14 @@ struct Tracks {
 };
 
 /// Without wheels (`kNoWheel`) only the frame that they are of.
-Result<PoseTrack> read_wheels(const Bag& bag, const Topics& topics, const RecordingConfig& config) {
+Result<PoseTrack> read_wheels(const Bag& bag, const BagTopics& topics, const RecordingConfig& config) {
   if (config.wheel != kNoWheel) return read_poses(bag, topics.wheel);
   return body_frame(bag, topics.wheel).map([](std::string&& child) {
     return PoseTrack{{}, std::move(child), {}};
   });
 }
 
-Result<Tracks> read_tracks(const Bag& bag, const Topics& topics, const RecordingConfig& config) {
+Result<Tracks> read_tracks(const Bag& bag, const BagTopics& topics, const RecordingConfig& config) {
   Result<PoseTrack> wheel = read_wheels(bag, topics, config);
   if (!wheel) return tl::unexpected(wheel.error());
   Result<PoseTrack> truth = read_poses(bag, topics.truth);
@@ -396,7 +249,7 @@ Result<Tracks> read_tracks(const Bag& bag, const Topics& topics, const Recording
 
 Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, RecordingConfig config) {
   while (config.topics_under.ends_with('/')) config.topics_under.pop_back();
-  const Result<Topics> topics = choose_topics(*bag, config);
+  const Result<BagTopics> topics = choose_topics(*bag, config);
   if (!topics) return tl::unexpected(topics.error());
   const Result<std::optional<TimeUnit>> time_unit = time_unit_of(*bag, config);
   if (!time_unit) return tl::unexpected(time_unit.error());
@@ -428,36 +281,6 @@ Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, RecordingC
 }
 
 }  // namespace
-
-std::vector<std::string> namespaces_of(const Bag& bag) {
-  std::vector<std::vector<std::string>> topics;  // of clouds, in their parts
-  for (const std::size_t topic : find_topics(bag, "").points) {
-    if (!bag.topics[topic].name.starts_with('/')) continue;
-    std::vector<std::string> parts;
-    std::string words = bag.topics[topic].name;
-    std::ranges::replace(words, '/', ' ');
-    for (const std::string_view part : split_words(words)) parts.emplace_back(part);
-    topics.push_back(std::move(parts));
-  }
-  if (topics.empty()) return {};
-  // What all begin with names no robot.
-  std::size_t shared = 0;
-  const auto all_share = [&] {
-    return std::ranges::all_of(topics, [&](const std::vector<std::string>& parts) {
-      return shared + 1 < parts.size() && parts[shared] == topics.front()[shared];
-    });
-  };
-  while (topics.size() > 1 && all_share()) ++shared;
-  std::vector<std::string> names;
-  for (const std::vector<std::string>& parts : topics) {
-    if (parts.size() < shared + 2) continue;  // no namespace, only a topic
-    std::string name;
-    for (std::size_t i = 0; i <= shared; ++i) name += "/" + parts[i];
-    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-  }
-  std::ranges::sort(names);
-  return names;
-}
 
 Result<Recording> read_recording(Bag bag, const RecordingConfig& config) {
   return recording_in(std::make_shared<const Bag>(std::move(bag)), config);

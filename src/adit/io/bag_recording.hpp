@@ -17,8 +17,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "adit/core/records.hpp"
 #include "adit/core/result.hpp"
@@ -27,10 +25,6 @@
 #include "adit/io/mount.hpp"
 
 namespace adit {
-
-/// The namespaces that have clouds, "/husky1", in alphabetical order: the first part of the topics' names in
-/// which they differ, with what is before it. None where a bag has no clouds, or they have no namespace.
-[[nodiscard]] std::vector<std::string> namespaces_of(const Bag& bag);
 
 /// Opens a recording. Trajectories are read at once, scans when asked for, from any thread. A file that was
 /// not finished is read as far as it goes, which `warnings` says.

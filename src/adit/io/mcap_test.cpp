@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 #include "adit/io/bag_recording.hpp"
+#include "adit/io/bag_topics.hpp"
 
 #include <gtest/gtest.h>
 

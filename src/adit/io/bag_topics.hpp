@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Which topics of a bag are a robot's clouds, wheels, ground truth, IMU and mounts.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "adit/core/recording_config.hpp"
+#include "adit/core/result.hpp"
+#include "adit/io/bag.hpp"
+
+namespace adit {
+
+/// Indices into Bag::topics.
+using TopicIndices = std::vector<std::size_t>;
+
+struct BagTopics {
+  TopicIndices points;
+  TopicIndices wheel;
+  TopicIndices truth;
+  TopicIndices imu;
+  TopicIndices transforms;
+};
+
+/// Their names, apart by commas.
+[[nodiscard]] std::string names_of(const Bag& bag, const TopicIndices& topics);
+
+/// One topic of clouds, and at most one of each other kind but transforms, as bag_recording.hpp says. Fails
+/// where several fit, with the options to type, the likeliest first, and where there are no clouds or not the
+/// topic asked for.
+[[nodiscard]] Result<BagTopics> choose_topics(const Bag& bag, const RecordingConfig& config);
+
+/// The namespaces that have clouds, "/husky1", in alphabetical order: the first part of the topics' names in
+/// which they differ, with what is before it. None where a bag has no clouds, or they have no namespace.
+[[nodiscard]] std::vector<std::string> namespaces_of(const Bag& bag);
+
+}  // namespace adit
