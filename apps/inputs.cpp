@@ -47,12 +47,13 @@ Result<std::vector<Recording>> open_robots(const std::string& path, RecordingCon
   if (robots.empty())
     return fail(path + ": no topic of clouds lies in a namespace (/ROBOT/points); leave --namespaces out");
   std::vector<Recording> recordings;
+  const std::string of_bag = path + ": ";
   for (const std::string& robot : robots) {
     config.topics_under = robot;
     Result<Recording> recording = open_recording(path, config);
     if (!recording) return fail(robot, recording.error());
     if (!recordings.empty()) recording->warnings.clear();  // of the file: said of the first
-    print_remarks(path + ": " + robot, *recording);
+    print_remarks(of_bag + robot, *recording);
     recordings.push_back(std::move(*recording));
   }
   return recordings;
