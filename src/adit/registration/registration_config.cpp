@@ -85,9 +85,11 @@ Fields fields_of(ReliefModel& c) {
       {"moulded", &c.moulded, "", 0.0, 1.0, "and where other walls of the own map were found to differ"},
       {"prior_stretches", &c.prior_stretches, "", 0.0, 1000.0,
        "number of look-alikes that the prior counts as"},
-      {"min_patches", &c.min_patches, "", 1, 1000000, "patches needed before a share counts as evidence"},
-      {"min_patches_to_refute", &c.min_patches_to_refute, "", 1, 1000000,
-       "patches needed before a share refutes a merge by itself; among fewer, a few bad fits would decide"}};
+      {"changed", &c.changed, "", 1e-6, 1.0,
+       "share of the stretches of one tunnel whose walls seem to be others: lined anew, or seen by sensors "
+       "that "
+       "err in another way than is estimated"},
+      {"min_patches", &c.min_patches, "", 1, 1000000, "patches needed before a share counts as evidence"}};
 }
 
 Fields fields_of(RegistrationConfig& c) {

@@ -30,8 +30,8 @@ struct ReliefModel {
   double prior_stretches = 4.0;
   double prior_moulded = 0.02;
   double moulded = 0.002;
+  double changed = 0.01;
   int min_patches = 100;
-  int min_patches_to_refute = 200;
 };
 [[nodiscard]] Fields fields_of(ReliefModel& model);
 

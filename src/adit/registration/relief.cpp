@@ -13,12 +13,6 @@ namespace {
 
 constexpr double kChance = 0.5;  ///< Share of equal signs that noise gives.
 
-/// The probability of this share or a larger one.
-double chance_of_at_least(const EqualSignShare& found, const SameWalls& walls) {
-  return 0.5 *
-         std::erfc((found.share - walls.mean) / std::hypot(walls.sigma, found.sigma) / std::numbers::sqrt2);
-}
-
 double normal_density(double off, double sigma) {
   return std::exp(-0.5 * off * off / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
 }
@@ -245,12 +239,6 @@ EqualSignShare WallOffsets::count() const {
   return out;
 }
 
-bool WallOffsets::are_of_other_walls(const EqualSignShares& shares, double rate) const {
-  const EqualSignShare found = counted();
-  const auto needed = static_cast<std::size_t>(shares.model().min_patches_to_refute);
-  return found.num_patches >= needed && chance_of_at_least(found, shares.same()) < rate;
-}
-
 double WallOffsets::evidence(const EqualSignShares& shares, double times) const {
   EqualSignShare found = counted();
   found.num_patches = static_cast<std::size_t>(times * static_cast<double>(found.num_patches));
@@ -263,11 +251,12 @@ double WallOffsets::evidence(const EqualSignShares& shares, double times) const 
   // may be missing between two maps.
   SameWalls same = shares.same();
   same.mean = std::clamp(found.share, std::min(shares.model().same_share, same.mean), same.mean);
-  const double of_same = density(found, same);
+  const double of_same = std::max(density(found, same), kLeast);
+  const double of_other = std::max(density(found, other.value_or(shares.believed(found.noise_m))), kLeast);
+  const double changed = shares.model().changed;
   const double moulded = shares.chance_of_one_mould();
-  const double of_other =
-      moulded * of_same + (1.0 - moulded) * density(found, other.value_or(shares.believed(found.noise_m)));
-  return std::log(std::max(of_same, kLeast)) - std::log(std::max(of_other, kLeast));
+  return std::log((1.0 - changed) * of_same + changed * of_other) -
+         std::log(moulded * of_same + (1.0 - moulded) * of_other);
 }
 
 void EqualSignShares::set_same(const EqualSignShare& share) { same_ = share; }
@@ -278,7 +267,7 @@ void EqualSignShares::add_other(const EqualSignShare& share) {
 
 SameWalls EqualSignShares::same() const {
   SameWalls walls{model_.same_share, model_.same_sigma};
-  if (same_.num_patches >= static_cast<std::size_t>(model_.min_patches_to_refute))
+  if (same_.num_patches >= static_cast<std::size_t>(model_.min_patches))
     walls.mean = std::max(walls.mean, same_.share);
   return walls;
 }

@@ -112,11 +112,11 @@ class WallOffsets {
   /// Over the patches that two pairs or more saw. Of two visits it is the share of most stretches, their
   /// median over sides of 10 m of tunnel: a few whose walls were moved do not change it.
   [[nodiscard]] EqualSignShare counted() const;
-  /// True if P(share >= observed, same wall) < `rate`; needs `min_patches_to_refute` patches.
-  [[nodiscard]] bool are_of_other_walls(const EqualSignShares& shares, double rate) const;
-  /// Log likelihood ratio, same walls to different ones; 0 if fewer than `min_patches` patches were seen.
-  /// At most log(1 / chance_of_one_mould). Where the share of other walls was not measured, the one believed
-  /// before counts. `times`: as if so many times the patches had been seen, with the same share.
+  /// Log likelihood ratio, one tunnel to another; 0 if fewer than `min_patches` patches were seen. Walls of
+  /// one tunnel may seem to be others, at the rate `changed`, and those of another may be cast in one mould:
+  /// between log(changed) and log(1 / chance_of_one_mould), nearly. Where the share of other walls was not
+  /// measured, the one believed before counts. `times`: as if so many times the patches had been seen, with
+  /// the same share.
   [[nodiscard]] double evidence(const EqualSignShares& shares, double times = 1.0) const;
   /// The share of the sum of squared offsets, without what the fits explain, that the sensors explain; 0
   /// without offsets.

@@ -85,7 +85,7 @@ TEST(Relief, OffsetsOfTheSameWallsHaveRandomSigns) {
     const WallOffsets offsets = driven(tunnel, tunnel);
     ASSERT_GT(offsets.counted().num_patches, 200U);
     EXPECT_NEAR(offsets.counted().share, 0.5, 0.06);
-    EXPECT_FALSE(offsets.are_of_other_walls({}, 0.01));
+    EXPECT_GT(offsets.evidence({}), 0.0);
   }
 }
 
@@ -94,7 +94,7 @@ TEST(Relief, OffsetsOfOtherWallsHaveEqualSignsInAllScansThoughNoiseIsLarger) {
   for (const std::uint64_t tunnel : {1U, 2U, 3U}) {
     const WallOffsets offsets = driven(tunnel, tunnel + 10, 24);
     EXPECT_GT(offsets.counted().share, 0.6);
-    EXPECT_TRUE(offsets.are_of_other_walls({}, 0.01));
+    EXPECT_LT(offsets.evidence({}), 0.0);
   }
 }
 
@@ -102,10 +102,10 @@ TEST(Relief, ASensorWhoseRangesAreTooLongIsNoOtherWall) {
   for (const double bias : {-0.03, -0.005, 0.01, 0.03, 0.06}) {
     const WallOffsets same = driven(1, 1, 12, 1.0, bias);
     EXPECT_NEAR(same.counted().share, 0.5, 0.06) << bias;
-    EXPECT_FALSE(same.are_of_other_walls({}, 0.01)) << bias;
+    EXPECT_GT(same.evidence({}), 0.0) << bias;
     const WallOffsets other = driven(1, 11, 12, 1.0, bias);
     EXPECT_GT(other.counted().share, 0.6) << bias;
-    EXPECT_TRUE(other.are_of_other_walls({}, 0.01)) << bias;
+    EXPECT_LT(other.evidence({}), 0.0) << bias;
   }
 }
 
@@ -134,7 +134,6 @@ TEST(Relief, SpeaksForOneTunnelAndAgainstTheOther) {
 TEST(Relief, OnePairOfScansSaysNothing) {
   const WallOffsets offsets = driven(1, 11, 1);
   EXPECT_EQ(offsets.counted().num_patches, 0U);
-  EXPECT_FALSE(offsets.are_of_other_walls({}, 0.5));
   EXPECT_EQ(offsets.evidence(where_others_agree(0.65)), 0.0);
 }
 
@@ -225,9 +224,9 @@ TEST(WallOffsets, SmallOffsetsHaveNoSign) {
 }
 
 TEST(WallOffsets, TheShareOfOneWallAndTheNumberOfPatchesAreSettings) {
-  EXPECT_TRUE(of_a_thousand(600).are_of_other_walls({}, 0.01));
-  EXPECT_FALSE(of_a_thousand(600).are_of_other_walls(EqualSignShares({.same_share = 0.6}), 0.01));
-  EXPECT_FALSE(of_a_thousand(600).are_of_other_walls(EqualSignShares({.min_patches_to_refute = 1001}), 0.01));
+  EXPECT_LT(of_a_thousand(600).evidence({}), 0.0);
+  EXPECT_GT(of_a_thousand(600).evidence(EqualSignShares({.same_share = 0.6})), 0.0);
+  EXPECT_EQ(of_a_thousand(600).evidence(EqualSignShares({.min_patches = 1001})), 0.0);
 }
 
 TEST(WallOffsets, TheShareIsAsUncertainAsTheTossOfACoin) {
@@ -246,18 +245,22 @@ TEST(WallOffsets, TheShareIsAsUncertainAsTheTossOfACoin) {
   EXPECT_GT(squares, 0.4) << "stated a little too large: several pairs that saw one patch are no coins";
 }
 
-TEST(WallOffsets, AreOfOtherWallsWhenMoreSignsAreEqualThanOnTheSame) {
-  EXPECT_FALSE(of_a_thousand(560).are_of_other_walls({}, 0.01));
-  EXPECT_TRUE(of_a_thousand(600).are_of_other_walls({}, 0.01));
+TEST(WallOffsets, SpeakForOtherWallsWhenMoreSignsAreEqualThanOnTheSame) {
+  EXPECT_GT(of_a_thousand(540).evidence({}), 0.0);
+  EXPECT_LT(of_a_thousand(600).evidence({}), 0.0);
   EqualSignShares cluttered;  // at edges signs are equal even of one place
   cluttered.set_same(found(0.6));
-  EXPECT_FALSE(of_a_thousand(600).are_of_other_walls(cluttered, 0.01));
-  EXPECT_TRUE(of_a_thousand(680).are_of_other_walls(cluttered, 0.01));
+  EXPECT_GT(of_a_thousand(600).evidence(cluttered), 0.0);
+  EXPECT_LT(of_a_thousand(680).evidence(cluttered), 0.0);
 }
 
-TEST(WallOffsets, WhereAllAgreeTheEvidenceIsFinite) {
-  EXPECT_LT(of_a_thousand(1000).evidence(where_others_agree(0.65)), -100.0);
-  EXPECT_TRUE(std::isfinite(of_a_thousand(1000).evidence(where_others_agree(0.65))));
+TEST(WallOffsets, WallsMayHaveChangedHoweverMuchTheyDiffer) {
+  const double floor = std::log(ReliefModel().changed);
+  for (const EqualSignShares& shares : {EqualSignShares(), where_others_agree(0.65)}) {
+    EXPECT_NEAR(of_a_thousand(1000).evidence(shares), floor, 0.1);
+    EXPECT_GE(of_a_thousand(700).evidence(shares), floor);
+    EXPECT_LE(of_a_thousand(700).evidence(shares), of_a_thousand(580).evidence(shares));
+  }
 }
 
 TEST(WallOffsets, AShareBelowHalfCountsAsChance) {

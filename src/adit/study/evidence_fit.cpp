@@ -105,7 +105,7 @@ class Fit {
   }
 
   void fit_same_walls() {
-    const Counts seen = with_walls(right_, model_.walls.min_patches_to_refute);
+    const Counts seen = with_walls(right_, model_.walls.min_patches);
     std::vector<double> shares;
     std::vector<double> counting;  // variances
     for (const HypothesisCounts& counts : seen) {
@@ -113,6 +113,7 @@ class Fit {
       counting.push_back(std::pow(counts.equal_signs_sigma, 2));
     }
     add_spread("walls.same_share", "walls.same_sigma", shares, counting, seen, [](double m) { return m; });
+    add("walls.changed", 1.0 - share_of_the_same_walls(seen), seen);
   }
   void fit_other_walls() {
     const Counts seen = with_walls(wrong_, model_.walls.min_patches);
@@ -125,10 +126,13 @@ class Fit {
     }
     add_spread("walls.prior_other_share", "walls.prior_sigma", logs, counting, seen,
                [](double m) { return 0.5 + std::exp(m); });
+    add("walls.prior_moulded", share_of_the_same_walls(seen), seen);
+  }
+  [[nodiscard]] double share_of_the_same_walls(const Counts& seen) const {
     EqualSignShares shares(model_.walls);
     for (const HypothesisCounts& counts : seen)
       shares.add_other({counts.num_wall_patches, counts.equal_signs, counts.equal_signs_sigma});
-    add("walls.prior_moulded", shares.chance_of_one_mould(), seen);
+    return shares.chance_of_one_mould();
   }
   /// Median, and standard deviation beyond the error of counting, by the median of deviations: some walls
   /// were lined anew.

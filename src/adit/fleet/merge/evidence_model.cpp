@@ -37,7 +37,6 @@ constexpr std::array kOrigins = {
     Origin{"fleet.copy_goes_on", kJudgement, "2026-11-25"},
     Origin{"error_rate", kOfForty, "2026-11-25"},
     Origin{"refusal_rate", kChosen, "2026-11-21"},
-    Origin{"refusal_rate_before_the_end", "chosen: asked after each of some 100 comparisons", "2026-11-21"},
     Origin{"usual_share", kOfScans, "2026-11-21"},
     Origin{"allowance", kOfScans, "2026-11-21"},
     Origin{"least_difference_m2", kOfScans, "2026-11-21"},
@@ -59,8 +58,8 @@ constexpr std::array kOrigins = {
     Origin{"walls.prior_stretches", kOfWalls, "2026-11-22"},
     Origin{"walls.prior_moulded", kJudgement, "2026-11-25"},
     Origin{"walls.moulded", kJudgement, "2026-11-25"},
+    Origin{"walls.changed", "3 of some 380 true pairs of 120 worlds (decision 0054)", "2026-11-26"},
     Origin{"walls.min_patches", kOfWalls, "2026-11-22"},
-    Origin{"walls.min_patches_to_refute", kOfWalls, "2026-11-22"},
 };
 
 Fields fields_of(FleetEvidence& c) {
@@ -89,9 +88,7 @@ Fields fields_of(EvidenceModel& c) {
       {"error_rate", &c.error_rate, "", 1e-12, 0.5,
        "largest chance that a wrong merge passes, by this model; the measured rate is lower (decision 0048)"},
       {"refusal_rate", &c.refusal_rate, "", 1e-12, 0.5,
-       "chance that a true merge is refused because scans or walls differ"},
-      {"refusal_rate_before_the_end", &c.refusal_rate_before_the_end, "", 1e-12, 0.5,
-       "the same for walls, asked after every comparison before the last"},
+       "chance that a true merge is refused because scans differ"},
       {"usual_share", &c.usual_share, "", 0.0, 1.0,
        "share of pairs of scans of one place that differ less than usual"},
       {"allowance", &c.allowance, "", 1.0, 100.0, "scans differ beyond this times the usual difference"},

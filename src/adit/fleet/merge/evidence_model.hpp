@@ -27,7 +27,6 @@ inline constexpr FleetEvidence kFleetEvidence;
 struct EvidenceModel {
   double error_rate = 5e-3;
   double refusal_rate = 0.01;
-  double refusal_rate_before_the_end = 1e-4;
 
   double usual_share = 0.9;
   double allowance = 1.5;

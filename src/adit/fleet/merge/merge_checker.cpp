@@ -35,30 +35,21 @@ MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first) c
   if (best_first.empty()) return MergeDecision::no_loops;
   const Hypothesis& best = hypotheses_[best_first.front()];
 
-  // Against copies. Scans of one place seldom differ, and one wall stands apart from itself to either side.
-  if (has_other_walls(best)) return MergeDecision::other_walls;
+  // Against copies. Scans of one place seldom differ.
   if (differs_too_often(best)) return MergeDecision::scans_differ;
 
   // Against chance. Only places where a displacement along the tunnel would show are evidence, by how seldom
   // look-alikes of the own map agree for as long (Wald's test).
-  if (evidence(best) < needed())
+  if (evidence(best) < needed()) {
+    if (evidence(best) - evidence_of_walls(best) >= needed()) return MergeDecision::other_walls;
     return best.num_distinctive() == 0 ? MergeDecision::nothing_distinctive
                                        : MergeDecision::too_little_evidence;
+  }
   if (std::ssize(best.loops) < config_.min_loops) return MergeDecision::too_few_loops;
 
   // Against every other hypothesis, the next best one first.
   if (best_first.size() > 1 && are_rivals(best, hypotheses_[best_first[1]])) return MergeDecision::rival;
   return best.is_finished() ? MergeDecision::accepted : MergeDecision::unfinished;
-}
-
-bool MergeChecker::has_other_walls(const Hypothesis& h) const {
-  // Asked again after every comparison: before the end only what leaves little doubt counts.
-  const EvidenceModel& model = config_.evidence;
-  const double rate = h.is_finished() ? model.refusal_rate : model.refusal_rate_before_the_end;
-  // What was measured only raises the share that one wall may have: without it the answer is often known
-  // already.
-  return config_.relief && h.offsets.are_of_other_walls(EqualSignShares(model.walls), rate) &&
-         h.offsets.are_of_other_walls(own_.measured().walls, rate);
 }
 
 bool MergeChecker::differs_too_often(const Hypothesis& h) const {
@@ -77,12 +68,8 @@ double MergeChecker::compared_km(const Hypothesis& h) const {
   return std::min(by_places, whole) / 1000.0;
 }
 
-bool MergeChecker::is_refuted(const Hypothesis& h) const {
-  return differs_too_often(h) || has_other_walls(h);
-}
-
 bool MergeChecker::are_rivals(const Hypothesis& best, const Hypothesis& other) const {
-  return !is_refuted(other) && evidence(best) - evidence(other) < needed();
+  return !differs_too_often(other) && evidence(best) - evidence(other) < needed();
 }
 
 double MergeChecker::needed() const { return std::log(1.0 / config_.evidence.error_rate); }
@@ -129,7 +116,8 @@ double MergeChecker::evidence_of_things(const Hypothesis& h) const {
 std::optional<std::size_t> MergeChecker::to_go_on_with() const {
   double best_finished = -std::numeric_limits<double>::infinity();
   for (const Hypothesis& h : hypotheses_)
-    if (h.is_finished() && !is_refuted(h)) best_finished = std::max(best_finished, evidence_of_scans(h));
+    if (h.is_finished() && !differs_too_often(h))
+      best_finished = std::max(best_finished, evidence_of_scans(h));
   const auto can_no_longer_be_a_rival = [&](const Hypothesis& h) {
     return std::isfinite(best_finished) && most_evidence_of_scans(h) < best_finished - needed();
   };
@@ -140,7 +128,7 @@ std::optional<std::size_t> MergeChecker::to_go_on_with() const {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
     const Hypothesis& h = hypotheses_[i];
-    if (h.is_finished() || is_refuted(h)) continue;
+    if (h.is_finished() || differs_too_often(h)) continue;
     if (h.compared.empty()) return i;
     if (can_no_longer_be_a_rival(h)) continue;
     if (!found || share_differing(h) < share_differing(hypotheses_[*found])) found = i;
@@ -212,7 +200,7 @@ std::vector<std::size_t> MergeChecker::best_first() const {
   std::ranges::stable_sort(order, [&](std::size_t one, std::size_t other) {
     const Hypothesis& a = hypotheses_[one];
     const Hypothesis& b = hypotheses_[other];
-    if (is_refuted(a) || is_refuted(b)) return is_refuted(a) < is_refuted(b);
+    if (differs_too_often(a) || differs_too_often(b)) return differs_too_often(a) < differs_too_often(b);
     return evidence(a) > evidence(b);
   });
   return order;
@@ -238,7 +226,7 @@ MergeHypothesis MergeChecker::described(std::size_t which, std::size_t best) con
   out.counts = counts(h);
   for (const std::size_t l : h.loops)
     out.loops.emplace_back(static_cast<std::uint32_t>(loops_[l].a), static_cast<std::uint32_t>(loops_[l].b));
-  if (is_refuted(h)) return out;
+  if (differs_too_often(h)) return out;
   out.evidence = evidence(h);
   out.places = h.places(config_.distinctive_only);
   out.walls = evidence_of_walls(h);

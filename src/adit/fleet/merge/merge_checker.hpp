@@ -12,7 +12,7 @@
 /// 1945): log likelihood ratios add up over the distinctive places and have to reach log(1 / error_rate),
 /// together with those of the relief of walls (WallOffsets) and the prior, the share of all loops that
 /// speak for this alignment. It is one-sided against copies: scans that differ may not be more than true
-/// places would leave, nor walls stand apart more often than one wall does from itself. And every other
+/// places would leave. And every other
 /// hypothesis has to stay behind by as much. `MergeChecker::decide` reads in that order; docs/decisions/0010
 /// tells why.
 #pragma once
@@ -39,9 +39,9 @@ struct OwnMeasurements {
 /// Why maps are joined or not.
 enum class MergeDecision : std::uint8_t {
   no_loops,
-  other_walls,          ///< The relief of the walls is another one.
   scans_differ,         ///< At more places than a true alignment leaves.
   nothing_distinctive,  ///< All places that agree would agree if displaced along the tunnel, too.
+  other_walls,          ///< The evidence would do if the relief of the walls did not speak against it.
   too_little_evidence,
   too_few_loops,
   rival,       ///< Another hypothesis has nearly as much evidence.
@@ -68,10 +68,8 @@ class MergeChecker {
 
  private:
   [[nodiscard]] MergeDecision decide(const std::vector<std::size_t>& best_first) const;
-  [[nodiscard]] bool has_other_walls(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool differs_too_often(const Hypothesis& hypothesis) const;
   [[nodiscard]] double compared_km(const Hypothesis& hypothesis) const;
-  [[nodiscard]] bool is_refuted(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool are_rivals(const Hypothesis& best, const Hypothesis& other) const;
 
   [[nodiscard]] double needed() const;
