@@ -114,6 +114,8 @@ void add_world(Program& program);
 void add_simulate(Program& program);
 void add_odometry(Program& program);
 void add_slam(Program& program);
+void add_merge(Program& program);
+void add_localize(Program& program);
 void add_study(Program& program);
 void add_merge_study(Program& program);
 void add_merge_calibration(Program& program);

@@ -11,6 +11,8 @@ int main(int argc, char** argv) {
   add_loop_study(program);
   add_uncertainty_study(program);
   add_slam(program);
+  add_merge(program);
+  add_localize(program);
   add_world(program);
   add_simulate(program);
   add_odometry(program);

@@ -81,6 +81,15 @@ Agent::Agent(std::shared_ptr<const RobotMap> map, const AgentConfig& config)
       search_(std::make_shared<CandidateSearch>(map_, chain_by(map_->id), config.place,
                                                 config.adaptive.search)) {}
 
+bool Agent::restore(const std::vector<MessageBody>& findings, const std::map<RobotId, std::uint32_t>& met) {
+  bool all_make_sense = true;
+  for (const MessageBody& finding : findings) all_make_sense &= ledger_.restore(finding);
+  for (const auto& [peer, num_places] : met)
+    if (searches(peer)) sessions_[peer].restore_searched(num_places);
+  looked_for_revisits_ = true;
+  return all_make_sense;
+}
+
 std::vector<Message> Agent::meet(RobotId peer) const { return addressed(peer, {hello()}); }
 
 std::vector<Message> Agent::on(const Message& message) {

@@ -69,6 +69,13 @@ class Agent {
   /// Looks for places of its own map to which the robot came back, and checks what it finds as it does with
   /// peers. Under MergePolicy::adaptive, once; call it before the first meeting.
   void find_revisits();
+  /// Takes up where it was when it was saved: `findings` of then, and how many searchable keyframes each
+  /// robot had that it had met. It does not look for loops in its own map or with them again. Before the
+  /// first meeting. False where a finding makes no sense and is left out.
+  bool restore(const std::vector<MessageBody>& findings, const std::map<RobotId, std::uint32_t>& met);
+  /// What a person decided about two robots replaces the verdict, for all that this agent solves from then
+  /// on.
+  void overrule(MergeCheck check) { ledger_.overrule(std::move(check)); }
   /// What to say when `peer` comes into range.
   [[nodiscard]] std::vector<Message> meet(RobotId peer) const;
   /// What to answer, to the sender. Messages for another robot are a ContractViolation.
@@ -76,6 +83,8 @@ class Agent {
 
   /// Its `loops` are all candidates that this agent or others registered, accepted or not.
   [[nodiscard]] const FleetGraph& known() const { return ledger_.known(); }
+  /// All loops and merge checks, by whoever found them, as messages.
+  [[nodiscard]] std::vector<MessageBody> findings() const { return ledger_.findings(); }
   [[nodiscard]] FleetSolution solve(const BackEndConfig& config) const {
     return adit::solve(known(), config);
   }

@@ -14,6 +14,7 @@
 #include "adit/io/mcap_reader.hpp"
 #include "adit/io/mesh_files.hpp"
 #include "adit/io/mount.hpp"
+#include "adit/io/robot_map_file.hpp"
 #include "adit/io/routes_yaml.hpp"
 #include "adit/io/session_dir.hpp"
 #include "adit/io/text.hpp"
@@ -101,6 +102,21 @@ Result<Json> jrl_info(const fs::path& path) {
                       {"notes", file.notes}};
         },
         file.content);
+  });
+}
+
+Result<Json> robot_map_info(const fs::path& path) {
+  return read_robot_map(path).map([](const RobotMap& map) {
+    std::size_t num_points = 0;
+    for (const Keyframe& keyframe : map.keyframes) num_points += keyframe.cloud->size();
+    Json info{{"kind", "robot map"},
+              {"name", map.name},
+              {"keyframes", map.keyframes.size()},
+              {"searchable", std::ranges::count(map.searchable, true)},
+              {"points", num_points},
+              {"slips", map.slips.size()}};
+    if (!map.odometry.empty()) info["odometry"] = trajectory_json(map.odometry);
+    return info;
   });
 }
 
@@ -246,15 +262,15 @@ Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
     return mesh_info(path);
   if (extension == ".tum" || extension == ".txt") return trajectory_info(path);
   if (extension == ".g2o") return graph_info(path);
+  if (extension == ".adit") return robot_map_info(path);
   if (extension == ".jrl" || extension == ".cbor") return jrl_info(path);
   if (extension == ".yaml" || extension == ".yml") return routes_info(path);
   if (fs::is_regular_file(path)) {
     return fail(
         path.string() +
         ": not a kind of file that adit knows; it knows bags (.mcap .db3 .bag), clouds and meshes (.pcd .ply "
-        ".bin .obj "
-        ".stl "
-        ".dae .glb), .tum, .g2o, .jrl, routes (.yaml) and folders of scans, of a bag or of a session");
+        ".bin .obj .stl .dae .glb), .tum, .g2o, .jrl, maps of robots (.adit), routes (.yaml) and folders of "
+        "scans, of a bag or of a session");
   }
   return open_recording(path.string(), config).map(recording_json);
 }

@@ -16,7 +16,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers stand in the file as they do in memory");
 
-/// Its last digit counts the layouts that there have been.
+/// Its last digit counts the layouts that there have been. A change of RobotMap raises it, and what layout 7
+/// and later ones lack is then filled in: sessions keep such files.
 constexpr std::string_view kMagic = "adit map 7\n";
 
 /// Appends what `transfer` names.
@@ -206,7 +207,8 @@ std::string robot_map_bytes(const RobotMap& map) {
 }
 
 Result<RobotMap> parse_robot_map(std::string_view bytes) {
-  if (!bytes.starts_with(kMagic)) return fail("not a robot's map, or one of another version of adit");
+  if (!bytes.starts_with(kMagic))
+    return fail("not a robot's map, or one of a later version of adit, or of one before layout 7");
   bytes.remove_prefix(kMagic.size());
   std::uint64_t size = 0;
   std::uint32_t sum = 0;

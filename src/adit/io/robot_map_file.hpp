@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 /// A robot's own map in one file, bit for bit, so that work on what comes after the odometry need not drive
-/// again. A cache of this version of adit on this machine, not a format to exchange: it changes whenever
-/// RobotMap does, and older files are then refused.
+/// again. Sessions keep one per robot. The layout has a number, which its first line ends with, and a
+/// checksum; adit reads layout 7 and every later one (tests/conformance).
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@
 namespace adit {
 
 [[nodiscard]] std::string robot_map_bytes(const RobotMap& map);
-/// Fails on bytes of another version, that end early or are damaged.
+/// Fails on bytes of a layout that it does not know, that end early or are damaged.
 [[nodiscard]] Result<RobotMap> parse_robot_map(std::string_view bytes);
 
 /// The file appears whole or not at all.

@@ -81,7 +81,7 @@ TEST(RobotMapFile, DamageAndOtherVersionsAreRefused) {
   }
   std::string other = bytes;
   other[9] = '0';
-  EXPECT_ERROR(parse_robot_map(other), "another version");
+  EXPECT_ERROR(parse_robot_map(other), "before layout 7");
   EXPECT_ERROR(read_robot_map("/nonexistent.map"), "nonexistent");
 }
 

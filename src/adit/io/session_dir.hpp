@@ -29,7 +29,9 @@ struct RobotProvenance {
 
 /// Where a session came from: enough to make it again.
 struct Provenance {
-  std::string command;                ///< The command line, without where the session was written to.
+  std::string command;  ///< The command line, without where the session was written to.
+  /// Of a session that went on from others: the commands that made those, in the order given.
+  std::vector<std::string> earlier_commands = {};
   std::vector<std::string> inputs;    ///< As given.
   std::string world;                  ///< The mesh that robots were simulated in; "" for recordings.
   std::string profile = "default";    ///< What the configuration started from.

@@ -96,6 +96,8 @@ toml::array mapping_of(const Provenance& provenance) {
 
 void insert_provenance(const Provenance& provenance, toml::table& table) {
   table.insert("command", provenance.command);
+  if (!provenance.earlier_commands.empty())
+    table.insert("earlier_commands", array_of(provenance.earlier_commands));
   table.insert("inputs", array_of(provenance.inputs));
   table.insert("world", provenance.world);
   table.insert("profile", provenance.profile);
@@ -176,6 +178,7 @@ std::vector<RobotProvenance> mapping_in(const toml::table& table) {
 Provenance provenance_in(const toml::table& table) {
   Provenance provenance;
   provenance.command = table["command"].value_or(std::string());
+  provenance.earlier_commands = strings_of(table["earlier_commands"].node());
   provenance.inputs = strings_of(table["inputs"].node());
   provenance.world = table["world"].value_or(std::string());
   provenance.profile = table["profile"].value_or(std::string("default"));

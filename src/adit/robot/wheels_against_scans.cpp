@@ -8,19 +8,16 @@
 
 #include "adit/core/decompositions.hpp"
 #include "adit/core/parallel.hpp"
-#include "adit/geometry/deskew.hpp"
-#include "adit/odometry/plane_icp.hpp"
-#include "adit/odometry/preprocess.hpp"
+#include "adit/evaluation/statistics.hpp"
+#include "adit/robot/scan_motion.hpp"
 #include "adit/robot/sensor_checks.hpp"
 #include "adit/robot/wheel_comparison.hpp"
 
 namespace adit {
 namespace {
 
-constexpr std::size_t kBatch = 12;       // stretches; a second batch follows where one tells too little
-constexpr std::size_t kLength = 25;      // scans of a stretch
-constexpr std::size_t kSettling = 4;     // of those, until the odometry knows how fast the robot is
-constexpr std::size_t kPoints = 20'000;  // of a scan; more measure no better
+constexpr std::size_t kBatch = 12;   // stretches; a second batch follows where one tells too little
+constexpr std::size_t kLength = 25;  // scans of a stretch
 constexpr Duration kLongestStep = std::chrono::milliseconds(300);  // three scans of a usual LiDAR
 constexpr Duration kHalfWindow = std::chrono::milliseconds(100);   // of rates: a scan to either side
 constexpr std::size_t kEnoughRates = 150;  // three seconds; the turning between scans has little noise
@@ -30,26 +27,6 @@ constexpr double kTurnSigma = 0.0005;  // radians
 constexpr double kAheadSigma = 0.005;  // metres
 constexpr double kUnknown = 10.0;      // metres and radians, along directions that the scan leaves open
 constexpr double kLeastDriven = 0.5;   // metres: shorter stretches say too little of the scale
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
-// Scans that the checks go by: about ten per second.
-std::vector<std::size_t> used_scans(const Recording& recording) {
-  constexpr double kInterval = 0.1;
-  if (recording.num_scans() < 2) return {};
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < recording.num_scans(); ++i)
-    intervals.push_back(to_seconds(recording.scan_stamps[i] - recording.scan_stamps[i - 1]));
-  const double usual = median(std::move(intervals));
-  const auto step = static_cast<std::size_t>(std::max(1.0, std::round(kInterval / usual)));
-  std::vector<std::size_t> used;
-  for (std::size_t i = 0; i < recording.num_scans(); i += step) used.push_back(i);
-  return used;
-}
 
 using Indices = std::span<const std::size_t>;
 
@@ -93,21 +70,6 @@ std::vector<Indices> choose_stretches(const Recording& recording, const Growth& 
   return stretches;
 }
 
-// About kPoints of the points, spread evenly and without a period that could be that of the rings.
-PointCloud thinned(const PointCloud& cloud) {
-  if (cloud.size() <= kPoints) return cloud;
-  const double share = static_cast<double>(kPoints) / static_cast<double>(cloud.size());
-  constexpr double kGolden = 0.6180339887498949;
-  PointCloud out;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double position = static_cast<double>(i) * kGolden;
-    if (position - std::floor(position) >= share) continue;
-    out.points.push_back(cloud.points[i]);
-    if (cloud.has_times()) out.time_offsets_ns.push_back(cloud.time_offsets_ns[i]);
-  }
-  return out;
-}
-
 // The motion from one scan to the next, as the scans measured it.
 struct ScanStep {
   Stamp begin;
@@ -133,48 +95,12 @@ struct Stretch {
   bool has_times = true;
 };
 
-// The odometry of clouds without times of their points.
-std::vector<OdometryStep> registered(const std::vector<Scan>& scans, const Pose& T_base_lidar) {
-  PlaneIcpConfig config;
-  config.scan_to_map.deskew = false;
-  PlaneIcp odometry(config, T_base_lidar);
-  std::vector<OdometryStep> steps;
-  for (const Scan& scan : scans) steps.push_back(odometry.register_scan(scan, {}));
-  return steps;
-}
-
-// The clouds as if each had been taken at the scan's stamp, base frame. Deskewing within the odometry goes by
-// the motion that is sought, and answers errors of one scan with others of the next. So sweeps are registered
-// bent as they are first, which gives the motion at their middles, and straightened by that.
-std::vector<Scan> straightened(const std::vector<Scan>& scans, const Pose& T_base_lidar) {
-  const std::vector<OdometryStep> bent = registered(scans, T_base_lidar);
-  std::vector<Scan> out;
-  for (std::size_t k = 0; k < scans.size(); ++k) {
-    const std::size_t before = k == 0 ? 0 : k - 1;
-    const std::size_t after = std::min(k + 1, scans.size() - 1);
-    const Pose motion = bent[before].T_odom_base.inverse() * bent[after].T_odom_base;
-    PointCloud straight;
-    preprocess(scans[k].cloud, {}, T_base_lidar, sweep_of({motion, bent[after].stamp - bent[before].stamp}),
-               straight);
-    out.push_back({scans[k].stamp, std::move(straight)});
-  }
-  return out;
-}
-
-// A scan that cannot be read ends the stretch: whoever makes the map says so.
 Stretch measured(const Recording& recording, Indices indices) {
+  const ScanMotion motion = motion_of_scans(recording, indices);
   Stretch stretch;
-  std::vector<Scan> scans;
-  for (const std::size_t i : indices) {
-    const Result<Scan> scan = recording.read_scan(i);
-    if (!scan) break;
-    stretch.has_times = stretch.has_times && scan->cloud.has_times();
-    scans.push_back({scan->stamp, thinned(scan->cloud)});
-  }
-  if (scans.size() < 2) return stretch;
-  const std::vector<OdometryStep> steps = registered(straightened(scans, recording.T_base_lidar), Pose());
-  for (std::size_t k = kSettling; k < steps.size(); ++k)
-    stretch.steps.push_back(step_between(steps[k - 1], steps[k]));
+  stretch.has_times = motion.has_times;
+  for (std::size_t k = kSettlingScans; k < motion.steps.size(); ++k)
+    stretch.steps.push_back(step_between(motion.steps[k - 1], motion.steps[k]));
   return stretch;
 }
 
@@ -250,7 +176,7 @@ std::vector<SensorFinding> check_wheels_with_scans(Recording& recording) {
   if (recording.wheel.size() < 2 || !recording.imu.empty()) return {};
   constexpr WheelReference kReference{"the scans", "the scans", "--mount if the LiDAR's is wrong", "--mount"};
   const Growths wheels = growths_of(recording.wheel);
-  const std::vector<std::size_t> scans = used_scans(recording);
+  const std::vector<std::size_t> scans = scans_to_check(recording);
   const std::vector<Indices> chosen = choose_stretches(recording, wheels.turn, scans);
   std::vector<Stretch> stretches;
   WheelComparison comparison;

@@ -75,8 +75,9 @@ std::size_t num_scans(const std::vector<Recording>& recordings) {
   return sum;
 }
 
-Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig& config) {
-  const Result<std::vector<RobotId>> ids = robot_ids(given.size());
+Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig& config,
+                           std::size_t num_before) {
+  const Result<std::vector<RobotId>> ids = robot_ids(num_before + given.size());
   if (!ids) return tl::unexpected(ids.error());
   Mapping mapping;
   const std::vector<Recording> recordings =
@@ -87,8 +88,9 @@ Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig
   std::vector<Result<RobotMap>> maps(recordings.size(), fail("not run"));
   {
     const Phase phase("mapping", num_scans(recordings));
-    parallel_for_each(recordings.size(),
-                      [&](std::size_t i) { maps[i] = map_one(recordings[i], (*ids)[i], configs[i], phase); });
+    parallel_for_each(recordings.size(), [&](std::size_t i) {
+      maps[i] = map_one(recordings[i], (*ids)[num_before + i], configs[i], phase);
+    });
   }
   for (std::size_t i = 0; i < maps.size(); ++i) {
     if (!maps[i]) {

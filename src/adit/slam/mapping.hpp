@@ -26,7 +26,7 @@ struct FailedRobot {
 };
 
 struct Mapping {
-  std::vector<MappedRobot> robots;  ///< In the order of the recordings; the id is the index of the recording.
+  std::vector<MappedRobot> robots;  ///< In the order of the recordings, and so are the ids.
   std::vector<FailedRobot> failed;
   std::vector<std::string> notes;  ///< What the user should know although nothing failed, one line each.
 };
@@ -35,8 +35,9 @@ struct Mapping {
 /// (core/progress.hpp). A recording without wheel odometry is mapped by kiss-icp, with a note. Wheels and
 /// IMUs are checked first (robot/sensor_checks.hpp); what is found is noted. A robot whose
 /// recording cannot be mapped stops no other: it is reported in `failed`. Fails on more than 256 recordings
-/// (ids are one byte) and where no robot is left.
-[[nodiscard]] Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig& config);
+/// (ids are one byte) and where no robot is left. `num_before`: robots that have ids already, from 0 on.
+[[nodiscard]] Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig& config,
+                                         std::size_t num_before = 0);
 
 /// The number of scans of all recordings together.
 [[nodiscard]] std::size_t num_scans(const std::vector<Recording>& recordings);

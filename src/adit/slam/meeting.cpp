@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "adit/slam/meeting.hpp"
 
+#include <algorithm>
+#include <map>
+
 #include "adit/core/progress.hpp"
+#include "adit/fleet/sync/own_map_parts.hpp"
 
 namespace adit {
 namespace {
@@ -26,6 +30,21 @@ void limit_cached(std::vector<Agent>& agents, std::size_t at_work) {
   }
 }
 
+/// What the robot of `map` knew when it was saved, if it was.
+void restore(Agent& agent, const Meeting& meeting, const std::vector<MetBefore>& met_before) {
+  for (const MetBefore& group : met_before) {
+    const auto was_there = [&](RobotId robot) {
+      return std::ranges::find(group.robots, robot) != group.robots.end();
+    };
+    if (!was_there(agent.id())) continue;
+    std::map<RobotId, std::uint32_t> met;
+    for (const auto& map : meeting.maps)
+      if (was_there(map->id) && map->id != agent.id())
+        met[map->id] = static_cast<std::uint32_t>(searchable_keyframes(*map).size());
+    agent.restore(group.findings, met);
+  }
+}
+
 Result<> all_meet(std::vector<Agent>& agents, const BackEndConfig& back_end, LoopbackBus& bus,
                   const Phase& phase) {
   for (std::size_t a = 0; a < agents.size(); ++a) {
@@ -41,7 +60,8 @@ Result<> all_meet(std::vector<Agent>& agents, const BackEndConfig& back_end, Loo
 
 }  // namespace
 
-Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps, const SlamConfig& config) {
+Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps, const SlamConfig& config,
+                             const std::vector<MetBefore>& met_before) {
   Meeting meeting;
   meeting.maps = std::move(maps);
   const std::size_t num_robots = meeting.maps.size();
@@ -51,6 +71,7 @@ Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps, 
   meeting.agents.reserve(num_robots);  // the bus keeps addresses
   for (const auto& map : meeting.maps) {
     meeting.agents.emplace_back(map, agent_config);
+    restore(meeting.agents.back(), meeting, met_before);
     meeting.agents.back().find_revisits();
     limit_cached(meeting.agents, meeting.agents.size() - 1);
     bus.join(meeting.agents.back());

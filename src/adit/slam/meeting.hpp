@@ -21,9 +21,17 @@ struct Meeting {
   std::vector<std::string> failures;      ///< Messages that an agent could not take, one line each.
 };
 
-/// Lets the agents of these maps meet. Without maps the meeting is empty. Fails where the bus does. One phase
+/// Robots that met before they were saved, and what all of them had found by then.
+struct MetBefore {
+  std::vector<RobotId> robots;
+  std::vector<MessageBody> findings;  ///< Agent::findings.
+};
+
+/// Lets the agents of these maps meet. Robots that have met before exchange what is new, and search nothing
+/// again. Without maps the meeting is empty. Fails where the bus does. One phase
 /// of progress; may throw `Cancelled` (core/progress.hpp).
 [[nodiscard]] Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps,
-                                           const SlamConfig& config);
+                                           const SlamConfig& config,
+                                           const std::vector<MetBefore>& met_before = {});
 
 }  // namespace adit

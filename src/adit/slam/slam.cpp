@@ -2,7 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "adit/slam/slam.hpp"
 
+#include <algorithm>
+#include <map>
+#include <span>
+#include <utility>
+
+#include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
+#include "adit/core/robot_ids.hpp"
+#include "adit/core/robot_name.hpp"
 #include "adit/fleet/joint/merge_accuracy.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/config_toml.hpp"
@@ -13,10 +21,13 @@
 namespace adit {
 namespace {
 
-Provenance provenance_of(const Mapping& mapping, SlamConfig config) {
+Provenance provenance_of(const std::vector<SavedFleet>& saved, const Mapping& mapping, SlamConfig config) {
   Provenance provenance;
   provenance.command = "adit::slam";
   provenance.configuration = to_toml(fields_of(config));
+  for (const SavedFleet& fleet : saved)
+    provenance.robots.insert(provenance.robots.end(), fleet.provenance.robots.begin(),
+                             fleet.provenance.robots.end());
   for (const MappedRobot& robot : mapping.robots)
     provenance.robots.push_back(
         {robot.map->name, robot.odometry, robot.lidar, robot.map->odometry.size(), ""});
@@ -25,33 +36,158 @@ Provenance provenance_of(const Mapping& mapping, SlamConfig config) {
   return provenance;
 }
 
+/// Distinct names for all, those of the sessions first.
+std::vector<std::string> name_all(std::vector<SavedFleet>& saved, std::vector<Recording>& recordings) {
+  std::vector<std::string> notes;
+  std::vector<std::string> names;
+  for (const SavedFleet& fleet : saved)
+    for (const auto& map : fleet.maps) names.push_back(map->name);
+  const std::size_t num_saved = names.size();
+  if (num_saved == 0) return name_robots(recordings);
+  for (const Recording& recording : recordings) names.push_back(robot_name(recording.name));
+  names = distinct_names(names);
+  std::size_t next = 0;
+  const auto rename = [&](std::string& name) {
+    const std::string& distinct = names[next++];
+    if (distinct != name)
+      notes.push_back(format("another robot is called '{}'; here it is {}", printable(name), distinct));
+    return std::exchange(name, distinct);
+  };
+  for (SavedFleet& fleet : saved)
+    for (const auto& map : fleet.maps) {
+      const std::string was = rename(map->name);
+      const auto of_map = std::ranges::find(fleet.provenance.robots, was, &RobotProvenance::name);
+      if (of_map != fleet.provenance.robots.end()) of_map->name = map->name;
+    }
+  for (Recording& recording : recordings) rename(recording.name);
+  return notes;
+}
+
+/// Ids 0, 1, 2, ... over all sessions.
+Result<> number_all(std::vector<SavedFleet>& saved) {
+  std::size_t num = 0;
+  for (const SavedFleet& fleet : saved) num += fleet.maps.size();
+  const Result<std::vector<RobotId>> ids = robot_ids(num);
+  if (!ids) return tl::unexpected(ids.error());
+  std::size_t next = 0;
+  for (SavedFleet& fleet : saved) {
+    std::map<RobotId, RobotId> new_ids;
+    for (const auto& map : fleet.maps) new_ids[map->id] = (*ids)[next++];
+    renumber(fleet, new_ids);
+  }
+  return {};
+}
+
+Result<> check_comparable(const std::vector<std::shared_ptr<const RobotMap>>& maps) {
+  for (const auto& map : maps) {
+    ScanContextConfig first = maps.front()->scan_context;
+    ScanContextConfig other = map->scan_context;
+    if (to_toml(fields_of(first)) != to_toml(fields_of(other)))
+      return fail(
+          format("{} and {} described places in different ways (fields robot.scan_context.*), so that they "
+                 "cannot be compared; map one of them again with the configuration of the other",
+                 maps.front()->name, map->name));
+  }
+  return {};
+}
+
+Result<RobotId> robot_called(const FleetGraph& fleet, const std::string& name) {
+  std::string names;
+  for (const auto& [id, robot] : fleet.robots) {
+    if (robot.name == name) return id;
+    names += " " + robot.name;
+  }
+  return fail(format("no robot is called {}; there are:{}", printable(name), names));
+}
+
+/// The verdict that takes the place of the test's.
+Result<MergeCheck> verdict_by(const Ruling& ruling, const FleetGraph& fleet) {
+  const Result<RobotId> one = robot_called(fleet, ruling.a);
+  if (!one) return tl::unexpected(one.error());
+  const Result<RobotId> other = robot_called(fleet, ruling.b);
+  if (!other) return tl::unexpected(other.error());
+  if (*one == *other) return fail("a ruling is about two robots, not twice about " + ruling.a);
+  const RobotPair pair = std::minmax(*one, *other);
+  const auto tested = fleet.checks.find(pair);
+  MergeCheck check;
+  if (tested != fleet.checks.end()) check = tested->second;
+  check.a = pair.first;
+  check.b = pair.second;
+  check.advice.reset();
+  const std::string said = check.reason.empty() ? "" : "; the test had said: " + check.reason;
+  if (ruling.kind == Ruling::Kind::veto) {
+    check.accepted = false;
+    check.refused_kind = RefusalKind::unknown;
+    check.reason = "a person keeps these maps apart" + said;
+    return check;
+  }
+  if (check.loops.empty())
+    return fail(format("{} and {}: no alignment was found that could be confirmed", ruling.a, ruling.b));
+  check.accepted = true;
+  check.reason = "a person confirmed this merge" + said;
+  return check;
+}
+
+Result<> rule(Agent& agent, const std::vector<Ruling>& rulings) {
+  for (const Ruling& ruling : rulings) {
+    Result<MergeCheck> verdict = verdict_by(ruling, agent.known());
+    if (!verdict) return tl::unexpected(verdict.error());
+    agent.overrule(std::move(*verdict));
+  }
+  return {};
+}
+
+void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
+  to.insert(to.end(), more.begin(), more.end());
+}
+
 }  // namespace
 
 Result<SlamRun> slam(std::vector<Recording> recordings, const SlamConfig& config) {
-  std::vector<std::string> notes = name_robots(recordings);
-  Result<Mapping> mapping = map_robots(recordings, config);
-  if (!mapping) return tl::unexpected(mapping.error());
-  std::vector<std::shared_ptr<const RobotMap>> maps;
-  for (const MappedRobot& robot : mapping->robots) maps.push_back(robot.map);
-  Result<Meeting> meeting = hold_meeting(std::move(maps), config);
-  if (!meeting) return tl::unexpected(meeting.error());
+  return slam_on({}, std::move(recordings), config);
+}
+
+Result<SlamRun> slam_on(std::vector<SavedFleet> saved, std::vector<Recording> recordings,
+                        const SlamConfig& config, const std::vector<Ruling>& rulings) {
   SlamRun run;
-  run.session.provenance = provenance_of(*mapping, config);
-  run.session.fleet = meeting->agents.front().known();
+  append(run.notes, name_all(saved, recordings));
+  if (const Result<> done = number_all(saved); !done) return tl::unexpected(done.error());
+  std::vector<std::shared_ptr<const RobotMap>> maps;
+  std::vector<MetBefore> met_before;
+  for (SavedFleet& fleet : saved) {
+    append(run.notes, fleet.notes);
+    maps.insert(maps.end(), fleet.maps.begin(), fleet.maps.end());
+    if (fleet.findings.empty()) continue;  // its pairs are tested anew
+    met_before.push_back({{}, std::move(fleet.findings)});
+    for (const auto& map : fleet.maps) met_before.back().robots.push_back(map->id);
+  }
+  Mapping mapping;
+  if (maps.empty() || !recordings.empty()) {
+    Result<Mapping> mapped = map_robots(recordings, config, maps.size());
+    if (!mapped) return tl::unexpected(mapped.error());
+    mapping = std::move(*mapped);
+  }
+  for (const MappedRobot& robot : mapping.robots) maps.push_back(robot.map);
+  if (const Result<> done = check_comparable(maps); !done) return tl::unexpected(done.error());
+  Result<Meeting> meeting = hold_meeting(std::move(maps), config, met_before);
+  if (!meeting) return tl::unexpected(meeting.error());
+  Agent& first = meeting->agents.front();
+  if (const Result<> done = rule(first, rulings); !done) return tl::unexpected(done.error());
+  run.session.provenance = provenance_of(saved, mapping, config);
+  run.session.fleet = first.known();
   {
     const Phase phase("solving");
-    run.session.solution = meeting->agents.front().solve(config.back_end);
+    run.session.solution = first.solve(config.back_end);
     measure_merges(run.session.solution);
-    Agent& first = meeting->agents.front();
     for (const std::string& problem : first.update_estimate(config.back_end).problems)
       run.notes.push_back("online estimate: " + problem);
     run.online = difference(first.estimate(), run.session.solution);
   }
+  run.findings = first.findings();
   run.session.maps = std::move(meeting->maps);
   run.bytes_sent = std::move(meeting->bytes_sent);
-  run.failed = std::move(mapping->failed);
-  run.notes.insert(run.notes.end(), notes.begin(), notes.end());
-  run.notes.insert(run.notes.end(), mapping->notes.begin(), mapping->notes.end());
+  run.failed = std::move(mapping.failed);
+  append(run.notes, mapping.notes);
   for (const std::string& failure : meeting->failures)
     run.notes.push_back("a message was left out: " + failure);
   return run;
@@ -59,6 +195,7 @@ Result<SlamRun> slam(std::vector<Recording> recordings, const SlamConfig& config
 
 Result<> write_slam(const std::filesystem::path& dir, const SlamRun& run) {
   Result<> done = write_session(dir, run.session, MapFiles::write);
+  if (done) done = write_fleet(dir, run.session.maps, run.findings);
   if (done) done = write_bytes(dir / "metrics.json", session_metrics(run));
   if (done) done = write_bytes(dir / "report.html", session_page(run.session));
   return done;

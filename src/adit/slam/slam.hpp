@@ -16,6 +16,7 @@
 
 #include "adit/io/session_dir.hpp"
 #include "adit/slam/mapping.hpp"
+#include "adit/slam/saved_fleet.hpp"
 
 namespace adit {
 
@@ -25,6 +26,17 @@ struct SlamRun {
   EstimateDifference online;              ///< Of the first robot's estimate, kept from meeting to meeting.
   std::vector<FailedRobot> failed;        ///< Recordings that could not be mapped; the others went on.
   std::vector<std::string> notes;         ///< Fallbacks, changed names, messages left out, one line each.
+  std::vector<MessageBody> findings;      ///< All loops and merge checks, for a later session.
+};
+
+/// What a person says of two robots, by name, against the test.
+struct Ruling {
+  enum class Kind : std::uint8_t {
+    veto,     ///< Their maps stay apart.
+    confirm,  ///< They are joined by the best alignment that was found.
+  };
+  Kind kind = Kind::veto;
+  std::string a, b;
 };
 
 /// Maps every robot, lets each meet every other, and solves for the joint maps. With the default
@@ -34,6 +46,15 @@ struct SlamRun {
 /// Reports its phases to the observer in scope and may throw `Cancelled` (core/progress.hpp); fails as
 /// `map_robots` does.
 [[nodiscard]] Result<SlamRun> slam(std::vector<Recording> recordings, const SlamConfig& config = {});
+
+/// The same from where sessions were left (read_fleet): robots of one session are neither mapped nor searched
+/// again, and meet those of the others and the new ones. With the configuration that a session was made with,
+/// it gives what `slam` of all recordings at once would (docs/decisions/0055). Names that occur twice get a
+/// number, with a note. `rulings` come last and are kept as the reason of the pair. Fails, too, where there
+/// are more than 256 robots, where sessions described places in different ways, on a ruling about a robot
+/// that does not exist, and where no alignment was found that could be confirmed.
+[[nodiscard]] Result<SlamRun> slam_on(std::vector<SavedFleet> saved, std::vector<Recording> recordings,
+                                      const SlamConfig& config, const std::vector<Ruling>& rulings = {});
 
 /// Writes the session directory (docs/architecture.md) into `dir`, which exists: an OutputDir's path, or any
 /// folder.

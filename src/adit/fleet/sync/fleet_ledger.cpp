@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <variant>
 
 #include "adit/core/decompositions.hpp"
 #include "adit/fleet/sync/parts.hpp"
@@ -70,12 +71,26 @@ bool FleetLedger::take(const GraphPart& part) {
   return true;
 }
 
-bool FleetLedger::take(const Loops& part) {
+bool FleetLedger::take(const Loops& part) { return part.author != self_ && add(part); }
+bool FleetLedger::take(const MergeChecks& part) { return part.author != self_ && add(part); }
+
+bool FleetLedger::restore(const MessageBody& finding) {
+  if (const auto* loops = std::get_if<Loops>(&finding)) return add(*loops);
+  const auto* checks = std::get_if<MergeChecks>(&finding);
+  return checks != nullptr && add(*checks);
+}
+
+void FleetLedger::overrule(MergeCheck check) {
+  const RobotId author = check.a;
+  add(MergeChecks{author, static_cast<std::uint32_t>(size_of(checks_by_, author)), {std::move(check)}});
+}
+
+bool FleetLedger::add(const Loops& part) {
   const auto is_authors = [&](const LoopClosure& loop) {
     return loop.from.robot == part.author && loop.from.robot <= loop.to.robot && loop.from < loop.to;
   };
   const std::size_t has = size_of(loops_by_, part.author);
-  if (part.author == self_ || part.first > has || !std::ranges::all_of(part.loops, is_authors)) return false;
+  if (part.first > has || !std::ranges::all_of(part.loops, is_authors)) return false;
   for (std::size_t l = has - part.first; l < part.loops.size(); ++l) {
     const KeyframePair ends{part.loops[l].from, part.loops[l].to};
     known_.loops.try_emplace(ends, part.loops[l]);
@@ -84,12 +99,12 @@ bool FleetLedger::take(const Loops& part) {
   return true;
 }
 
-bool FleetLedger::take(const MergeChecks& part) {
+bool FleetLedger::add(const MergeChecks& part) {
   const auto is_authors = [&](const MergeCheck& check) {
     return check.a == part.author && check.a <= check.b;
   };
   const std::size_t has = size_of(checks_by_, part.author);
-  if (part.author == self_ || part.first > has || !std::ranges::all_of(part.checks, is_authors)) return false;
+  if (part.first > has || !std::ranges::all_of(part.checks, is_authors)) return false;
   for (std::size_t c = has - part.first; c < part.checks.size(); ++c) {
     checks_by_[part.author].push_back(part.checks[c]);
     known_.checks[{part.checks[c].a, part.checks[c].b}] = part.checks[c];
@@ -155,6 +170,13 @@ std::vector<MessageBody> FleetLedger::checks_since(RobotId author, std::size_t f
   for_parts(all->second, first, kChecksPerMessage, [&](std::uint32_t begin, std::vector<MergeCheck> part) {
     out.emplace_back(MergeChecks{author, begin, std::move(part)});
   });
+  return out;
+}
+
+std::vector<MessageBody> FleetLedger::findings() const {
+  std::vector<MessageBody> out;
+  for (const auto& [author, loops] : loops_by_) append(out, loops_since(author, 0));
+  for (const auto& [author, checks] : checks_by_) append(out, checks_since(author, 0));
   return out;
 }
 

@@ -32,6 +32,11 @@ class FleetLedger {
   bool take(const GraphPart& part);
   bool take(const Loops& part);
   bool take(const MergeChecks& part);
+  /// What `findings` named when this robot was saved, its own among it: before it adds or takes anything.
+  /// False as above.
+  bool restore(const MessageBody& finding);
+  /// Replaces the verdict on its two robots, whoever decided it.
+  void overrule(MergeCheck check);
 
   /// How much is known of each robot.
   [[nodiscard]] std::map<RobotId, Hello::Known> summary() const;
@@ -40,8 +45,13 @@ class FleetLedger {
   /// What `author` registered or decided, from number `first` on.
   [[nodiscard]] std::vector<MessageBody> loops_since(RobotId author, std::size_t first) const;
   [[nodiscard]] std::vector<MessageBody> checks_since(RobotId author, std::size_t first) const;
+  /// All that any robot registered or decided.
+  [[nodiscard]] std::vector<MessageBody> findings() const;
 
  private:
+  bool add(const Loops& part);
+  bool add(const MergeChecks& part);
+
   RobotId self_;
   FleetGraph known_;
   std::map<RobotId, std::vector<KeyframePair>> loops_by_;  ///< By author, in the order of registration.

@@ -66,6 +66,36 @@ TEST(FleetLedger, NewsTellAllThatIsNotKnownAndNothingTwice) {
   EXPECT_TRUE(one.news_for(kOther, hello_of(other)).empty());
 }
 
+TEST(FleetLedger, IsRestoredFromAllFindingsItsOwnToo) {
+  FleetLedger saved(kSelf, graph_with(3), MergePolicy::adaptive);
+  for (std::uint32_t i = 0; i < kLoopsPerMessage + 5; ++i) saved.add_own(loop({kSelf, 2}, {{2}, i}));
+  saved.add_own(check(kSelf, {2}));
+  EXPECT_TRUE(saved.take(Loops{kOther, 0, {loop({kOther, 1}, {kSelf, 0})}}));
+  EXPECT_TRUE(saved.take(MergeChecks{kOther, 0, {check(kOther, kSelf)}}));
+
+  for (const RobotId self : {kSelf, kOther}) {
+    FleetLedger ledger(self, graph_with(3), MergePolicy::adaptive);
+    for (const MessageBody& finding : saved.findings()) EXPECT_TRUE(ledger.restore(finding));
+    EXPECT_EQ(ledger.known().loops.size(), saved.known().loops.size());
+    EXPECT_EQ(ledger.known().checks.size(), 2U);
+    EXPECT_EQ(ledger.num_own_loops(), self == kSelf ? kLoopsPerMessage + 5 : 1U);
+    EXPECT_EQ(ledger.num_own_checks(), 1U);
+    EXPECT_FALSE(ledger.restore(GraphPart{kOther, "no finding", 0, {}}));
+  }
+}
+
+TEST(FleetLedger, AnOverruledCheckIsTheLatest) {
+  FleetLedger ledger(kSelf, graph_with(1), MergePolicy::adaptive);
+  EXPECT_TRUE(ledger.take(MergeChecks{kOther, 0, {check(kOther, kSelf)}}));
+  MergeCheck overruled = check(kOther, kSelf);
+  overruled.accepted = true;
+  ledger.overrule(overruled);
+  EXPECT_TRUE(ledger.known().checks.at({kOther, kSelf}).accepted);
+  FleetLedger later(kSelf, graph_with(1), MergePolicy::adaptive);
+  for (const MessageBody& finding : ledger.findings()) EXPECT_TRUE(later.restore(finding));
+  EXPECT_TRUE(later.known().checks.at({kOther, kSelf}).accepted);
+}
+
 TEST(FleetLedger, PartsAfterALostOneWaitForIt) {
   FleetLedger ledger(kSelf, graph_with(1), MergePolicy::adaptive);
   EXPECT_FALSE(ledger.take(GraphPart{kOther, "late", 2, graph_with(2).nodes}));

@@ -22,6 +22,11 @@ void PeerSession::hear(const Hello& hello, RobotId peer) {
   std::erase_if(waiting_, [&](const auto& entry) { return !exists(entry.first); });
 }
 
+void PeerSession::restore_searched(std::uint32_t num) {
+  num_places_ = num;
+  is_searched_ = true;
+}
+
 bool PeerSession::take(const Places& part) {
   if (part.first > num_places_) return false;
   for (std::size_t i = num_places_ - part.first; i < part.places.size(); ++i) {

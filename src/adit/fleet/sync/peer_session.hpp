@@ -32,6 +32,9 @@ class PeerSession {
   /// The peer says how many keyframes it has. What waits for others is given up: it would wait for ever.
   void hear(const Hello& hello, RobotId peer);
 
+  /// All of its `num` descriptors were searched before this robot was saved.
+  void restore_searched(std::uint32_t num);
+
   /// Descriptors received so far, over all meetings.
   [[nodiscard]] std::uint32_t num_places() const { return num_places_; }
   /// False where a part before it was lost; the next Hello asks for it.

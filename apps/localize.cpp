@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "adit/core/format.hpp"
+#include "adit/fleet/joint/merge_accuracy.hpp"
+#include "adit/io/tum.hpp"
+#include "adit/robot/keyframe_trajectory.hpp"
+#include "command_line.hpp"
+#include "inputs.hpp"
+#include "sessions.hpp"
+
+namespace adit::app {
+namespace {
+
+struct LocalizeOptions {
+  std::string session;
+  std::string input;
+  std::string out;
+  RecordingConfig recording;
+};
+
+/// What became of the robot and each of the session's, one sentence each.
+std::vector<std::string> refusals(const Session& session, RobotId robot) {
+  std::vector<std::string> out;
+  for (const PairOutcome& pair : session.solution.pairs)
+    if (!pair.merged && (pair.a == robot || pair.b == robot))
+      out.push_back(
+          format("{}: {}", session.name_of(pair.a == robot ? pair.b : pair.a), pair.refused_reason));
+  return out;
+}
+
+Result<> localize_command(const LocalizeOptions& options, const Common& common) {
+  refuse_configuration(common);
+  Result<SavedSessions> saved = open_sessions({options.session});
+  if (!saved) return tl::unexpected(saved.error());
+  RunConfig reading = saved->job.config;
+  reading.recording = recording_config(reading.recording, options.recording);
+  const auto [name, path] = name_and_path(options.input);
+  Result<Recording> recording = open_input(path, reading.recording);
+  if (!recording) return tl::unexpected(recording.error());
+  if (!name.empty()) recording->name = name;
+  const Result<SlamRun> run =
+      slam_on(std::move(saved->fleets), {std::move(*recording)}, saved->job.config.slam);
+  if (!run) return tl::unexpected(run.error());
+  print_notes("localize", run->notes);
+  const Session& session = run->session;
+  const RobotMap& robot = *session.maps.back();  // new robots come last
+  const auto component = std::ranges::find_if(session.solution.components, [&](const Component& c) {
+    return std::ranges::find(c.robots, robot.id) != c.robots.end();
+  });
+  if (component == session.solution.components.end() || component->robots.size() < 2) {
+    std::string reasons;
+    for (const std::string& refusal : refusals(session, robot.id)) reasons += "; " + refusal;
+    return fail(format("{} was not found in {}{}", robot.name, options.session, reasons));
+  }
+  const Trajectory trajectory = keyframe_trajectory(robot, session.solution.T_world_keyframe.at(robot.id));
+  if (!options.out.empty())
+    if (const Result<> done = write_tum(options.out, trajectory); !done) return done;
+  const std::string& frame = session.name_of(component->anchor);
+  nlohmann::ordered_json json{{"robot", robot.name}, {"frame_of", frame}, {"keyframes", trajectory.size()}};
+  json["found_by"] = nlohmann::ordered_json::array();
+  if (!common.json)
+    std::printf("%s was found in %s: %zu keyframes in the frame of %s's odometry\n", robot.name.c_str(),
+                options.session.c_str(), trajectory.size(), frame.c_str());
+  for (const PairOutcome& pair : session.solution.pairs) {
+    if (!pair.merged || (pair.a != robot.id && pair.b != robot.id)) continue;
+    const std::string& other = session.name_of(pair.a == robot.id ? pair.b : pair.a);
+    json["found_by"].push_back(other);
+    if (!common.json)
+      std::printf("  by the map of %s%s\n", other.c_str(),
+                  pair.accuracy ? (": " + to_string(*pair.accuracy)).c_str() : "");
+  }
+  if (common.json) std::printf("%s\n", json.dump(2).c_str());
+  return {};
+}
+
+}  // namespace
+
+void add_localize(Program& program) {
+  const auto options = std::make_shared<LocalizeOptions>();
+  const Command command =
+      program.add_command("localize", "Find a robot in the map of a session and follow it, or say why not",
+                          [options](const Common& common) { return localize_command(*options, common); });
+  command.add_option("session", options->session, "Session directory").required();
+  command.add_option("input", options->input, "Recording or folder of scans, NAME=FILE to name the robot")
+      .required();
+  command.add_option("--out", options->out, "TUM file for where the robot was, in the frame of the map");
+  add_recording_options(command, options->recording);
+  command.footer("The session stays as it is; adit slam --session adds the robot to it.");
+}
+
+}  // namespace adit::app

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include <memory>
+#include <utility>
+
+#include "command_line.hpp"
+#include "sessions.hpp"
+
+namespace adit::app {
+namespace {
+
+struct MergeOptions {
+  std::vector<std::string> sessions;
+  std::string out;
+  RulingOptions rulings;
+};
+
+Result<> merge_command(const MergeOptions& options, const Common& common) {
+  refuse_configuration(common);
+  if (options.sessions.size() < 2) usage_error("give two sessions or more");
+  Result<SavedSessions> saved = open_sessions(options.sessions);
+  if (!saved) return tl::unexpected(saved.error());
+  Result<OutputDir> out = OutputDir::create(options.out, "session");
+  if (!out) return tl::unexpected(out.error());
+  saved->job.provenance.command = common.command;
+  Result<SlamRun> run =
+      slam_on(std::move(saved->fleets), {}, saved->job.config.slam, rulings_of(options.rulings));
+  if (!run) return tl::unexpected(run.error());
+  print_notes("merge", run->notes);
+  return finish_session(std::move(*run), std::move(saved->job), *out, options.out, common.json);
+}
+
+}  // namespace
+
+void add_merge(Program& program) {
+  const auto options = std::make_shared<MergeOptions>();
+  const Command command =
+      program.add_command("merge", "Join sessions that others mapped: their robots meet, by the same test",
+                          [options](const Common& common) { return merge_command(*options, common); });
+  command.add_option("sessions", options->sessions, "Session directories").required();
+  command.add_option("--out", options->out, "Session directory to write").required();
+  add_ruling_options(command, options->rulings);
+  command.footer(
+      "Robots of one session do not meet again. Of robots that are called alike the later ones get a "
+      "number.");
+}
+
+}  // namespace adit::app

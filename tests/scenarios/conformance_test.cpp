@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+// Small files that others' descriptions of the formats made, and what adit has to find in them
+// (tests/conformance/README.md).
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "adit/io/recording_files.hpp"
+#include "adit/io/robot_map_file.hpp"
+#include "support/files.hpp"
+#include "support/program.hpp"
+
+namespace adit {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kCases = ADIT_CONFORMANCE;
+
+TEST(Conformance, EveryFileIsUnderstoodAsItsCaseSays) {
+  int num_cases = 0;
+  for (const auto& entry : fs::directory_iterator(kCases)) {
+    if (entry.path().extension() != ".json") continue;
+    const std::string file = (kCases / entry.path().stem()).string();
+    const test::ProgramRun run = test::run_adit("--json info " + file);
+    ASSERT_EQ(run.exit_code, 0) << file << ": " << run.err;
+    EXPECT_EQ(nlohmann::json::parse(run.out), nlohmann::json::parse(test::get_file(entry.path()))) << file;
+    ++num_cases;
+  }
+  EXPECT_EQ(num_cases, 10);
+}
+
+// The formula of make_bags.py.
+TEST(Conformance, ThePointsOfOneTubeComeOutOfEveryStorage) {
+  constexpr std::size_t kNumPoints = 48;
+  for (const char* file : {"tube.mcap", "tube.db3", "tube.bag"}) {
+    const Result<Recording> recording = open_recording((kCases / file).string());
+    ASSERT_TRUE(recording) << recording.error().message;
+    ASSERT_EQ(recording->num_scans(), 3U);
+    for (std::size_t s = 0; s < 3; ++s) {
+      const Result<Scan> scan = recording->read_scan(s);
+      ASSERT_TRUE(scan) << scan.error().message;
+      ASSERT_EQ(scan->cloud.size(), kNumPoints) << file;
+      ASSERT_EQ(scan->cloud.intensities.size(), kNumPoints) << file;
+      ASSERT_TRUE(scan->cloud.has_times()) << file;
+      for (std::size_t i = 0; i < kNumPoints; ++i) {
+        const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / kNumPoints;
+        const Vector3 p(4.0 * static_cast<double>(i % 3) - 0.5 * static_cast<double>(s),
+                        2.0 * std::cos(angle), 2.0 * std::sin(angle));
+        EXPECT_LT((scan->cloud.points[i].cast<double>() - p).norm(), 1e-6) << file << " " << i;
+        EXPECT_EQ(scan->cloud.intensities[i], static_cast<float>(i)) << file;
+        EXPECT_NEAR(static_cast<double>(scan->cloud.time_offsets_ns[i]),
+                    1e8 * static_cast<double>(i) / kNumPoints, 10.0)
+            << file;
+      }
+    }
+    for (std::size_t i = 0; i < recording->wheel.size(); ++i)
+      EXPECT_NEAR(recording->wheel[i].T_world_body.translation().x(), 0.25 * static_cast<double>(i), 1e-12);
+  }
+}
+
+TEST(Conformance, AMapOfTheFirstLayoutIsReadForEver) {
+  const Result<RobotMap> map = read_robot_map(kCases / "robot_map_7.adit");
+  ASSERT_TRUE(map) << map.error().message;
+  EXPECT_EQ(map->id, (RobotId{2}));
+  EXPECT_EQ(map->viewpoint, Vector3(0.1, 0.2, 0.9));
+  ASSERT_EQ(map->slips.size(), 1U);
+  EXPECT_EQ(map->slips.front().counted_m, 0.25);
+  ASSERT_EQ(map->keyframes.size(), 2U);
+  EXPECT_EQ(map->keyframes[1].id, (KeyframeId{{2}, 1}));
+  EXPECT_EQ(map->keyframes[1].stamp.ns, 1'200'000'000);
+  EXPECT_EQ(map->keyframes[1].cloud->points[1], Eigen::Vector3f(4.0F, 5.0F, 7.0F));
+  EXPECT_EQ(map->step_covariances[1], 0.01 * Matrix6::Identity());
+  EXPECT_TRUE(map->tunnel[1].tunnel_like);
+  EXPECT_TRUE(map->searchable[0]);
+  EXPECT_EQ(map->unconfirmed[1], 0.125F);
+}
+
+}  // namespace
+}  // namespace adit

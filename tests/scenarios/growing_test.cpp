@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+// Sessions that grow: robots added later, sessions joined, a robot found in a saved map, and a person's word.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "adit/evaluation/ate.hpp"
+#include "adit/io/session_dir.hpp"
+#include "adit/io/tum.hpp"
+#include "support/files.hpp"
+#include "support/program.hpp"
+#include "support/two_drives.hpp"
+
+namespace adit {
+namespace {
+
+namespace fs = std::filesystem;
+using test::expect_done;
+using test::expect_refused;
+using test::get_file;
+using test::put_file;
+using test::run_adit;
+
+/// Recordings of one mine: `ahead`, `behind` and `later` drive along one tunnel, `far` along another.
+class Growing : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    WorldConfig config;
+    config.preset = "mine";
+    config.facet_factor = 4.0;
+    const Result<World> world = make_world(config);
+    ASSERT_TRUE(world);
+    ASSERT_TRUE(write_mesh(folder_ / "world.ply", world->mesh));
+    const Route& route = world->routes[0];
+    ASSERT_GE(route.waypoints.size(), 170U);
+    ASSERT_TRUE(
+        write_routes(folder_ / "routes.yaml",
+                     {"world.ply",
+                      {test::part_of(route, 0, 50, "ahead"), test::part_of(route, 10, 60, "behind"),
+                       test::part_of(route, 5, 55, "later"), test::part_of(route, 130, 170, "far")}}));
+    expect_done("simulate --routes " + in("routes.yaml") + " --lidar os2-32 --out " + in("drives"));
+  }
+
+  [[nodiscard]] std::string in(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] std::string drive(const std::string& robot) const { return in("drives/" + robot + ".mcap"); }
+  [[nodiscard]] std::string text_of(const std::string& name) const { return get_file(folder_ / name); }
+
+  /// All that was measured and decided: what is left out says which commands it took.
+  void expect_same_results(const std::string& a, const std::string& b,
+                           const std::vector<std::string>& robots) const {
+    std::vector<std::string> files = {"map.ply",   "graph_initial.g2o",   "graph_pcm.g2o",
+                                      "loops.csv", "graph_optimized.g2o", "fleet.adit"};
+    for (const std::string& robot : robots)
+      for (const char* file : {"/map.adit", "/map.ply", "/trajectory.tum", "/odometry.tum"})
+        files.push_back(robot + file);
+    for (const std::string& file : files)
+      EXPECT_TRUE(text_of(a + "/" + file) == text_of(b + "/" + file)) << file << " differs";
+    EXPECT_EQ(read_session(in(a))->components, read_session(in(b))->components);
+  }
+
+  const test::TemporaryFolder folder_;
+};
+
+TEST_F(Growing, InStepsGivesWhatAllAtOnceGives) {
+  const std::string three = drive("ahead") + " " + drive("behind") + " " + drive("later");
+  expect_done("slam " + three + " --out " + in("at_once"));
+  expect_done("slam " + drive("ahead") + " " + drive("behind") + " --out " + in("grown"));
+  expect_done("slam --session " + in("grown") + " " + drive("later"));
+  expect_same_results("at_once", "grown", {"ahead", "behind", "later"});
+  const SavedSession grown = read_session(in("grown")).value();
+  EXPECT_EQ(grown.components.size(), 1U);
+  EXPECT_EQ(grown.provenance.inputs, read_session(in("at_once"))->provenance.inputs);
+  ASSERT_EQ(grown.provenance.earlier_commands.size(), 1U);
+  EXPECT_EQ(grown.provenance.earlier_commands.front(), "adit slam " + drive("ahead") + " " + drive("behind"));
+  EXPECT_EQ(grown.provenance.robots.size(), 3U);
+  expect_refused("slam --rerun " + in("grown") + "/session.toml --out " + in("again"), 1, "one by one");
+
+  // Two teams, who both called a robot alike.
+  expect_done("slam robot=" + drive("ahead") + " --out " + in("a"));
+  expect_done("slam robot=" + drive("behind") + " later=" + drive("later") + " --out " + in("b"));
+  const test::ProgramRun run = run_adit("merge " + in("a") + " " + in("b") + " --out " + in("joined"));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.err.find("another robot is called 'robot'; here it is robot_2"), std::string::npos)
+      << run.err;
+  for (const auto& [joined, at_once] :
+       {std::pair{"robot", "ahead"}, std::pair{"robot_2", "behind"}, std::pair{"later", "later"}})
+    EXPECT_TRUE(text_of(std::string("joined/") + joined + "/trajectory.tum") ==
+                text_of(std::string("at_once/") + at_once + "/trajectory.tum"))
+        << joined;
+  expect_refused("merge " + in("a") + " " + in("b") + " --set bus.loss=0.1 --out " + in("c"), 2,
+                 "it began with");
+}
+
+TEST_F(Growing, ARobotIsFoundInASavedMapOrItIsSaidWhyNot) {
+  expect_done("slam " + drive("ahead") + " --out " + in("map"));
+  const std::string before = text_of("map/session.toml");
+  const test::ProgramRun run =
+      run_adit("--json localize " + in("map") + " " + drive("later") + " --out " + in("later.tum"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const nlohmann::json found = nlohmann::json::parse(run.out);
+  EXPECT_EQ(found["frame_of"], "ahead");
+  EXPECT_EQ(found["found_by"], nlohmann::json::array({"ahead"}));
+  // In the frame of the map: one alignment serves both.
+  const std::vector<Trajectory> estimates = {read_tum(folder_ / "map/ahead/trajectory.tum").value(),
+                                             read_tum(folder_ / "later.tum").value()};
+  const std::vector<Trajectory> truths = {read_tum(folder_ / "drives/ahead_truth.tum").value(),
+                                          read_tum(folder_ / "drives/later_truth.tum").value()};
+  const Result<std::vector<AteResult>> errors = joint_ate(estimates, truths);
+  ASSERT_TRUE(errors) << errors.error().message;
+  for (const AteResult& error : *errors) EXPECT_LT(error.max_m, 0.3);
+  expect_refused("localize " + in("map") + " " + drive("far"), 1, "far was not found");
+  EXPECT_EQ(text_of("map/session.toml"), before);
+}
+
+TEST_F(Growing, APersonOverrulesTheTest) {
+  expect_done("slam " + drive("ahead") + " " + drive("behind") + " --out " + in("s"));
+  expect_done("slam --session " + in("s") + " --veto behind,ahead --out " + in("vetoed"));
+  EXPECT_EQ(read_session(in("vetoed"))->components.size(), 2U);
+  EXPECT_NE(text_of("vetoed/session.toml").find("a person keeps these maps apart"), std::string::npos);
+  // It holds for what comes later, until it is taken back.
+  expect_done("slam --session " + in("vetoed") + " " + drive("far"));
+  EXPECT_EQ(read_session(in("vetoed"))->components.size(), 3U);
+  expect_done("slam --session " + in("vetoed") + " --confirm ahead,behind");
+  EXPECT_EQ(read_session(in("vetoed"))->components.size(), 2U);
+  EXPECT_NE(text_of("vetoed/session.toml").find("a person confirmed this merge"), std::string::npos);
+  EXPECT_TRUE(text_of("vetoed/ahead/trajectory.tum") == text_of("s/ahead/trajectory.tum"));
+
+  expect_refused("slam --session " + in("vetoed") + " --confirm far,ahead", 1, "no alignment was found");
+  expect_refused("slam --session " + in("s") + " --veto ahead,nobody", 1,
+                 "no robot is called nobody; there are: ahead behind");
+  expect_refused("slam --session " + in("s") + " --veto ahead", 2, "names no two robots");
+  expect_refused("slam --session " + in("s"), 2, "give recordings to add");
+}
+
+TEST_F(Growing, WhatIsDamagedIsNamedAndNothingIsLost) {
+  expect_done("slam " + drive("ahead") + " " + drive("behind") + " --out " + in("s"));
+  const std::string toml = text_of("s/session.toml");
+  const std::string map = text_of("s/ahead/map.adit");
+  const std::string findings = text_of("s/fleet.adit");
+
+  // Findings of another version: the pair is tested again, to the same end.
+  std::string other = findings;
+  other[13 + 8] = '\x63';  // behind the first line and a size: the version of the protocol
+  put_file(folder_ / "s/fleet.adit", other);
+  const test::ProgramRun run =
+      run_adit("slam --session " + in("s") + " " + drive("later") + " --out " + in("anew"));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.err.find("protocol version 99"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("tested anew"), std::string::npos) << run.err;
+  put_file(folder_ / "s/fleet.adit", findings);
+  expect_done("slam --session " + in("s") + " " + drive("later") + " --out " + in("grown"));
+  expect_same_results("anew", "grown", {"ahead", "behind", "later"});
+
+  put_file(folder_ / "s/ahead/map.adit", map.substr(0, map.size() / 2));
+  expect_refused("slam --session " + in("s") + " " + drive("later"), 1, "ahead/map.adit");
+  fs::remove(folder_ / "s/ahead/map.adit");
+  expect_refused("slam --session " + in("s") + " " + drive("later"), 1, "make it again with adit slam");
+  EXPECT_EQ(text_of("s/session.toml"), toml);
+  expect_refused("slam --session " + in("drives") + " " + drive("later"), 1, "not a session directory");
+}
+
+}  // namespace
+}  // namespace adit
