@@ -128,6 +128,7 @@ void add_register(Program& program);
 void add_solve(Program& program);
 void add_convert(Program& program);
 void add_info(Program& program);
+void add_doctor(Program& program);
 void add_config(Program& program);
 
 }  // namespace adit::app

@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   add_explain(program);
   add_convert(program);
   add_info(program);
+  add_doctor(program);
   add_config(program);
   return program.run(argc, argv);
 }

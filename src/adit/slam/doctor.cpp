@@ -1,0 +1,238 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/slam/doctor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "adit/core/angles.hpp"
+#include "adit/core/format.hpp"
+#include "adit/io/mount.hpp"
+#include "adit/robot/scan_checks.hpp"
+#include "adit/robot/sensor_checks.hpp"
+
+namespace adit {
+namespace {
+
+/// As --mount takes it, to millimetres and hundredths of a degree.
+std::string mount_option(const Pose& T_base_lidar) {
+  const Vector3& t = T_base_lidar.translation();
+  const Matrix3 R = T_base_lidar.rotation_matrix();
+  const double roll = std::atan2(R(2, 1), R(2, 2));
+  const double pitch = std::asin(std::clamp(-R(2, 0), -1.0, 1.0));
+  const double yaw = std::atan2(R(1, 0), R(0, 0));
+  const auto rounded = [](double value, double steps) { return std::round(value * steps) / steps + 0.0; };
+  std::string text = format("{},{},{}", rounded(t.x(), 1e3), rounded(t.y(), 1e3), rounded(t.z(), 1e3));
+  return text + format(",{},{},{}", rounded(roll / kDegree, 100.0), rounded(pitch / kDegree, 100.0),
+                       rounded(yaw / kDegree, 100.0));
+}
+
+Diagnosis scans_missing(const Recording& recording) {
+  const ScanTiming timing = timing_of(recording.scan_stamps);
+  const std::string check = "scans: missing";
+  if (timing.interval_s == 0.0) return {check, Health::unknown, "there is one scan"};
+  const double share = static_cast<double>(timing.num_missing) /
+                       static_cast<double>(timing.num_missing + recording.num_scans());
+  std::string sentence = format(
+      "{} scans, one every {:.3f} s; {} missing ({:.1f} %), the longest gap {:.2f} s", recording.num_scans(),
+      timing.interval_s, timing.num_missing, 100.0 * share, timing.longest_gap_s);
+  if (timing.num_missing > 0) sentence += format(" at {:.1f} s", timing.longest_gap_at_s);
+  constexpr double kNotable = 0.005;
+  constexpr double kTooMany = 0.1;
+  constexpr double kLong = 1.0;  // seconds: a robot drives a metre or two in the dark
+  Health health = Health::good;
+  if (share > kNotable || timing.longest_gap_s > kLong) health = Health::noted;
+  if (share > kTooMany || timing.longest_gap_s > 3.0 * kLong) health = Health::spoils;
+  return {check, health, sentence,
+          health == Health::good
+              ? ""
+              : "record to a faster disk, with a larger cache of the recorder, or fewer topics"};
+}
+
+Diagnosis point_times(const Recording& recording, const ScansSeen& seen) {
+  const std::string check = "scans: times of points";
+  const double interval = timing_of(recording.scan_stamps).interval_s;
+  if (!seen.has_times)
+    return {check, Health::noted,
+            "points have no times, so that the robot's motion within a sweep bends the scans",
+            "let the driver write a time for each point (Ouster t, Velodyne time, Hesai timestamp)"};
+  const std::string sentence =
+      format("from {:.3f} s of a sweep, of which one comes every {:.3f} s", seen.sweep_s, interval);
+  constexpr double kLeast = 0.2;  // of the interval; some drivers send a part of a turn
+  constexpr double kMost = 1.2;
+  if (interval > 0.0 && (seen.sweep_s < kLeast * interval || seen.sweep_s > kMost * interval))
+    return {check, Health::spoils, sentence, "--point-times with the unit in which the driver writes them"};
+  return {check, Health::good, sentence};
+}
+
+Diagnosis ranges(const ScansSeen& seen) {
+  constexpr double kCut = 0.003;   // share of the returns in the last 3 % of the range
+  constexpr double kShort = 60.0;  // metres
+  const std::string sentence = format("{:.0f} points a scan, from {:.1f} m (1 % are nearer) to {:.1f} m",
+                                      seen.points, seen.nearest_m, seen.farthest_m);
+  if (seen.share_at_the_end > kCut && seen.farthest_m < kShort)
+    return {"scans: range", Health::noted, sentence + ", where they end as if cut off",
+            "raise the largest range of the driver or of a filter: far walls tell one tunnel from another"};
+  return {"scans: range", Health::good, sentence};
+}
+
+Diagnosis view(const ScansSeen& seen) {
+  std::string blind;
+  double widest = 0.0;
+  for (const auto& [from, to] : seen.blind_deg) {
+    const double width = to > from ? to - from : to + 360.0 - from;
+    widest = std::max(widest, width);
+    blind += format("{}{:.0f} to {:.0f}", blind.empty() ? "" : ", ", from, to);
+  }
+  const std::string sentence =
+      format("{:.0f} degrees around", seen.field_of_view_deg) +
+      (blind.empty() ? "" : "; blind: " + blind + " degrees (LiDAR frame, anticlockwise)");
+  constexpr double kNarrow = 60.0;  // half the opening
+  constexpr double kNotable = 20.0;
+  if (seen.cone_deg < kNarrow)
+    return {"scans: view", Health::noted,
+            format("a cone of {:.0f} degrees, like that of a depth camera", 2.0 * seen.cone_deg),
+            "two robots that meet head on see nothing alike: drive past places, and back"};
+  if (widest > kNotable)
+    return {"scans: view", Health::noted, sentence, "something stands in the view; mount the LiDAR higher"};
+  return {"scans: view", Health::good, sentence};
+}
+
+Diagnosis self_hits(const ScansSeen& seen) {
+  const std::string check = "scans: the robot itself";
+  if (!seen.has_moved) return {check, Health::unknown, "by the wheels the robot hardly moves"};
+  if (!seen.self_hits) return {check, Health::good, "no return stays where it is while the robot moves"};
+  const SelfHits& hits = *seen.self_hits;
+  constexpr double kFew = 0.001;
+  return {
+      check, hits.share < kFew ? Health::good : Health::noted,
+      format(
+          "{:.2f} % of the returns come from {:.1f} to {:.1f} m about {:.0f} degrees in every scan while the "
+          "robot moves",
+          100.0 * hits.share, hits.nearest_m, hits.farthest_m, hits.azimuth_deg),
+      hits.share < kFew ? ""
+                        : format("--set robot.odometry.plane_icp.min_range={:.1f} leaves out what is nearer",
+                                 hits.farthest_m)};
+}
+
+Diagnosis mount_source(const Recording& recording) {
+  return {"mount: known", Health::good,
+          format("{} from {}", mount_option(recording.T_base_lidar), recording.mount_source)};
+}
+
+/// The mount with which the floor lies level at z = 0.
+Pose levelled(const Pose& T_base_lidar, const FloorSeen& floor) {
+  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(floor.up, Vector3::UnitZ());
+  const Pose about_sensor(turn, Vector3::Zero());
+  const Vector3 at = T_base_lidar.translation();
+  const double above = floor.up.dot(at) - floor.height_m * floor.up.z();
+  return {(about_sensor * Pose(T_base_lidar.rotation(), Vector3::Zero())).rotation(),
+          Vector3(at.x(), at.y(), above)};
+}
+
+/// Levels `mount` where it is not.
+Diagnosis mount_tilt(const ScansSeen& seen, Pose& mount) {
+  const std::string check = "mount: tilt and height";
+  if (!seen.floor) return {check, Health::unknown, "too few scans show the floor"};
+  const FloorSeen& floor = *seen.floor;
+  const double tilt = std::acos(std::clamp(floor.up.z(), -1.0, 1.0)) / kDegree;
+  const std::string sentence = format(
+      "by the mount the floor is tilted by {:.1f} degrees (half of the scans within {:.1f}) and lies at z = "
+      "{:.2f} m",
+      tilt, floor.spread_deg, floor.height_m);
+  constexpr double kTilt = 2.0;     // degrees
+  constexpr double kHeight = 0.15;  // metres
+  if (tilt < std::max(kTilt, floor.spread_deg) && std::abs(floor.height_m) < kHeight)
+    return {check, Health::good, sentence};
+  constexpr double kMuch = 10.0;  // degrees
+  mount = levelled(mount, floor);
+  return {check, tilt > kMuch ? Health::spoils : Health::noted, sentence,
+          "--mount " + mount_option(mount) + " levels it"};
+}
+
+/// `mount`: levelled.
+Diagnosis mount_turn(const Recording& recording, const Pose& mount) {
+  const std::string check = "mount: turn and lever arm";
+  if (recording.wheel.empty()) return {check, Health::unknown, "there are no wheels to compare with"};
+  const std::optional<MountByMotion> found = mount_by_motion(recording);
+  if (!found)
+    return {check, Health::unknown,
+            "the robot moves too little, or its scans leave too much of the motion open"};
+  const bool has_lever = found->ahead_sigma_m < 0.1;
+  std::string sentence = format(
+      "by the motion between {} pairs of scans the mount is off by {:+.2f} degrees of yaw "
+      "(+-{:.2f})",
+      found->num_steps, found->yaw_deg, found->yaw_sigma_deg);
+  if (has_lever) sentence += format(" and {:+.2f} m ahead (+-{:.2f})", found->ahead_m, found->ahead_sigma_m);
+  constexpr double kSigmas = 3.0;
+  constexpr double kYaw = 1.0;     // degrees
+  constexpr double kLever = 0.15;  // metres
+  const bool is_turned = std::abs(found->yaw_deg) > std::max(kYaw, kSigmas * found->yaw_sigma_deg);
+  const bool is_shifted =
+      has_lever && std::abs(found->ahead_m) > std::max(kLever, kSigmas * found->ahead_sigma_m);
+  if (!is_turned && !is_shifted) return {check, Health::good, sentence};
+  const Pose by_yaw = Pose::planar(0.0, 0.0, is_turned ? found->yaw_deg * kDegree : 0.0);
+  const Vector3 at = mount.translation() + (is_shifted ? found->ahead_m : 0.0) * Vector3::UnitX();
+  const Pose better((by_yaw * Pose(mount.rotation(), Vector3::Zero())).rotation(), at);
+  constexpr double kMuch = 5.0;  // degrees
+  return {check, std::abs(found->yaw_deg) > kMuch ? Health::spoils : Health::noted, sentence,
+          "--mount " + mount_option(better) + ", if the wheels are right"};
+}
+
+void add_sensors(const Recording& recording, std::vector<Diagnosis>& out) {
+  if (recording.wheel.empty())
+    out.push_back({"wheels", Health::noted,
+                   "the recording has no wheel odometry, so that scans alone say how far",
+                   "--wheel TOPIC if it is there under another type or name"});
+  if (recording.imu.empty()) out.push_back({"IMU", Health::good, "the recording has none, and needs none"});
+  Recording sound = recording;
+  const std::vector<SensorFinding> findings = use_sound_sensors(sound);
+  for (const SensorFinding& finding : findings)
+    out.push_back({"wheels and IMU",
+                   finding.consequence == Consequence::left_out ? Health::spoils : Health::noted,
+                   finding.sentence});
+  if (findings.empty() && (!recording.wheel.empty() || !recording.imu.empty()))
+    out.push_back(
+        {"wheels and IMU", Health::good,
+         "units, signs, clocks and covariances agree with one another and with the scans, as far as this "
+         "drive tells"});
+}
+
+}  // namespace
+
+std::string_view to_string(Health health) {
+  switch (health) {
+    case Health::good:
+      return "good";
+    case Health::noted:
+      return "noted";
+    case Health::spoils:
+      return "spoils";
+    case Health::unknown:
+      break;
+  }
+  return "unknown";
+}
+
+Result<std::vector<Diagnosis>> diagnose(const Recording& recording) {
+  const Result<ScansSeen> seen = look_at_scans(recording);
+  if (!seen) return tl::unexpected(seen.error());
+  std::vector<Diagnosis> out;
+  for (const std::string& warning : recording.warnings) out.push_back({"file", Health::noted, warning});
+  for (const std::string& assumption : recording.assumptions)
+    out.push_back({"file", Health::noted, "assumed " + assumption});
+  out.push_back(scans_missing(recording));
+  out.push_back(point_times(recording, *seen));
+  out.push_back(ranges(*seen));
+  out.push_back(view(*seen));
+  out.push_back(self_hits(*seen));
+  out.push_back(mount_source(recording));
+  Pose mount = recording.T_base_lidar;
+  out.push_back(mount_tilt(*seen, mount));
+  out.push_back(mount_turn(recording, mount));
+  add_sensors(recording, out);
+  return out;
+}
+
+}  // namespace adit

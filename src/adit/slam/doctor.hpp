@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// What spoils a map, looked for in a recording before an hour is spent on it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adit/core/records.hpp"
+
+namespace adit {
+
+enum class Health : std::uint8_t {
+  good,
+  noted,    ///< A map can be made; it may be worse than it could be.
+  spoils,   ///< A map made of this is bent, or none is made.
+  unknown,  ///< The recording does not tell.
+};
+[[nodiscard]] std::string_view to_string(Health health);
+
+struct Diagnosis {
+  std::string check;  ///< What was looked at: "mount: tilt".
+  Health health = Health::good;
+  std::string sentence;     ///< What was found, with the numbers.
+  std::string remedy = {};  ///< What to do; "" where nothing is to be done.
+};
+
+/// Scans (missing ones, times of points, ranges, view, parts of the robot in it), the mount (tilt and height
+/// by the floor; turn and lever arm by the motion between scans and the wheels), wheels and IMU
+/// (use_sound_sensors), in a fixed order, one line a check whatever it found. Reads some 40 scans and
+/// registers some 600. Fails where a scan cannot be read, or all are empty.
+[[nodiscard]] Result<std::vector<Diagnosis>> diagnose(const Recording& recording);
+
+}  // namespace adit
