@@ -15,6 +15,7 @@
 #include "adit/io/scan_folder.hpp"
 #include "adit/io/text.hpp"
 #include "adit/io/trajectory_files.hpp"
+#include "adit/slam/joint_map.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
 
@@ -23,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-enum class Kind { recording, cloud, mesh, trajectory, graph, unknown };
+enum class Kind { session, recording, cloud, mesh, trajectory, graph, unknown };
 
 std::string extension_of(const fs::path& path) { return lower_case(path.extension().string()); }
 
@@ -32,6 +33,7 @@ bool is_any_of(const std::string& text, std::initializer_list<const char*> list)
 }
 
 Kind kind_of(const std::string& name) {
+  if (fs::exists(fs::path(name) / "session.toml")) return Kind::session;
   const std::string extension = extension_of(name);
   if (is_any_of(extension, {".pcd", ".bin", ".ply"})) return Kind::cloud;
   if (is_any_of(extension, {".obj", ".stl", ".dae", ".glb", ".gltf"})) return Kind::mesh;
@@ -93,11 +95,24 @@ Result<> convert_recording(const ConvertOptions& options, const RecordingConfig&
   });
 }
 
+Result<> convert_session(const ConvertOptions& options, const RunConfig& config) {
+  return read_joint_map(options.in).and_then([&](const JointMap& map) {
+    std::vector<std::string> notes;
+    for (const std::string& robot : map.left_out) notes.push_back(robot + " is in another map and left out");
+    print_notes("convert", notes);
+    return write_joint_map(options.out, map, config.maps);
+  });
+}
+
 Result<> convert(const ConvertOptions& options, const Common& common) {
   const std::string& in = options.in;
   const std::string& out = options.out;
   const Kind from = kind_of(in);
   const Kind to = kind_of(out);
+  if (from == Kind::session) {
+    const Result<RunConfig> config = configured(common);
+    return config ? convert_session(options, *config) : tl::unexpected(config.error());
+  }
   if (from == Kind::recording && (to == Kind::recording || to == Kind::trajectory)) {
     const Result<RunConfig> config = configured(common);
     if (!config) return tl::unexpected(config.error());
@@ -115,7 +130,9 @@ Result<> convert(const ConvertOptions& options, const Common& common) {
 void add_convert(Program& program) {
   const auto options = std::make_shared<ConvertOptions>();
   const Command command =
-      program.add_command("convert", "Convert between recording, cloud, mesh, trajectory and graph formats",
+      program.add_command("convert",
+                          "Convert between recording, cloud, mesh, trajectory and graph formats, and the map "
+                          "of a session to others",
                           [options](const Common& common) { return convert(*options, common); });
   command.add_option("IN", options->in, "What to read").required();
   command.add_option("OUT", options->out, "What to write; its extension sets the format").required();
@@ -125,9 +142,11 @@ void add_convert(Program& program) {
   add_recording_options(command, options->recording);
   add_truth_topic(command, options->recording);
   command.footer(
+      "session -> its joint map: .las, .pcd, .ply, or .pgm with .yaml (occupancy grid for map servers); "
+      "fields "
+      "maps.*\n"
       "recording (.mcap, .db3, .bag, bag folder, folder of clouds, FOLDER@even) -> .mcap, folder, or its "
-      "poses "
-      "(.tum .csv .kitti)\n"
+      "poses (.tum .csv .kitti)\n"
       "cloud (.pcd .ply .bin) -> cloud; mesh (.obj .stl .dae .glb .ply) -> .ply, and of a .ply the vertices "
       "-> cloud\n"
       "trajectory (.tum .csv) -> .tum .csv .kitti; graph (.g2o) -> .g2o, rewritten");

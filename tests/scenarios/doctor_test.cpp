@@ -17,7 +17,7 @@
 namespace adit {
 namespace {
 
-const Diagnosis& of(const std::vector<Diagnosis>& all, std::string_view check) {
+Diagnosis of(const std::vector<Diagnosis>& all, std::string_view check) {
   const auto found = std::ranges::find(all, check, &Diagnosis::check);
   EXPECT_NE(found, all.end()) << check;
   return found == all.end() ? all.front() : *found;
@@ -84,7 +84,7 @@ TEST_F(Doctor, NamesTheMountThatTheFloorAndTheMotionShow) {
   recording.T_base_lidar = parse_mount(wrong).value();
   const std::vector<Diagnosis> found = found_in(recording);
   EXPECT_EQ(of(found, "mount: tilt and height").health, Health::noted);
-  const Diagnosis& turn = of(found, "mount: turn and lever arm");
+  const Diagnosis turn = of(found, "mount: turn and lever arm");
   EXPECT_EQ(turn.health, Health::spoils);
   const Pose error = good_.T_base_lidar.inverse() * mount_in(turn.remedy);
   EXPECT_LT(error.log().tail<3>().norm(), 1.5 * kDegree) << turn.remedy;
@@ -99,7 +99,7 @@ TEST_F(Doctor, FindsWhatTheScansLack) {
   gaps.scan_stamps.clear();
   for (const std::size_t i : kept) gaps.scan_stamps.push_back(good_.scan_stamps[i]);
   gaps.read_scan = [read = good_.read_scan, kept](std::size_t i) { return read(kept[i]); };
-  const Diagnosis& missing = of(found_in(gaps), "scans: missing");
+  const Diagnosis missing = of(found_in(gaps), "scans: missing");
   EXPECT_EQ(missing.health, Health::spoils);
   EXPECT_NE(missing.sentence.find("the longest gap 4."), std::string::npos) << missing.sentence;
 
@@ -129,7 +129,7 @@ TEST_F(Doctor, FindsWhatStandsInTheView) {
   const Recording blind = with([&](PointCloud& cloud) {  // from 120 to 180 degrees
     keep(cloud, [](const Eigen::Vector3f& p) { return std::atan2(p.y(), p.x()) < 120.0 * kDegree; });
   });
-  const Diagnosis& view = of(found_in(blind), "scans: view");
+  const Diagnosis view = of(found_in(blind), "scans: view");
   EXPECT_EQ(view.health, Health::noted);
   EXPECT_NE(view.sentence.find("blind: 120 to 180"), std::string::npos) << view.sentence;
 
@@ -140,7 +140,7 @@ TEST_F(Doctor, FindsWhatStandsInTheView) {
   const Recording mast = with([](PointCloud& cloud) {  // a mast at 0.5 m to the left behind
     for (std::size_t i = 0; i < cloud.size(); i += 100) cloud.points[i] = {-0.35F, 0.35F, 0.1F};
   });
-  const Diagnosis& itself = of(found_in(mast), "scans: the robot itself");
+  const Diagnosis itself = of(found_in(mast), "scans: the robot itself");
   EXPECT_EQ(itself.health, Health::noted);
   EXPECT_NE(itself.sentence.find("about 13"), std::string::npos) << itself.sentence;
   EXPECT_NE(itself.remedy.find("min_range=0.6"), std::string::npos) << itself.remedy;

@@ -12,6 +12,7 @@ Fields fields_of(RunConfig& c) {
   append(fields, "recording", fields_of(c.recording));
   append(fields, "simulation", fields_of(c.simulation));
   append(fields, "world", fields_of(c.world));
+  append(fields, "maps", fields_of(c.maps));
   return fields;
 }
 

@@ -9,6 +9,7 @@
 #include "adit/core/recording_config.hpp"
 #include "adit/simulation/scenario.hpp"
 #include "adit/simulation/world.hpp"
+#include "adit/slam/joint_map.hpp"
 #include "adit/slam/slam_config.hpp"
 
 namespace adit {
@@ -20,6 +21,7 @@ struct RunConfig {
   ScenarioConfig simulation;
   WorldConfig world;
   OdometryMethod paper_odometry = OdometryMethod::kinematic_icp;
+  MapsConfig maps;
 };
 /// The keys of `slam` have no prefix of their own: robot.odometry.method, loops.place.max_distance, ...
 Fields fields_of(RunConfig& config);

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The joint map of a session in the formats that others read.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adit/core/config.hpp"
+#include "adit/geometry/occupancy_grid.hpp"
+#include "adit/robot/robot_map.hpp"
+
+namespace adit {
+
+struct MapsConfig {
+  double voxel_m = 0.1;
+  OccupancyConfig grid;
+};
+[[nodiscard]] Fields fields_of(MapsConfig& config);
+
+/// Robots that share a frame, with their keyframes in it.
+struct JointMap {
+  std::vector<std::shared_ptr<const RobotMap>> maps;
+  std::vector<std::vector<Pose>> T_world_keyframe;  ///< One for each keyframe of each map.
+  std::vector<std::string> left_out;                ///< Robots of the session that are in other maps.
+};
+/// The map of the most robots in a session directory, the first of several. Fails as read_fleet does.
+[[nodiscard]] Result<JointMap> read_joint_map(const std::filesystem::path& session);
+
+/// Writes .las (local coordinates; the source ID is the number of the robot), .pcd or .ply (one point a
+/// voxel) or .pgm with its .yaml (occupancy_of). Fails on other endings.
+Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config);
+
+}  // namespace adit
