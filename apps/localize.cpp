@@ -24,7 +24,7 @@ struct LocalizeOptions {
   RecordingConfig recording;
 };
 
-/// What became of the robot and each of the session's, one sentence each.
+/// Why the robot was not merged with each of the session's.
 std::vector<std::string> refusals(const Session& session, RobotId robot) {
   std::vector<std::string> out;
   for (const PairOutcome& pair : session.solution.pairs)

@@ -55,11 +55,19 @@ Result<> without_failures(const SlamRun& run, const std::string& out) {
   std::string reasons;
   for (const FailedRobot& robot : run.failed) reasons += "; " + robot.reason;
   return fail(format("{} of {} recordings could not be mapped and are missing in {}{}", run.failed.size(),
-                     run.failed.size() + run.session.maps.size(), out, reasons));
+                     run.failed.size() + run.num_mapped, out, reasons));
 }
 
 void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
   to.insert(to.end(), more.begin(), more.end());
+}
+
+/// Whether a configuration maps and merges as another does; how recordings are read and worlds made is no
+/// matter.
+bool maps_alike(RunConfig config, const std::string& other_toml) {
+  RunConfig other;
+  return parse_config(fields_of(other), other_toml) &&
+         to_toml(fields_of(config.slam)) == to_toml(fields_of(other.slam));
 }
 
 Ruling ruling_of(const std::string& pair, Ruling::Kind kind) {
@@ -85,7 +93,7 @@ Result<SavedSessions> open_sessions(const std::vector<std::string>& paths) {
       all.profile = one.profile;
       all.settings = one.settings;
       all.seed = one.seed;
-    } else if (one.configuration != saved.fleets.front().provenance.configuration) {
+    } else if (!maps_alike(saved.job.config, one.configuration)) {
       fleet->notes.push_back(format(
           "{} was made with another configuration than {}, whose counts from here on", path, paths.front()));
     }
@@ -104,7 +112,7 @@ void refuse_configuration(const Common& common) {
 
 void add_ruling_options(const Command& command, RulingOptions& options) {
   command.add_option("--veto", options.vetoes,
-                     "Robots A,B whose maps stay apart whatever the test says (repeatable)");
+                     "Robots A,B whose loops join nothing, whatever the test says (repeatable)");
   command.add_option(
       "--confirm", options.confirmed,
       "Robots A,B whose maps are joined by the best alignment that was found, whatever the test "

@@ -120,6 +120,8 @@ Result<> go_on(const SlamOptions& options, const Common& common) {
 Result<> slam_command(const SlamOptions& options, const Common& common) {
   if (!options.session.empty()) return go_on(options, common);
   if (options.out.empty()) usage_error("--out is required: the session directory to write");
+  if (!options.rulings.vetoes.empty() || !options.rulings.confirmed.empty())
+    usage_error("--veto and --confirm rule over what a session has found; give it with --session");
   Result<Job> job = options.rerun.empty() ? job_of(options, common) : job_again(options, common);
   if (!job) return tl::unexpected(job.error());
   job->provenance.seed = job->config.simulation.seed;

@@ -58,6 +58,7 @@ TEST(Conformance, ThePointsOfOneTubeComeOutOfEveryStorage) {
             << file;
       }
     }
+    ASSERT_EQ(recording->wheel.size(), 7U) << file;
     for (std::size_t i = 0; i < recording->wheel.size(); ++i)
       EXPECT_NEAR(recording->wheel[i].T_world_body.translation().x(), 0.25 * static_cast<double>(i), 1e-12);
   }

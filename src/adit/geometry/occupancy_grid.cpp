@@ -42,14 +42,14 @@ class Grid {
     Eigen::Vector2d high = -low;
     std::vector<Eigen::Vector3f> bases;
     for (const PlacedScan& scan : scans) {
-      const Vector3& base = scan.T_world_base.translation();
-      low = low.cwiseMin(base.head<2>());
-      high = high.cwiseMax(base.head<2>());
-      bases.push_back(base.cast<float>());
+      const Vector3 sensor = scan.T_world_base * scan.viewpoint;
+      low = low.cwiseMin(sensor.head<2>());
+      high = high.cwiseMax(sensor.head<2>());
+      bases.push_back(scan.T_world_base.translation().cast<float>());
       T_base_world_.push_back(scan.T_world_base.inverse());
     }
     bases_ = KdTree(bases);
-    const double margin = config.reach_m + 2.0;  // the sensor stands beside the base's origin
+    const double margin = config.reach_m + 2.0 * config.resolution_m;
     const auto cell = [&](double metres) { return std::floor(metres / config.resolution_m); };
     first_ = {cell(low.x() - margin), cell(low.y() - margin)};
     width_ = static_cast<std::size_t>(cell(high.x() + margin) - first_.x()) + 1;
@@ -128,8 +128,9 @@ class Grid {
 }  // namespace
 
 CellState OccupancyGrid::at(double x, double y) const {
-  const double column = std::floor((x - origin.x()) / resolution_m);
-  const double row = std::floor((y - origin.y()) / resolution_m);
+  // Cells begin at multiples of their edge, here as where they were filled.
+  const double column = std::floor(x / resolution_m) - std::round(origin.x() / resolution_m);
+  const double row = std::floor(y / resolution_m) - std::round(origin.y() / resolution_m);
   if (!(column >= 0.0 && row >= 0.0)) return CellState::unknown;
   if (column >= static_cast<double>(width) || row >= static_cast<double>(height)) return CellState::unknown;
   return cells[static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column)];
@@ -138,6 +139,10 @@ CellState OccupancyGrid::at(double x, double y) const {
 Result<OccupancyGrid> occupancy_of(const std::vector<PlacedScan>& scans, const OccupancyConfig& config) {
   constexpr std::size_t kMostCells = 400'000'000;
   if (scans.empty()) return fail("there are no scans to make a grid of");
+  if (!(config.lowest_m < config.highest_m))
+    return fail(
+        format("grid.lowest_m ({}) has to be less than grid.highest_m ({}): nothing would be an obstacle",
+               config.lowest_m, config.highest_m));
   const Grid grid(scans, config);
   OccupancyGrid out{config.resolution_m, grid.origin(), grid.width(), grid.height(), {}};
   if (out.width > kMostCells / out.height)

@@ -55,8 +55,8 @@ struct PlacedScan {
 /// Each scan is a look around: in every direction of half a degree cells are free up to the nearest obstacle,
 /// or as far as floor was seen, and the cells of obstacles are occupied. A point is an obstacle when it lies
 /// between `lowest_m` and `highest_m` above the floor of the nearest base of all scans. A cell that was seen
-/// free much more often than occupied is free: what was there has moved. Fails without scans, and for more
-/// than 400 million cells.
+/// free much more often than occupied is free: what was there has moved. Fails without scans, for a band
+/// without height, and for more than 400 million cells.
 [[nodiscard]] Result<OccupancyGrid> occupancy_of(const std::vector<PlacedScan>& scans,
                                                  const OccupancyConfig& config);
 

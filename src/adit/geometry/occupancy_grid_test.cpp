@@ -77,8 +77,21 @@ TEST(OccupancyGrid, OnlyTheBandOfHeightsIsAnObstacle) {
   EXPECT_EQ(grid->at(16.0, 0.0), CellState::occupied);
 }
 
+TEST(OccupancyGrid, ASensorFarFromTheBaseSeesWithinTheGrid) {
+  PlacedScan scan = look(5.0, 0.0);
+  PointCloud cloud;
+  for (int i = 0; i < 360; ++i)
+    cloud.points.emplace_back(Vector3(6.0 + 9.9 * std::cos(i), 9.9 * std::sin(i), 1.0).cast<float>());
+  scan.viewpoint = Vector3(6.0, 0.0, 1.0);
+  scan.cloud_base = std::make_shared<const PointCloud>(cloud);
+  const Result<OccupancyGrid> grid = occupancy_of({scan}, {});
+  ASSERT_TRUE(grid);
+  EXPECT_EQ(grid->at(11.0 + 9.9, 0.0), CellState::occupied);
+}
+
 TEST(OccupancyGrid, NoScansAndTooManyCellsAreErrors) {
   EXPECT_ERROR(occupancy_of({}, {}), "no scans");
+  EXPECT_ERROR(occupancy_of({look(1.0, 0.0)}, {.lowest_m = 2.0, .highest_m = 1.0}), "grid.lowest_m");
   std::vector<PlacedScan> far = {look(1.0, 0.0), look(2.0, 0.0)};
   far[1].T_world_base = Pose::planar(1e6, 1e6, 0.0);
   EXPECT_ERROR(occupancy_of(far, {}), "resolution of more than 0.1 m");

@@ -22,6 +22,8 @@ constexpr std::uint8_t kPointFormat = 6;
 constexpr std::uint16_t kPointSize = 30;
 constexpr double kScale = 0.001;  // metres
 
+double in_steps(double metres) { return std::round(metres / kScale) * kScale; }
+
 class Bytes {
  public:
   template <class T>
@@ -62,8 +64,8 @@ std::string header_of(std::size_t num_points, const Vector3& low, const Vector3&
   for (int i = 0; i < 3; ++i) out.number(kScale);
   for (int i = 0; i < 3; ++i) out.number(std::floor(low[i]));
   for (int i = 0; i < 3; ++i) {
-    out.number(high[i]);
-    out.number(low[i]);
+    out.number(in_steps(high[i]));  // as the points are stored
+    out.number(in_steps(low[i]));
   }
   out.zeros(8 + 8 + 4);  // no waveforms, no records behind the points
   out.number(static_cast<std::uint64_t>(num_points));
@@ -92,13 +94,13 @@ Result<> write_las(const std::filesystem::path& path, const std::vector<LasPoint
   Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
   Vector3 high = -low;
   for (const LasPoint& point : points) {
+    if (!point.position.allFinite()) return fail(path.string() + ": a coordinate is not finite");
     low = low.cwiseMin(point.position);
     high = high.cwiseMax(point.position);
   }
   if (points.empty()) low = high = Vector3::Zero();
   if (!((high - low).maxCoeff() < kFarthest))
-    return fail(path.string() +
-                ": coordinates are too far apart, or not finite, for a LAS file in millimetres");
+    return fail(path.string() + ": coordinates are too far apart for a LAS file in millimetres");
   const std::size_t wkt_size = crs_wkt.size() + 1;  // with a zero at the end
   if (wkt_size > std::numeric_limits<std::uint16_t>::max())
     return fail(path.string() + ": the coordinate system takes more than 64 kB");

@@ -24,7 +24,7 @@ struct LasPoint {
 inline constexpr const char* kLocalCrs = "LOCAL_CS[\"adit map\",UNIT[\"metre\",1]]";
 
 /// Point format 6, to millimetres, with `crs_wkt` (OGC WKT 1) as its coordinate system. Fails where
-/// coordinates span more than 4,000 km.
+/// coordinates span 2,000 km, or are not finite.
 Result<> write_las(const std::filesystem::path& path, const std::vector<LasPoint>& points,
                    const std::string& crs_wkt = kLocalCrs);
 

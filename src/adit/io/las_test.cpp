@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "support/files.hpp"
@@ -36,8 +37,8 @@ TEST(Las, IsLaidOutAsTheSpecificationSays) {
   EXPECT_EQ(number_at<std::uint32_t>(bytes, 107), 0U) << "counts of format 6 stand at 247";
   EXPECT_EQ(number_at<std::uint64_t>(bytes, 247), 2U);
   EXPECT_EQ(number_at<std::uint64_t>(bytes, 255), 2U);
-  EXPECT_EQ(number_at<double>(bytes, 179), 1.2345) << "max x, then min x";
-  EXPECT_EQ(number_at<double>(bytes, 187), -2000.001);
+  EXPECT_NEAR(number_at<double>(bytes, 179), 1.2345, 0.0006) << "max x, then min x";
+  EXPECT_NEAR(number_at<double>(bytes, 187), -2000.001, 1e-9);
   EXPECT_EQ(bytes.substr(377, 15), "LASF_Projection");
   EXPECT_EQ(number_at<std::uint16_t>(bytes, 393), 2112);
   EXPECT_EQ(bytes.substr(429, std::strlen(kLocalCrs)), kLocalCrs);
@@ -63,6 +64,7 @@ TEST(Las, NoPointsAreAFileAndPointsTooFarApartAnError) {
   EXPECT_EQ(number_at<std::uint64_t>(test::get_file(folder / "none.las"), 247), 0U);
   EXPECT_ERROR(write_las(folder / "far.las", {{{0.0, 0.0, 0.0}}, {{1e7, 0.0, 0.0}}}), "too far apart");
   EXPECT_FALSE(std::filesystem::exists(folder / "far.las"));
+  EXPECT_ERROR(write_las(folder / "nan.las", {{{0.0, std::nan(""), 0.0}}}), "not finite");
 }
 
 }  // namespace

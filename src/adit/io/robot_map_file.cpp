@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "adit/io/robot_map_file.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <type_traits>
 #include <utility>
 
+#include "adit/core/decompositions.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/compression.hpp"
 #include "adit/io/crc32.hpp"
@@ -55,6 +59,8 @@ class Reader {
     ok_ = ok_ && count <= bytes_.size() / item_size;
     return ok_;
   }
+  /// What was read makes no sense.
+  void refuse() { ok_ = false; }
   [[nodiscard]] bool done() const { return ok_ && bytes_.empty(); }
 
  private:
@@ -94,7 +100,13 @@ void pose(Archive& archive, P& value) {
   Vector3 t = value.translation();
   archive.raw(q.coeffs().data(), 4 * sizeof(double));
   archive.raw(t.data(), 3 * sizeof(double));
-  if constexpr (Archive::kReads) value = Pose(q, t);
+  if constexpr (Archive::kReads) {
+    constexpr double kRounding = 1e-9;
+    if (q.coeffs().allFinite() && t.allFinite() && std::abs(q.norm() - 1.0) < kRounding)
+      value = Pose(q, t);
+    else
+      archive.refuse();
+  }
 }
 
 template <class Archive, class Points>
@@ -142,9 +154,9 @@ template <class Archive, class Bits>
 void bits(Archive& archive, Bits& value) {
   if (!size_of_vector(archive, value, 1)) return;
   for (std::size_t i = 0; i < value.size(); ++i) {
-    bool bit = value[i];
+    std::uint8_t bit = value[i] ? 1 : 0;
     archive.number(bit);
-    if constexpr (Archive::kReads) value[i] = bit;
+    if constexpr (Archive::kReads) value[i] = bit != 0;
   }
 }
 
@@ -185,10 +197,36 @@ void transfer(Archive& archive, Map& map) {
   archive.raw(map.viewpoint.data(), 3 * sizeof(double));
 }
 
+bool is_whole(const PointCloud& cloud) {
+  const std::size_t n = cloud.points.size();
+  return (cloud.intensities.empty() || cloud.intensities.size() == n) &&
+         (cloud.time_offsets_ns.empty() || cloud.time_offsets_ns.size() == n);
+}
+
+bool is_whole(const ScanContext& place, const ScanContextConfig& config) {
+  const auto rings = static_cast<std::size_t>(config.num_rings);
+  const auto sectors = static_cast<std::size_t>(config.num_sectors);
+  return place.num_rings == config.num_rings && place.num_sectors == config.num_sectors &&
+         place.unit_columns.size() == rings * sectors && place.norms.size() == sectors &&
+         place.ring_key.size() == rings && place.sector_key.size() == sectors;
+}
+
+/// The solver inverts the covariance of each step but the first.
+bool are_usable(const std::vector<Matrix6>& step_covariances) {
+  for (std::size_t k = 1; k < step_covariances.size(); ++k)
+    if (!step_covariances[k].allFinite() || !is_positive_definite(step_covariances[k])) return false;
+  return true;
+}
+
 bool is_consistent(const RobotMap& map) {
   const std::size_t n = map.keyframes.size();
   return map.step_covariances.size() == n && map.pose_noise.size() == n && map.places.size() == n &&
-         map.tunnel.size() == n && map.searchable.size() == n && map.unconfirmed.size() == n;
+         map.tunnel.size() == n && map.searchable.size() == n && map.unconfirmed.size() == n &&
+         are_usable(map.step_covariances) &&
+         std::ranges::all_of(map.places,
+                             [&](const ScanContext& place) { return is_whole(place, map.scan_context); }) &&
+         std::ranges::all_of(map.keyframes,
+                             [](const Keyframe& keyframe) { return is_whole(*keyframe.cloud); });
 }
 
 }  // namespace

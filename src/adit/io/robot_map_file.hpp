@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 /// A robot's own map in one file, bit for bit, so that work on what comes after the odometry need not drive
 /// again. Sessions keep one per robot. The layout has a number, which its first line ends with, and a
-/// checksum; adit reads layout 7 and every later one (tests/conformance).
+/// checksum; adit reads every layout from 7 up to its own (tests/conformance).
 #pragma once
 
 #include <filesystem>

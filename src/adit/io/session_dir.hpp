@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 /// A session on disk: what `adit slam` made of some robots, in the layout of a session directory
-/// (docs/architecture.md): session.toml, ROBOT/{trajectory.tum,odometry.tum,map.ply}, map.ply, graph_*.g2o,
-/// loops.csv.
+/// (slam/saved_fleet.hpp has the rest of it): session.toml, ROBOT/{trajectory.tum,odometry.tum,map.ply},
+/// map.ply, graph_*.g2o, loops.csv.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,7 @@
 namespace adit {
 namespace {
 
-constexpr double kDegrees = 1.0 / kDegree;
+constexpr double kPerRadian = 1.0 / kDegree;  // degrees
 
 std::vector<std::size_t> spread_over(std::size_t num_all, std::size_t num) {
   std::vector<std::size_t> chosen;
@@ -28,10 +28,16 @@ std::vector<std::size_t> spread_over(std::size_t num_all, std::size_t num) {
   return chosen;
 }
 
-double driven_m(const Trajectory& wheel) {
+/// From scan to scan of these, so that the jitter of a robot that stands does not add up.
+double moved_m(const Recording& recording, const std::vector<std::size_t>& scans) {
   double sum = 0.0;
-  for (std::size_t i = 1; i < wheel.size(); ++i)
-    sum += (wheel[i].T_world_body.translation() - wheel[i - 1].T_world_body.translation()).norm();
+  std::optional<Vector3> last;
+  for (const std::size_t i : scans) {
+    const Result<Pose> pose = pose_at(recording.wheel, recording.scan_stamps[i]);
+    if (!pose) continue;
+    if (last) sum += (pose->translation() - *last).norm();
+    last = pose->translation();
+  }
   return sum;
 }
 
@@ -134,7 +140,7 @@ std::optional<FloorSeen> floor_seen(const std::vector<std::optional<Plane3>>& fl
   const Vector3 up(median(x), median(y), 1.0);
   std::vector<double> off;
   for (std::size_t i = 0; i < x.size(); ++i)
-    off.push_back(kDegrees * std::hypot(x[i] - up.x(), y[i] - up.y()));
+    off.push_back(kPerRadian * std::hypot(x[i] - up.x(), y[i] - up.y()));
   return FloorSeen{up.normalized(), median(heights), median(off)};
 }
 
@@ -163,6 +169,8 @@ std::vector<std::pair<double, double>> blind_sectors(const std::array<bool, kSec
 
 /// A direction and a distance, 3 degrees by 3 degrees by 10 cm.
 using Cell = std::array<int, 3>;
+constexpr double kCellDeg = 3.0;
+constexpr double kCellMetres = 0.1;
 constexpr double kSelfReach = 1.2;  // metres: no wall is nearer for long
 
 struct OfScan {
@@ -189,14 +197,12 @@ OfScan look_at(const Scan& scan, const Pose& T_base_lidar) {
   }
   out.floor = floor_of(in_base, T_base_lidar.translation());
   constexpr double kFloorMargin = 0.15;  // metres
-  constexpr double kCellDeg = 3.0;
-  constexpr double kCellMetres = 0.1;
   for (std::size_t i = 0; i < in_base.size(); ++i) {
     if (out.ranges[i] > kSelfReach) continue;
     if (out.floor && std::abs(off_plane(*out.floor, in_base[i])) < kFloorMargin) continue;
     const Vector3 p = scan.cloud.points[i].cast<double>();
-    ++out.near[{static_cast<int>(std::floor(kDegrees * std::atan2(p.y(), p.x()) / kCellDeg)),
-                static_cast<int>(std::floor(kDegrees * std::atan2(p.z(), p.head<2>().norm()) / kCellDeg)),
+    ++out.near[{static_cast<int>(std::floor(kPerRadian * std::atan2(p.y(), p.x()) / kCellDeg)),
+                static_cast<int>(std::floor(kPerRadian * std::atan2(p.z(), p.head<2>().norm()) / kCellDeg)),
                 static_cast<int>(out.ranges[i] / kCellMetres)}];
   }
   out.has_times = scan.cloud.has_times();
@@ -216,7 +222,7 @@ double cone_of(const std::vector<OfScan>& scans) {
   std::vector<double> angles;
   for (const OfScan& scan : scans)
     for (const Vector3& direction : scan.some_directions)
-      angles.push_back(kDegrees * std::acos(std::clamp(direction.dot(mean.normalized()), -1.0, 1.0)));
+      angles.push_back(kPerRadian * std::acos(std::clamp(direction.dot(mean.normalized()), -1.0, 1.0)));
   return percentile(angles, 99.0);
 }
 
@@ -233,15 +239,15 @@ std::optional<SelfHits> self_hits_in(const std::vector<OfScan>& scans, std::size
   double num = 0.0;
   for (const auto& [cell, counts] : cells) {
     if (counts.first < kOften * static_cast<double>(scans.size())) continue;
-    const double azimuth = 3.0 * (cell[0] + 0.5) / kDegrees;
+    const double azimuth = kCellDeg * (cell[0] + 0.5) / kPerRadian;
     num += counts.second;
     middle += counts.second * Vector3(std::cos(azimuth), std::sin(azimuth), 0.0);
-    hits.nearest_m = std::min(hits.nearest_m, 0.1 * cell[2]);
-    hits.farthest_m = std::max(hits.farthest_m, 0.1 * (cell[2] + 1));
+    hits.nearest_m = std::min(hits.nearest_m, kCellMetres * cell[2]);
+    hits.farthest_m = std::max(hits.farthest_m, kCellMetres * (cell[2] + 1));
   }
   if (num == 0.0) return {};
   hits.share = num / static_cast<double>(num_returns);
-  hits.azimuth_deg = kDegrees * std::atan2(middle.y(), middle.x());
+  hits.azimuth_deg = kPerRadian * std::atan2(middle.y(), middle.x());
   return hits;
 }
 
@@ -310,7 +316,7 @@ Result<ScansSeen> look_at_scans(const Recording& recording, std::size_t num) {
   seen.cone_deg = cone_of(scans);
   seen.floor = floor_seen(floors);
   constexpr double kMoved = 5.0;  // metres
-  seen.has_moved = driven_m(recording.wheel) > kMoved;
+  seen.has_moved = moved_m(recording, chosen) > kMoved;
   if (seen.has_moved) seen.self_hits = self_hits_in(scans, ranges.size());
   return seen;
 }
@@ -370,10 +376,14 @@ std::optional<MountByMotion> mount_from(const std::vector<SideMotion>& motions) 
   const Eigen::Matrix2d covariance = squares / static_cast<double>(motions.size() - 2) * H.inverse();
   MountByMotion out;
   out.num_steps = motions.size();
-  out.yaw_deg = kDegrees * x[0];
-  out.yaw_sigma_deg = kDegrees * std::sqrt(covariance(0, 0));
+  out.yaw_deg = kPerRadian * x[0];
+  out.yaw_sigma_deg = kPerRadian * std::sqrt(covariance(0, 0));
   out.ahead_m = x[1];
-  out.ahead_sigma_m = std::sqrt(covariance(1, 1));
+  double squared_turns = 0.0;
+  for (const SideMotion& m : motions) squared_turns += m.turn * m.turn;
+  constexpr double kEnoughTurns = 0.01;  // rad^2: some 10 steps of 2 degrees
+  out.ahead_sigma_m =
+      squared_turns > kEnoughTurns ? std::sqrt(covariance(1, 1)) : std::numeric_limits<double>::infinity();
   return out;
 }
 

@@ -101,7 +101,9 @@ Diagnosis view(const ScansSeen& seen) {
 
 Diagnosis self_hits(const ScansSeen& seen) {
   const std::string check = "scans: the robot itself";
-  if (!seen.has_moved) return {check, Health::unknown, "by the wheels the robot hardly moves"};
+  if (!seen.has_moved)
+    return {check, Health::unknown,
+            "without wheels that say that the robot moves it cannot be told from walls"};
   if (!seen.self_hits) return {check, Health::good, "no return stays where it is while the robot moves"};
   const SelfHits& hits = *seen.self_hits;
   constexpr double kFew = 0.001;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <variant>
 
 #include "adit/core/progress.hpp"
 #include "adit/fleet/sync/own_map_parts.hpp"
@@ -30,8 +31,18 @@ void limit_cached(std::vector<Agent>& agents, std::size_t at_work) {
   }
 }
 
-/// What the robot of `map` knew when it was saved, if it was.
-void restore(Agent& agent, const Meeting& meeting, const std::vector<MetBefore>& met_before) {
+/// Whether the test of these two was concluded.
+bool were_checked(RobotId one, RobotId other, const std::vector<MessageBody>& findings) {
+  return std::ranges::any_of(findings, [&](const MessageBody& finding) {
+    const auto* part = std::get_if<MergeChecks>(&finding);
+    return part != nullptr && std::ranges::any_of(part->checks, [&](const MergeCheck& check) {
+             return check.a == std::min(one, other) && check.b == std::max(one, other);
+           });
+  });
+}
+
+/// What the agent's robot knew when it was saved, if it was.
+void restore(Agent& agent, Meeting& meeting, const std::vector<MetBefore>& met_before) {
   for (const MetBefore& group : met_before) {
     const auto was_there = [&](RobotId robot) {
       return std::ranges::find(group.robots, robot) != group.robots.end();
@@ -39,9 +50,10 @@ void restore(Agent& agent, const Meeting& meeting, const std::vector<MetBefore>&
     if (!was_there(agent.id())) continue;
     std::map<RobotId, std::uint32_t> met;
     for (const auto& map : meeting.maps)
-      if (was_there(map->id) && map->id != agent.id())
+      if (was_there(map->id) && map->id != agent.id() && were_checked(agent.id(), map->id, group.findings))
         met[map->id] = static_cast<std::uint32_t>(searchable_keyframes(*map).size());
-    agent.restore(group.findings, met);
+    if (!agent.restore(group.findings, met))
+      meeting.failures.push_back("a part of what had been found before makes no sense");
   }
 }
 
@@ -82,7 +94,8 @@ Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps, 
       return tl::unexpected(met.error());
   }
   for (const Agent& agent : meeting.agents) meeting.bytes_sent.push_back(bus.bytes_sent(agent.id()));
-  meeting.failures = bus.failures();
+  const std::vector<std::string> lost = bus.failures();
+  meeting.failures.insert(meeting.failures.end(), lost.begin(), lost.end());
   return meeting;
 }
 

@@ -21,7 +21,8 @@ struct Meeting {
   std::vector<std::string> failures;      ///< Messages that an agent could not take, one line each.
 };
 
-/// Robots that met before they were saved, and what all of them had found by then.
+/// Robots that met before they were saved, and what all of them had found by then. Those whose test was
+/// concluded are not searched again.
 struct MetBefore {
   std::vector<RobotId> robots;
   std::vector<MessageBody> findings;  ///< Agent::findings.

@@ -30,9 +30,9 @@ Result<> write_fleet(const std::filesystem::path& dir,
                      const std::vector<std::shared_ptr<const RobotMap>>& maps,
                      const std::vector<MessageBody>& findings);
 
-/// Reads a session directory. Findings that another version of the protocol wrote are left out, with a note:
-/// the pairs are then tested anew. Fails, naming the file, where a map is missing (sessions of adit 0.6 and
-/// before have none) or damaged.
+/// Reads a session directory. Findings that are damaged, of other maps or of another version of the protocol
+/// are left out, with a note: the pairs are then tested anew. Fails, naming the file, where a map is missing
+/// (older sessions have none) or damaged.
 [[nodiscard]] Result<SavedFleet> read_fleet(const std::filesystem::path& dir);
 
 /// Gives the robots new ids. `ids` has all of them, in the same order as before: of two robots the one with

@@ -3,9 +3,10 @@
 #include "adit/slam/slam.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
-#include <span>
 #include <utility>
+#include <variant>
 
 #include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
@@ -36,6 +37,33 @@ Provenance provenance_of(const std::vector<SavedFleet>& saved, const Mapping& ma
   return provenance;
 }
 
+/// The text with whole names replaced, the longest first where several fit.
+std::string with_names(const std::string& text, const std::map<std::string, std::string>& new_names) {
+  const auto is_part_of_a_name = [&](std::size_t i) {
+    return i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) != 0 || text[i] == '_');
+  };
+  std::string out;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::pair<const std::string, std::string>* longest = nullptr;
+    for (const auto& name : new_names) {
+      const bool fits = text.compare(i, name.first.size(), name.first) == 0 &&
+                        !(i > 0 && is_part_of_a_name(i - 1)) && !is_part_of_a_name(i + name.first.size());
+      if (fits && (longest == nullptr || name.first.size() > longest->first.size())) longest = &name;
+    }
+    out += longest == nullptr ? text.substr(i, 1) : longest->second;
+    i += longest == nullptr ? 1 : longest->first.size();
+  }
+  return out;
+}
+
+/// The sentences of merge checks name robots.
+void rename_in(std::vector<MessageBody>& findings, const std::map<std::string, std::string>& new_names) {
+  if (new_names.empty()) return;
+  for (MessageBody& finding : findings)
+    if (auto* part = std::get_if<MergeChecks>(&finding))
+      for (MergeCheck& check : part->checks) check.reason = with_names(check.reason, new_names);
+}
+
 /// Distinct names for all, those of the sessions first.
 std::vector<std::string> name_all(std::vector<SavedFleet>& saved, std::vector<Recording>& recordings) {
   std::vector<std::string> notes;
@@ -50,15 +78,23 @@ std::vector<std::string> name_all(std::vector<SavedFleet>& saved, std::vector<Re
   const auto rename = [&](std::string& name) {
     const std::string& distinct = names[next++];
     if (distinct != name)
-      notes.push_back(format("another robot is called '{}'; here it is {}", printable(name), distinct));
+      notes.push_back(
+          format("the robot '{}' is called {} here, as that name is taken or can be no folder "
+                 "(NAME=FILE chooses another name)",
+                 printable(name), distinct));
     return std::exchange(name, distinct);
   };
-  for (SavedFleet& fleet : saved)
+  for (SavedFleet& fleet : saved) {
+    std::map<std::string, std::string> new_names;
     for (const auto& map : fleet.maps) {
       const std::string was = rename(map->name);
+      if (was == map->name) continue;
+      new_names[was] = map->name;
       const auto of_map = std::ranges::find(fleet.provenance.robots, was, &RobotProvenance::name);
       if (of_map != fleet.provenance.robots.end()) of_map->name = map->name;
     }
+    rename_in(fleet.findings, new_names);
+  }
   for (Recording& recording : recordings) rename(recording.name);
   return notes;
 }
@@ -114,21 +150,35 @@ Result<MergeCheck> verdict_by(const Ruling& ruling, const FleetGraph& fleet) {
   check.a = pair.first;
   check.b = pair.second;
   check.advice.reset();
-  const std::string said = check.reason.empty() ? "" : "; the test had said: " + check.reason;
+  // A ruling that went before is taken back, not quoted.
+  const std::string quoting = "; the test had said: ";
+  const std::size_t quoted = check.reason.find(quoting);
+  std::string said = check.reason;
+  if (quoted != std::string::npos) said = check.reason.substr(quoted + quoting.size());
+  if (!said.empty()) said = quoting + said;
+  const auto set_best = [&](HypothesisOutcome outcome) {
+    if (!check.hypotheses.empty()) check.hypotheses.front().outcome = outcome;
+  };
   if (ruling.kind == Ruling::Kind::veto) {
     check.accepted = false;
     check.refused_kind = RefusalKind::unknown;
     check.reason = "a person keeps these maps apart" + said;
+    set_best(HypothesisOutcome::unsure);
     return check;
   }
   if (check.loops.empty())
     return fail(format("{} and {}: no alignment was found that could be confirmed", ruling.a, ruling.b));
   check.accepted = true;
   check.reason = "a person confirmed this merge" + said;
+  set_best(HypothesisOutcome::accepted);
   return check;
 }
 
 Result<> rule(Agent& agent, const std::vector<Ruling>& rulings) {
+  if (!rulings.empty() && agent.known().policy != MergePolicy::adaptive)
+    return fail(
+        "a person rules over merge checks, and this session's keyframe policy makes none; map it with "
+        "--keyframes adaptive");
   for (const Ruling& ruling : rulings) {
     Result<MergeCheck> verdict = verdict_by(ruling, agent.known());
     if (!verdict) return tl::unexpected(verdict.error());
@@ -168,6 +218,7 @@ Result<SlamRun> slam_on(std::vector<SavedFleet> saved, std::vector<Recording> re
     mapping = std::move(*mapped);
   }
   for (const MappedRobot& robot : mapping.robots) maps.push_back(robot.map);
+  run.num_mapped = mapping.robots.size();
   if (const Result<> done = check_comparable(maps); !done) return tl::unexpected(done.error());
   Result<Meeting> meeting = hold_meeting(std::move(maps), config, met_before);
   if (!meeting) return tl::unexpected(meeting.error());

@@ -24,16 +24,17 @@ struct SlamRun {
   Session session;  ///< Its provenance says what ran; the caller fills in command and inputs.
   std::vector<std::uint64_t> bytes_sent;  ///< Per robot of the session.
   EstimateDifference online;              ///< Of the first robot's estimate, kept from meeting to meeting.
-  std::vector<FailedRobot> failed;        ///< Recordings that could not be mapped; the others went on.
-  std::vector<std::string> notes;         ///< Fallbacks, changed names, messages left out, one line each.
-  std::vector<MessageBody> findings;      ///< All loops and merge checks, for a later session.
+  std::size_t num_mapped = 0;       ///< Recordings that were mapped; robots of earlier sessions come on top.
+  std::vector<FailedRobot> failed;  ///< Recordings that could not be mapped; the others went on.
+  std::vector<std::string> notes;   ///< Fallbacks, changed names, messages left out, one line each.
+  std::vector<MessageBody> findings;  ///< All loops and merge checks, for a later session.
 };
 
 /// What a person says of two robots, by name, against the test.
 struct Ruling {
   enum class Kind : std::uint8_t {
-    veto,     ///< Their maps stay apart.
-    confirm,  ///< They are joined by the best alignment that was found.
+    veto,     ///< Their loops join nothing; they may still share a map through other robots.
+    confirm,  ///< They are joined by the best alignment that was found, as long as cycles with others close.
   };
   Kind kind = Kind::veto;
   std::string a, b;
@@ -52,12 +53,13 @@ struct Ruling {
 /// it gives what `slam` of all recordings at once would (docs/decisions/0055). Names that occur twice get a
 /// number, with a note. `rulings` come last and are kept as the reason of the pair. Fails, too, where there
 /// are more than 256 robots, where sessions described places in different ways, on a ruling about a robot
-/// that does not exist, and where no alignment was found that could be confirmed.
+/// that does not exist, under a policy without merge checks, and where no alignment was found that could be
+/// confirmed.
 [[nodiscard]] Result<SlamRun> slam_on(std::vector<SavedFleet> saved, std::vector<Recording> recordings,
                                       const SlamConfig& config, const std::vector<Ruling>& rulings = {});
 
-/// Writes the session directory (docs/architecture.md) into `dir`, which exists: an OutputDir's path, or any
-/// folder.
+/// Writes the session directory (io/session_dir.hpp, slam/saved_fleet.hpp, metrics.json, report.html) into
+/// `dir`, which exists: an OutputDir's path, or any folder.
 Result<> write_slam(const std::filesystem::path& dir, const SlamRun& run);
 
 }  // namespace adit

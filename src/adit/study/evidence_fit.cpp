@@ -113,7 +113,6 @@ class Fit {
       counting.push_back(std::pow(counts.equal_signs_sigma, 2));
     }
     add_spread("walls.same_share", "walls.same_sigma", shares, counting, seen, [](double m) { return m; });
-    add("walls.changed", 1.0 - share_of_the_same_walls(seen), seen);
   }
   void fit_other_walls() {
     const Counts seen = with_walls(wrong_, model_.walls.min_patches);
@@ -126,13 +125,10 @@ class Fit {
     }
     add_spread("walls.prior_other_share", "walls.prior_sigma", logs, counting, seen,
                [](double m) { return 0.5 + std::exp(m); });
-    add("walls.prior_moulded", share_of_the_same_walls(seen), seen);
-  }
-  [[nodiscard]] double share_of_the_same_walls(const Counts& seen) const {
     EqualSignShares shares(model_.walls);
     for (const HypothesisCounts& counts : seen)
       shares.add_other({counts.num_wall_patches, counts.equal_signs, counts.equal_signs_sigma});
-    return shares.chance_of_one_mould();
+    add("walls.prior_moulded", shares.chance_of_one_mould(), seen);
   }
   /// Median, and standard deviation beyond the error of counting, by the median of deviations: some walls
   /// were lined anew.

@@ -42,7 +42,7 @@ std::string why_walls_differ(const Hypothesis& h, RefusalKind kind) {
       kind == RefusalKind::sensor
           ? format("it may be the sensors, all {} places agree and range errors explain {:.0f} % of it",
                    h.compared.size(), 100.0 * h.offsets.share_of_sensors())
-          : "two tunnels built alike");
+          : what_differs(RefusalKind::changed_or_other));
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ std::string MergeChecker::remedy(MergeDecision decision, const std::vector<std::
     case MergeDecision::other_walls:
       if (refused_kind(decision, best_first) == RefusalKind::sensor)
         return "calibrate the ranges of both sensors: driving on does not tell";
-      return kUntilItTrulyIs;
+      return what_is_missing(hypotheses_[best_first.front()]);
     case MergeDecision::scans_differ:
       return refused_kind(decision, best_first) == RefusalKind::other_tunnel
                  ? kUntilItTrulyIs

@@ -81,7 +81,7 @@ RefusalKind MergeChecker::kind_where_scans_differ(const Hypothesis& h) const {
 RefusalKind MergeChecker::kind_where_walls_differ(const Hypothesis& h) const {
   constexpr double kLargerPart = 0.5;
   return h.num_differing() == 0 && h.offsets.share_of_sensors() > kLargerPart ? RefusalKind::sensor
-                                                                              : RefusalKind::other_tunnel;
+                                                                              : RefusalKind::changed_or_other;
 }
 
 double MergeChecker::metres_for_changes(const Hypothesis& h) const {

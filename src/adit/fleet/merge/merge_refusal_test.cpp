@@ -145,7 +145,7 @@ Told told_of_walls(double range_error_m) {
 }
 
 TEST(MergeRefusal, WallsThatSensorsMayMoveAreNotSaidToBeOfAnotherTunnel) {
-  EXPECT_EQ(told_of_walls(0.0).check.refused_kind, RefusalKind::other_tunnel);
+  EXPECT_EQ(told_of_walls(0.0).check.refused_kind, RefusalKind::changed_or_other);
   const MergeCheck off = told_of_walls(0.03).check;
   EXPECT_EQ(off.refused_kind, RefusalKind::sensor);
   EXPECT_NE(off.reason.find("it may be the sensors"), std::string::npos) << off.reason;

@@ -98,8 +98,7 @@ struct Loops {
 
 enum class HypothesisOutcome : std::uint8_t {
   accepted,
-  refuted,  ///< Scans differ at more places, or walls stand apart in more scans, than a true alignment
-            ///< leaves.
+  refuted,  ///< Scans differ at more places than a true alignment leaves.
   unsure,   ///< The best one, with less evidence than needed.
   rival,    ///< Its evidence and that of another one differ by less than what is needed.
   behind,   ///< Its evidence is less than that of the best one by at least what is needed.
