@@ -71,8 +71,7 @@ class Grid {
     for (const Eigen::Vector2d& p : around.obstacles) out.occupied.push_back(index_of(p));
     for (std::vector<std::size_t>* cells : {&out.free, &out.occupied}) {
       std::ranges::sort(*cells);
-      const auto repeated = std::ranges::unique(*cells);
-      cells->erase(repeated.begin(), repeated.end());
+      cells->erase(std::unique(cells->begin(), cells->end()), cells->end());
     }
     return out;
   }

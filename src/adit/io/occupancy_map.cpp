@@ -30,7 +30,8 @@ Result<> write_occupancy_map(const std::filesystem::path& path, const OccupancyG
   if (const Result<> done = write_bytes(path, image); !done) return done;
   // 205 is a probability of 0.19608: with the thresholds of 0.196 and 0.65 it is neither free nor occupied.
   const std::string yaml = format(
-      "image: {}\nmode: trinary\nresolution: {}\norigin: [{:.4f}, {:.4f}, 0]\nnegate: 0\noccupied_thresh: 0.65\n"
+      "image: {}\nmode: trinary\nresolution: {}\norigin: [{:.4f}, {:.4f}, 0]\nnegate: 0\noccupied_thresh: "
+      "0.65\n"
       "free_thresh: 0.196\n",
       path.filename().string(), grid.resolution_m, grid.origin.x(), grid.origin.y());
   std::filesystem::path beside = path;

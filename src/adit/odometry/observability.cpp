@@ -108,9 +108,10 @@ Observability observability(const std::vector<PlaneResidual>& residuals,
   const Vector6 kept = (values.array() < degeneracy_threshold).select(0.0, scaled_weight * values);
   const Matrix6 V = scale.asDiagonal() * vectors;
   out.information = V * kept.asDiagonal() * V.transpose();
+  const Matrix6 onto = scale.cwiseInverse().asDiagonal() * vectors;
+  const Matrix6 back = vectors.transpose() * scale.asDiagonal();
   const auto with_shares = [&](const Vector6& shares) -> Matrix6 {
-    return scale.cwiseInverse().asDiagonal() * vectors * shares.asDiagonal() * vectors.transpose() *
-           scale.asDiagonal();
+    return onto * shares.asDiagonal() * back;
   };
   const Vector6 is_fixed = (values.array() < degeneracy_threshold).select(Vector6::Zero(), Vector6::Ones());
   out.onto_fixed = with_shares(is_fixed);

@@ -127,7 +127,7 @@ Diagnosis mount_source(const Recording& recording) {
 Pose levelled(const Pose& T_base_lidar, const FloorSeen& floor) {
   const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(floor.up, Vector3::UnitZ());
   const Pose about_sensor(turn, Vector3::Zero());
-  const Vector3 at = T_base_lidar.translation();
+  const Vector3& at = T_base_lidar.translation();
   const double above = floor.up.dot(at) - floor.height_m * floor.up.z();
   return {(about_sensor * Pose(T_base_lidar.rotation(), Vector3::Zero())).rotation(),
           Vector3(at.x(), at.y(), above)};
