@@ -108,16 +108,9 @@ Observability observability(const std::vector<PlaneResidual>& residuals,
   const Vector6 kept = (values.array() < degeneracy_threshold).select(0.0, scaled_weight * values);
   const Matrix6 V = scale.asDiagonal() * vectors;
   out.information = V * kept.asDiagonal() * V.transpose();
-  const Matrix6 onto = scale.cwiseInverse().asDiagonal() * vectors;
-  const Matrix6 back = vectors.transpose() * scale.asDiagonal();
-  const auto with_shares = [&](const Vector6& shares) -> Matrix6 {
-    return onto * shares.asDiagonal() * back;
-  };
   const Vector6 is_fixed = (values.array() < degeneracy_threshold).select(Vector6::Zero(), Vector6::Ones());
-  out.onto_fixed = with_shares(is_fixed);
-  // By degrees, so that a direction does not come and go from scan to scan.
-  const Vector6 beyond = (values.array() / degeneracy_threshold - 1.0).max(0.0).min(1.0);
-  out.beyond_noise = with_shares(beyond.cwiseSqrt());
+  out.onto_fixed = scale.cwiseInverse().asDiagonal() * vectors * is_fixed.asDiagonal() * vectors.transpose() *
+                   scale.asDiagonal();
   return out;
 }
 

@@ -37,10 +37,6 @@ struct Observability {
   bool degenerate = true;  ///< `weakest` is below `degeneracy_threshold`.
   /// Takes the open directions out of a step of T_map_base: the projection onto those that the scene fixes.
   Matrix6 onto_fixed = Matrix6::Zero();
-  /// Leaves of the normal equations of T_map_base what noisy normals would not show as well
-  /// (`NormalEquations` H and g become B^T H B and B^T B^T g): nothing of a direction whose eigenvalue is
-  /// below `degeneracy_threshold`, all from twice the threshold on, and between them a part that grows.
-  Matrix6 beyond_noise = Matrix6::Zero();
 };
 /// From a sample of the source points (base frame), those whose nearest neighbour in the map is nearer than
 /// `max_distance` metres.

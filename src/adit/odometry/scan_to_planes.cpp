@@ -97,14 +97,13 @@ NormalEquations<6> linearize_planes(const std::vector<PlaneResidual>& residuals,
   return out;
 }
 
-// What the residuals say beyond what noisy normals would. In directions that the scene leaves nearly open
-// they say little, and that is wrong: rings and the smear of grazing beams repeat from scan to scan and fit
-// best where they were (solution remapping: J. Zhang, M. Kaess, S. Singh, "On degeneracy of
-// optimization-based state estimation problems", ICRA 2016; here by degrees, decision 0053).
-void take_out_noise(const Observability& seen, NormalEquations<6>& equations) {
-  const Matrix6& B = seen.beyond_noise;
-  equations.H = (B.transpose() * equations.H * B).eval();
-  equations.g = (B.transpose() * B.transpose() * equations.g).eval();
+// What the residuals say in the directions that the scene fixes. In the others they say little, and that is
+// wrong: rings that repeat from scan to scan fit best where they were (solution remapping: J. Zhang, M.
+// Kaess, S. Singh, "On degeneracy of optimization-based state estimation problems", ICRA 2016).
+void take_out_open_directions(const Observability& seen, NormalEquations<6>& equations) {
+  if (!seen.degenerate) return;
+  equations.H = (seen.onto_fixed.transpose() * equations.H * seen.onto_fixed).eval();
+  equations.g = (seen.onto_fixed.transpose() * equations.g).eval();
 }
 
 // Gauss-Newton with these planes, on from the pose of `so_far`.
@@ -114,7 +113,7 @@ PlaneAlignment refined(const Problem& problem, const Planes& planes, PlaneAlignm
   for (int i = 0; i < problem.config.max_iterations; ++i) {
     NormalEquations<6> equations =
         linearize_planes(residuals_at(problem.source, planes, so_far.T_map_base), problem.sigma);
-    take_out_noise(so_far.seen, equations);
+    take_out_open_directions(so_far.seen, equations);
     equations += linearize_prior(problem.prior, so_far.T_map_base);
     const Vector6 step = solve_symmetric(equations.H, -equations.g);
     ++so_far.iterations;
@@ -185,7 +184,7 @@ PlaneAlignment align_point_to_plane(std::span<const Eigen::Vector3f> source, con
   const std::vector<PlaneResidual> residuals = residuals_at(source, planes, out.T_map_base);
   out.seen.information = information_by_regions(residuals, points_near(source, planes), out.seen.onto_fixed);
   NormalEquations<6> at_end = linearize_planes(residuals, sigma);
-  take_out_noise(out.seen, at_end);
+  take_out_open_directions(out.seen, at_end);
   out.information = at_end.H;
   out.share_near = share_found(planes);
   return out;
