@@ -142,9 +142,7 @@ void add_convert(Program& program) {
   add_recording_options(command, options->recording);
   add_truth_topic(command, options->recording);
   command.footer(
-      "session -> its joint map: .las, .pcd, .ply, or .pgm with .yaml (occupancy grid for map servers); "
-      "fields "
-      "maps.*\n"
+      "session -> its joint map: .las, .pcd, .ply, or .pgm with .yaml (occupancy grid); fields maps.*\n"
       "recording (.mcap, .db3, .bag, bag folder, folder of clouds, FOLDER@even) -> .mcap, folder, or its "
       "poses (.tum .csv .kitti)\n"
       "cloud (.pcd .ply .bin) -> cloud; mesh (.obj .stl .dae .glb .ply) -> .ply, and of a .ply the vertices "

@@ -15,7 +15,7 @@
 namespace adit {
 
 struct LasPoint {
-  Vector3 position;             ///< Metres.
+  Vector3 position;             ///< Metres, in the frame of `crs_wkt`.
   std::uint16_t intensity = 0;  ///< Scaled to 16 bits.
   std::uint16_t source = 0;  ///< Point source ID: which robot saw it, from 1 on; 0 is for what was made up.
 };
