@@ -26,19 +26,8 @@ using test::run_adit;
 class Growing : public ::testing::Test {
  protected:
   void SetUp() override {
-    WorldConfig config;
-    config.preset = "mine";
-    config.facet_factor = 4.0;
-    const Result<World> world = make_world(config);
-    ASSERT_TRUE(world);
-    ASSERT_TRUE(write_mesh(folder_ / "world.ply", world->mesh));
-    const Route& route = world->routes[0];
-    ASSERT_GE(route.waypoints.size(), 170U);
-    ASSERT_TRUE(
-        write_routes(folder_ / "routes.yaml",
-                     {"world.ply",
-                      {test::part_of(route, 0, 50, "ahead"), test::part_of(route, 10, 60, "behind"),
-                       test::part_of(route, 5, 55, "later"), test::part_of(route, 130, 170, "far")}}));
+    test::put_drives(folder_.path(),
+                     {{0, 50, "ahead"}, {10, 60, "behind"}, {5, 55, "later"}, {130, 170, "far"}});
     expect_done("simulate --routes " + in("routes.yaml") + " --lidar os2-32 --out " + in("drives"));
   }
 

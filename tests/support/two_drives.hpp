@@ -14,14 +14,15 @@
 
 namespace adit::test {
 
-/// The waypoints `begin` to `end` of a route, for a robot of another name.
-inline Route part_of(const Route& route, std::ptrdiff_t begin, std::ptrdiff_t end, const std::string& name) {
-  return {name, route.speed_mps,
-          std::vector<Vector3>(route.waypoints.begin() + begin, route.waypoints.begin() + end)};
-}
+/// A robot that drives the waypoints `begin` to `end` of a route.
+struct Drive {
+  std::ptrdiff_t begin;
+  std::ptrdiff_t end;
+  std::string name;
+};
 
-/// world.ply and routes.yaml: robot `behind` follows `ahead` through the same tunnel, around a corner.
-inline void put_two_drives(const std::filesystem::path& folder) {
+/// world.ply and routes.yaml: a mine, and robots along one route through it.
+inline void put_drives(const std::filesystem::path& folder, const std::vector<Drive>& drives) {
   WorldConfig config;
   config.preset = "mine";
   config.facet_factor = 4.0;
@@ -29,9 +30,19 @@ inline void put_two_drives(const std::filesystem::path& folder) {
   ASSERT_TRUE(world);
   ASSERT_TRUE(write_mesh(folder / "world.ply", world->mesh));
   const Route& route = world->routes[0];
-  ASSERT_TRUE(
-      write_routes(folder / "routes.yaml",
-                   {"world.ply", {part_of(route, 0, 50, "ahead"), part_of(route, 10, 60, "behind")}}));
+  std::vector<Route> routes;
+  for (const Drive& drive : drives) {
+    ASSERT_LE(drive.end, std::ssize(route.waypoints));
+    routes.push_back({drive.name,
+                      route.speed_mps,
+                      {route.waypoints.begin() + drive.begin, route.waypoints.begin() + drive.end}});
+  }
+  ASSERT_TRUE(write_routes(folder / "routes.yaml", {"world.ply", routes}));
+}
+
+/// Robot `behind` follows `ahead` through the same tunnel, around a corner.
+inline void put_two_drives(const std::filesystem::path& folder) {
+  put_drives(folder, {{0, 50, "ahead"}, {10, 60, "behind"}});
 }
 
 }  // namespace adit::test

@@ -47,12 +47,11 @@ Result<> write_graphs(const std::filesystem::path& dir, const FleetSolution& sol
 }
 
 Result<> write_merged_map(const std::filesystem::path& dir, const Session& session) {
-  PointCloud all;
-  for (const auto& map : session.maps) {
-    const PointCloud cloud = merged_cloud(*map, session.solution.T_world_keyframe.at(map->id), kMapVoxel);
-    all.points.insert(all.points.end(), cloud.points.begin(), cloud.points.end());
-  }
-  return all.empty() ? Result<>{} : write_cloud(dir / "map.ply", voxel_downsample(all, kMapVoxel));
+  std::vector<std::vector<Pose>> T_world_keyframe;
+  for (const auto& map : session.maps)
+    T_world_keyframe.push_back(session.solution.T_world_keyframe.at(map->id));
+  const PointCloud all = merged_cloud(session.maps, T_world_keyframe, kMapVoxel);
+  return all.empty() ? Result<>{} : write_cloud(dir / "map.ply", all);
 }
 
 }  // namespace
@@ -70,6 +69,16 @@ PointCloud merged_cloud(const RobotMap& map, const std::vector<Pose>& T_world_ke
     if (k % kKeyframesAtOnce == kKeyframesAtOnce - 1) merged = voxel_downsample(merged, voxel);
   }
   return voxel_downsample(merged, voxel);
+}
+
+PointCloud merged_cloud(const std::vector<std::shared_ptr<const RobotMap>>& maps,
+                        const std::vector<std::vector<Pose>>& T_world_keyframe, double voxel) {
+  PointCloud all;
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const PointCloud cloud = merged_cloud(*maps[i], T_world_keyframe.at(i), voxel);
+    all.points.insert(all.points.end(), cloud.points.begin(), cloud.points.end());
+  }
+  return all.empty() ? all : voxel_downsample(all, voxel);
 }
 
 Result<> write_session(const std::filesystem::path& dir, const Session& session, MapFiles map_files) {

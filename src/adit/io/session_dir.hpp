@@ -61,6 +61,9 @@ Result<> write_session(const std::filesystem::path& dir, const Session& session,
 /// All keyframe clouds of a robot in the common frame, thinned to one point a voxel.
 [[nodiscard]] PointCloud merged_cloud(const RobotMap& map, const std::vector<Pose>& T_world_keyframe,
                                       double voxel);
+/// The same of several robots together, each with the poses of its keyframes.
+[[nodiscard]] PointCloud merged_cloud(const std::vector<std::shared_ptr<const RobotMap>>& maps,
+                                      const std::vector<std::vector<Pose>>& T_world_keyframe, double voxel);
 
 /// One line of loops.csv that was used in the solution or not, as far as evaluation needs it.
 struct SavedLoop {

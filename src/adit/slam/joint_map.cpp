@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "adit/geometry/voxel_grid.hpp"
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/las.hpp"
 #include "adit/io/occupancy_map.hpp"
@@ -23,15 +22,6 @@ std::vector<LasPoint> las_points(const JointMap& map, double voxel_m) {
       points.push_back({point.cast<double>(), 0, static_cast<std::uint16_t>(map.maps[i]->id.value + 1)});
   }
   return points;
-}
-
-PointCloud cloud_of(const JointMap& map, double voxel_m) {
-  PointCloud all;
-  for (std::size_t i = 0; i < map.maps.size(); ++i) {
-    const PointCloud cloud = merged_cloud(*map.maps[i], map.T_world_keyframe[i], voxel_m);
-    all.points.insert(all.points.end(), cloud.points.begin(), cloud.points.end());
-  }
-  return voxel_downsample(all, voxel_m);
 }
 
 std::vector<PlacedScan> scans_of(const JointMap& map) {
@@ -85,7 +75,8 @@ Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map,
     return occupancy_of(scans_of(map), config.grid).and_then([&](const OccupancyGrid& grid) {
       return write_occupancy_map(path, grid);
     });
-  if (extension == ".pcd" || extension == ".ply") return write_cloud(path, cloud_of(map, config.voxel_m));
+  if (extension == ".pcd" || extension == ".ply")
+    return write_cloud(path, merged_cloud(map.maps, map.T_world_keyframe, config.voxel_m));
   return fail(path.string() + ": a session becomes .las, .pcd, .ply or .pgm (with .yaml)");
 }
 
