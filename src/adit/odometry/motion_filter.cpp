@@ -44,13 +44,15 @@ Fields fields_of(MotionNoise& c) {
 }
 
 Fields fields_of(WheelNoise& c) {
-  return {{"slip", &c.slip, "", 1e-4, 1.0, "forward, per metre driven"},
+  return {{"slip", &c.slip, "", 1e-4, 1.0, "forward, per metre driven, each interval by itself"},
           {"sideways", &c.sideways, "", 1e-4, 1.0, "sideways, per metre"},
           {"climb", &c.climb, "", 1e-4, 10.0, "up and down, per metre"},
           {"tilt_deg", &c.tilt_deg, "deg/m", 1e-3, 360.0, "roll and pitch, per metre"},
           {"heading_deg", &c.heading_deg, "deg/m", 1e-3, 360.0, "heading, per metre"},
           {"turn", &c.turn, "", 1e-4, 1.0, "heading again, share of the angle turned"},
-          {"scale", &c.scale, "", 0.0, 1.0, "error of the wheels' radius, the same over the whole drive"}};
+          {"scale", &c.scale, "", 0.0, 1.0, "error of the wheels' radius, the same over the whole drive"},
+          {"slip_that_lasts", &c.slip_that_lasts, "", 0.0, 1.0, "forward again, fading within slip_time"},
+          {"slip_time", &c.slip_time, "s", 0.01, 100.0, "how long slip lasts"}};
 }
 
 Matrix6 wheel_covariance(const WheelNoise& noise, const Pose& T_base0_base1) {
@@ -76,10 +78,19 @@ void MotionFilter::predict(Stamp begin, Stamp end, const SensedMotion& motion) {
   begin_ = begin;
   end_ = end;
   path_ = {};
+  predict_slip(to_seconds(end - begin));
   if (motion.imu.empty())
     predict_by_twist(to_seconds(end - begin));
   else
     predict_by_imu(motion);
+}
+
+void MotionFilter::predict_slip(double dt) {
+  const double kept = std::exp(-dt / wheels_.slip_time);
+  slip_ *= kept;
+  covariance_.row(kSlip) *= kept;
+  covariance_.col(kSlip) *= kept;
+  covariance_(kSlip, kSlip) += wheels_.slip_that_lasts * wheels_.slip_that_lasts * (1.0 - kept * kept);
 }
 
 void MotionFilter::start_imu(const SensedMotion& motion) {
@@ -172,11 +183,12 @@ void MotionFilter::predict_by_twist(double dt) {
 }
 
 void MotionFilter::measure(const WheelDelta& wheel) {
-  const Pose T_wheels = scaled(wheel.T_base0_base1, 1.0 + scale_);
+  const Pose T_wheels = scaled(wheel.T_base0_base1, 1.0 + scale_ + slip_);
   const Vector6 residual = (T_wheels.inverse() * T_last_now_).log();
   Rows6 H = Rows6::Zero();
   H.middleCols<6>(kMotion) = Pose::right_jacobian_inverse(residual);
   H.col(kScale).head<3>() = -(T_wheels.rotation().inverse() * wheel.T_base0_base1.translation());
+  H.col(kSlip) = H.col(kScale);
   Matrix6 innovation = H * covariance_ * H.transpose() + wheel_covariance(wheels_, wheel.T_base0_base1);
   const double sigmas = std::abs(residual[0]) / std::sqrt(innovation(0, 0));
   if (sigmas > kHuber) innovation(0, 0) *= sigmas / kHuber;
@@ -204,6 +216,7 @@ void MotionFilter::correct(const State& error, const Covariance& known) {
   T_last_now_ = T_last_now_ * Pose::exp(error.segment<6>(kMotion));
   twist_ += error.segment<6>(kTwist);
   scale_ += error[kScale];
+  slip_ += error[kSlip];
   felt_.gravity += error.segment<3>(kGravityAt);
   felt_.gyroscope_bias += error.segment<3>(kGyro);
   felt_.accelerometer_bias += error.segment<3>(kAccel);
@@ -213,19 +226,24 @@ void MotionFilter::correct(const State& error, const Covariance& known) {
   make_symmetric(covariance_);
 }
 
-void MotionFilter::registered(const Pose& T_ref_now, const Matrix6& covariance, const Matrix6& onto_fixed) {
+void MotionFilter::registered(const Pose& T_ref_now, const Matrix6& covariance, const Matrix6& onto_fixed,
+                              double share_counted) {
   if (!started_) return;
   // What the scan has added to the prior of the pose is passed on to all that is correlated with it.
   const Rows6 J = jacobian_of_prior();
   const MotionPrior before = prior();
   const Eigen::Matrix<double, kSize, 6> gain = before.covariance.ldlt().solve(J * covariance_).transpose();
-  correct(gain * (before.T_ref_now.inverse() * T_ref_now).log(),
-          gain * (before.covariance - covariance) * gain.transpose());
+  const Matrix6 of_prior = covariance * inverse(before.covariance);
+  // With P before, C after, s the share and H the scan's whole information, the pose moved by
+  // (P^-1 + H)^-1 H times what the scan is off, where C s H times that is what `covariance` stands for.
+  const Vector6 moved = (before.T_ref_now.inverse() * T_ref_now).log();
+  const Vector6 counted = moved - (1.0 - share_counted) * of_prior * moved;
+  correct(gain * counted, gain * (before.covariance - covariance) * gain.transpose());
   missed();
   extend_path(T_ref_now, onto_fixed);
   T_ref_last_ = Pose();
   // The share of the scan in the pose; its complement is that of the prior.
-  const Matrix6 of_scan = Matrix6::Identity() - covariance * inverse(before.covariance);
+  const Matrix6 of_scan = Matrix6::Identity() - of_prior;
   covariance_.topRows<6>() = (of_scan * covariance_.topRows<6>()).eval();
   covariance_.leftCols<6>() = (covariance_.leftCols<6>() * of_scan.transpose()).eval();
 }

@@ -23,18 +23,20 @@ struct MotionNoise {
 /// Standard deviations of the wheels' motion between two scans, per metre driven. Wheels that measure in a
 /// plane know nothing of climbing and tilting; there the figures are those of a rough floor.
 struct WheelNoise {
-  double slip = 0.02;        ///< Forward, metres per metre.
-  double sideways = 0.01;    ///< Metres per metre.
-  double climb = 0.25;       ///< Metres per metre.
-  double tilt_deg = 10.0;    ///< Roll and pitch, degrees per metre.
-  double heading_deg = 0.5;  ///< Degrees per metre.
-  double turn = 0.05;        ///< Heading again, share of the angle turned.
-  double scale = 0.02;       ///< Of their radius, the same over the whole drive: share of the distance.
+  double slip = 0.02;            ///< Forward, metres per metre, each interval by itself.
+  double sideways = 0.01;        ///< Metres per metre.
+  double climb = 0.25;           ///< Metres per metre.
+  double tilt_deg = 10.0;        ///< Roll and pitch, degrees per metre.
+  double heading_deg = 0.5;      ///< Degrees per metre.
+  double turn = 0.05;            ///< Heading again, share of the angle turned.
+  double scale = 0.02;           ///< Of their radius, the same over the whole drive: share of the distance.
+  double slip_that_lasts = 0.1;  ///< Forward again, fading within `slip_time`: metres per metre.
+  double slip_time = 1.0;        ///< Seconds.
 };
 [[nodiscard]] Fields fields_of(WheelNoise& noise);
 
-/// Covariance of the error of the wheels' motion T_base0_base1 in an interval, without that of their scale;
-/// right perturbation, [translation; rotation].
+/// Covariance of the error of the wheels' motion T_base0_base1 in an interval, without those of their scale
+/// and of slip that lasts; right perturbation, [translation; rotation].
 [[nodiscard]] Matrix6 wheel_covariance(const WheelNoise& noise, const Pose& T_base0_base1);
 
 /// What is known of a motion before the LiDAR has measured it.
@@ -44,12 +46,12 @@ struct MotionPrior {
 };
 
 /// Error-state Kalman filter of a robot's motion since the last scan whose pose was measured, its reference.
-/// It holds the pose at the last scan, the motion since then, the twist, the wheels' scale, gravity and the
-/// biases of the IMU, with their joint covariance; poses are relative to the reference, so that what is asked
-/// of it is what a scan must add (robocentric, as in C. Qin et al., "LINS: A Lidar-Inertial State Estimator
-/// for Robust and Efficient Navigation", ICRA 2020). Each interval between two scans is predicted by the IMU
-/// where it measured, else with a constant twist; then the wheels correct it where they measured. Over scans
-/// that could not be measured the uncertainty grows.
+/// It holds the pose at the last scan, the motion since then, the twist, the wheels' scale and slip (a
+/// first-order Gauss-Markov process), gravity and the biases of the IMU, with their joint covariance; poses
+/// are relative to the reference, so that what is asked of it is what a scan must add (robocentric, as in C.
+/// Qin et al., "LINS: A Lidar-Inertial State Estimator for Robust and Efficient Navigation", ICRA 2020). Each
+/// interval between two scans is predicted by the IMU where it measured, else with a constant twist; then the
+/// wheels correct it where they measured. Over scans that could not be measured the uncertainty grows.
 class MotionFilter {
  public:
   MotionFilter(const MotionNoise& motion, const WheelNoise& wheels, const ImuNoise& imu);
@@ -79,8 +81,10 @@ class MotionFilter {
   /// scan becomes the reference. `covariance` as in MotionPrior. Where the scan measured, the error that is
   /// left is one against the map and stays; where the prior alone decided, the scan takes the map along, so
   /// that nothing is left of it. `onto_fixed`: the projection onto the directions that the scan fixes.
+  /// `share_counted`: where the pose was found as if all residuals of the scan were independent, the share of
+  /// their information that `covariance` counts; what else is held learns from that share alone.
   void registered(const Pose& T_ref_now, const Matrix6& covariance,
-                  const Matrix6& onto_fixed = Matrix6::Identity());
+                  const Matrix6& onto_fixed = Matrix6::Identity(), double share_counted = 1.0);
   /// See PredictedMotion::open_drift; of the scan registered last.
   [[nodiscard]] const Matrix6& open_drift() const { return open_drift_; }
   /// The scan was not measured: its interval joins those before.
@@ -94,8 +98,8 @@ class MotionFilter {
 
  private:
   // Where the errors of each part lie: pose of the last scan, motion since, twist, scale, gravity, biases of
-  // gyroscope and accelerometer, and of the path up to the reference along directions that scans left open.
-  // That one is past and no longer corrected: it is held for what it has in common with the others (a
+  // gyroscope and accelerometer, slip, and of the path up to the reference along directions that scans left
+  // open. That one is past and no longer corrected: it is held for what it has in common with the others (a
   // "consider" state, S. F. Schmidt, 1966).
   static constexpr Eigen::Index kLast = 0;
   static constexpr Eigen::Index kMotion = 6;
@@ -104,8 +108,9 @@ class MotionFilter {
   static constexpr Eigen::Index kGravityAt = 19;
   static constexpr Eigen::Index kGyro = 22;
   static constexpr Eigen::Index kAccel = 25;
-  static constexpr Eigen::Index kPath = 28;
-  static constexpr int kSize = 34;
+  static constexpr Eigen::Index kSlip = 28;
+  static constexpr Eigen::Index kPath = 29;
+  static constexpr int kSize = 35;
   using State = Eigen::Matrix<double, kSize, 1>;
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   using Rows6 = Eigen::Matrix<double, 6, kSize>;
@@ -113,6 +118,7 @@ class MotionFilter {
   static constexpr double kUnknownTwist =
       3.0;  ///< Metres and radians per second: no robot is faster at first.
 
+  void predict_slip(double dt);
   void predict_by_twist(double dt);
   void predict_by_imu(const SensedMotion& motion);
   /// The first time that the IMU measures.
@@ -136,7 +142,8 @@ class MotionFilter {
   Pose T_last_now_;
   Vector6 twist_ = Vector6::Zero();  ///< Of the body, per second.
   double scale_ = 0.0;
-  ImuStart felt_;  ///< Gravity in the body frame, and the biases; its velocity is that of `twist_`.
+  double slip_ = 0.0;  ///< As scale_, for now.
+  ImuStart felt_;      ///< Gravity in the body frame, and the biases; its velocity is that of `twist_`.
   Covariance covariance_;
   Matrix6 open_drift_ = Matrix6::Zero();
 };

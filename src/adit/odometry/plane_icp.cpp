@@ -153,7 +153,8 @@ OdometryStep PlaneIcp::registered(const ThinnedScan& scan, const PosePrior& prio
 
 void PlaneIcp::remember(const OdometryStep& step, const ThinnedScan& scan) {
   if (enters_map(step.status)) {
-    filter_.registered(reference_.T_odom_base.inverse() * step.T_odom_base, covariance_, onto_fixed_);
+    filter_.registered(reference_.T_odom_base.inverse() * step.T_odom_base, covariance_, onto_fixed_,
+                       kIndependentShare);
     reference_ = step;
     T_ref_wheels_ = Pose();
     num_missed_ = num_unmatched_ = 0;

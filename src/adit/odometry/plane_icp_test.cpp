@@ -150,7 +150,7 @@ TEST(PlaneIcp, BurstsOfSlipAreFoundAndBridged) {
   for (const double factor : {1.5, 3.0, 0.4}) {
     const SlippingDrive drive = drive_with_a_burst(factor);
     EXPECT_LT(drive.largest_error_m, 0.25) << factor;  // of 3 to 6 m that were counted in vain
-    EXPECT_GT(drive.num_slipping_in_the_burst, 14) << factor;
+    EXPECT_GT(drive.num_slipping_in_the_burst, 12) << factor;
     EXPECT_EQ(drive.num_slipping_else, 0) << factor;
   }
   EXPECT_EQ(drive_with_a_burst(1.0).num_slipping_in_the_burst, 0);
