@@ -15,7 +15,9 @@
 #include "adit/io/scan_folder.hpp"
 #include "adit/io/text.hpp"
 #include "adit/io/trajectory_files.hpp"
+#include "adit/robot/full_rate.hpp"
 #include "adit/slam/joint_map.hpp"
+#include "adit/slam/session_mcap.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
 
@@ -95,12 +97,30 @@ Result<> convert_recording(const ConvertOptions& options, const RecordingConfig&
   });
 }
 
-Result<> convert_session(const ConvertOptions& options, const RunConfig& config) {
-  return read_joint_map(options.in).and_then([&](const JointMap& map) {
-    std::vector<std::string> notes;
-    for (const std::string& robot : map.left_out) notes.push_back(robot + " is in another map and left out");
-    print_notes("convert", notes);
-    return write_joint_map(options.out, map, config.maps);
+/// Every robot's poses at every scan, in OUT with the robot's name before the extension.
+Result<> convert_poses(const PlacedSession& session, const fs::path& out) {
+  for (const PlacedRobot& robot : session.robots) {
+    fs::path path = out;
+    path.replace_filename(out.stem().string() + "_" + robot.map->name + out.extension().string());
+    if (Result<> done = write_trajectory(path, at_every_scan(*robot.map, robot.T_world_keyframe)); !done)
+      return done;
+  }
+  return {};
+}
+
+Result<> convert_map(const PlacedSession& session, const fs::path& out, const MapsConfig& config) {
+  const JointMap map = joint_map_of(session);
+  std::vector<std::string> notes;
+  for (const std::string& robot : map.left_out) notes.push_back(robot + " is in another map and left out");
+  print_notes("convert", notes);
+  return write_joint_map(out, map, config);
+}
+
+Result<> convert_session(const ConvertOptions& options, const MapsConfig& config) {
+  return read_placed_session(options.in).and_then([&](const PlacedSession& session) {
+    if (kind_of(options.out) == Kind::trajectory) return convert_poses(session, options.out);
+    if (extension_of(options.out) != ".mcap") return convert_map(session, options.out, config);
+    return write_session_mcap(options.out, session, config.voxel_m, config.start_together);
   });
 }
 
@@ -111,7 +131,7 @@ Result<> convert(const ConvertOptions& options, const Common& common) {
   const Kind to = kind_of(out);
   if (from == Kind::session) {
     const Result<RunConfig> config = configured(common);
-    return config ? convert_session(options, *config) : tl::unexpected(config.error());
+    return config ? convert_session(options, config->maps) : tl::unexpected(config.error());
   }
   if (from == Kind::recording && (to == Kind::recording || to == Kind::trajectory)) {
     const Result<RunConfig> config = configured(common);
@@ -142,7 +162,9 @@ void add_convert(Program& program) {
   add_recording_options(command, options->recording);
   add_truth_topic(command, options->recording);
   command.footer(
-      "session -> its joint map: .las, .pcd, .ply, or .pgm with .yaml (occupancy grid); fields maps.*\n"
+      "session -> its joint map: .las, .pcd, .ply, or .pgm with .yaml (occupancy grid); .mcap with a layout "
+      "for "
+      "Foxglove; poses at every scan: NAME_ROBOT.tum (.csv .kitti); fields maps.*\n"
       "recording (.mcap, .db3, .bag, bag folder, folder of clouds, FOLDER@even) -> .mcap, folder, or its "
       "poses (.tum .csv .kitti)\n"
       "cloud (.pcd .ply .bin) -> cloud; mesh (.obj .stl .dae .glb .ply) -> .ply, and of a .ply the vertices "

@@ -3,9 +3,13 @@
 // The map of a session in the formats of others.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "adit/io/bag.hpp"
+#include "adit/io/ros_messages.hpp"
 #include "adit/io/tum.hpp"
 #include "support/files.hpp"
 #include "support/program.hpp"
@@ -98,9 +102,82 @@ TEST(MapsOut, ASessionBecomesCloudsAndAGridThatARobotCanDriveOn) {
   EXPECT_GT(NavMap(folder / "fine.pgm").width, 1.9 * static_cast<double>(map.width));
 
   expect_refused("convert " + session + " " + (folder / "map.dwg").string(), 1,
-                 "becomes .las, .pcd, .ply or .pgm");
+                 "becomes .las, .pcd, .ply, .pgm");
   std::filesystem::remove(folder / "s/ahead/map.adit");
   expect_refused("convert " + session + " " + (folder / "again.las").string(), 1, "ahead/map.adit");
+}
+
+/// The messages of one topic, decoded.
+template <class Decode>
+auto messages_of(const Bag& bag, const std::string& topic, Decode decode) {
+  std::vector<std::decay_t<decltype(*decode(std::string(), MessageEncoding::cdr))>> out;
+  for (const BagMessage& message : bag.messages)
+    if (bag.topics[message.topic].name == topic) out.push_back(decoded(bag, message, decode).value());
+  return out;
+}
+
+TEST(MapsOut, ASessionPlaysAsRosMessages) {
+  const test::TemporaryFolder folder;
+  test::put_two_drives(folder.path());
+  const std::string session = (folder / "s").string();
+  expect_done("slam " + (folder / "routes.yaml").string() + " --lidar vlp-16 --out " + session);
+  expect_done("convert " + session + " " + (folder / "s.mcap").string() + " --set maps.start_together=true");
+  expect_done("convert " + session + " " + (folder / "poses.tum").string());
+
+  const Bag bag = open_bag(folder / "s.mcap").value();
+  EXPECT_TRUE(bag.warnings.empty());
+  const auto transforms = messages_of(bag, "/tf", [](std::string_view message, MessageEncoding encoding) {
+    return ros::decode_transforms(message, encoding);
+  });
+  EXPECT_EQ(messages_of(bag, "/graph", ros::decode_stamp).size(), 1U);
+  std::vector<Stamp> starts;
+  for (const std::string robot : {"ahead", "behind"}) {
+    const Trajectory odometry = read_tum(folder / "s" / robot / "odometry.tum").value();
+    const Trajectory keyframes = read_tum(folder / "s" / robot / "trajectory.tum").value();
+    const Trajectory at_scans = read_tum(folder / ("poses_" + robot + ".tum")).value();
+    std::map<std::int64_t, Pose> T_map_base;
+    for (const std::vector<ros::TransformMessage>& both : transforms) {
+      ASSERT_EQ(both.size(), 2U);
+      EXPECT_EQ(both[0].frame, "map");
+      EXPECT_EQ(both[0].child, both[1].frame);
+      if (both[1].child != robot + "/base_link") continue;
+      T_map_base[both[1].pose.stamp.ns] = both[0].pose.T_world_body * both[1].pose.T_world_body;
+    }
+    ASSERT_EQ(T_map_base.size(), at_scans.size());
+    const Duration later = Stamp{T_map_base.begin()->first} - at_scans.front().stamp;
+    for (const StampedPose& pose : at_scans) {
+      const Pose& shown = T_map_base.at((pose.stamp + later).ns);
+      EXPECT_LT((shown.inverse() * pose.T_world_body).log().norm(), 1e-5);
+    }
+    for (const StampedPose& pose : keyframes) {
+      const Pose placed = T_map_base.at((pose.stamp + later).ns);
+      EXPECT_LT((placed.inverse() * pose.T_world_body).log().norm(), 1e-5) << robot;
+    }
+    const std::string topic = "/" + robot;
+    EXPECT_EQ(messages_of(bag, topic + "/odometry", ros::decode_odometry).size(), at_scans.size());
+    EXPECT_EQ(messages_of(bag, topic + "/path", ros::decode_stamp).size(), 1U);
+    EXPECT_EQ(messages_of(bag, topic + "/map", ros::decode_stamp).size(), 1U);
+    const auto clouds = messages_of(bag, topic + "/points", [](std::string_view message, auto encoding) {
+      return ros::decode_cloud(message, encoding);
+    });
+    EXPECT_EQ(clouds.size(), keyframes.size());
+    for (const ros::CloudMessage& cloud : clouds) EXPECT_EQ(cloud.frame, robot + "/base_link");
+    starts.push_back(Stamp{T_map_base.begin()->first});
+    EXPECT_GT(odometry.size(), keyframes.size());
+  }
+  EXPECT_EQ(starts[0], starts[1]);
+
+  const nlohmann::json layout = nlohmann::json::parse(get_file(folder / "s.layout.json"));
+  const nlohmann::json& panel = layout["configById"][layout["layout"].get<std::string>()];
+  EXPECT_EQ(panel["followTf"], "map");
+  for (const auto& [topic, settings] : panel["topics"].items()) {
+    EXPECT_TRUE(std::ranges::any_of(bag.topics, [&](const BagTopic& t) { return t.name == topic; })) << topic;
+  }
+  // Both files, or what was there before.
+  const std::string before = get_file(folder / "s.mcap");
+  std::filesystem::remove(folder / "s/ahead/map.adit");
+  expect_refused("convert " + session + " " + (folder / "s.mcap").string(), 1, "ahead/map.adit");
+  EXPECT_EQ(get_file(folder / "s.mcap"), before);
 }
 
 }  // namespace

@@ -40,6 +40,26 @@ constexpr Definition kTransform{"geometry_msgs/Transform",
 constexpr Definition kTransformStamped{
     "geometry_msgs/TransformStamped",
     "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n"};
+constexpr Definition kPoseStamped{"geometry_msgs/PoseStamped",
+                                  "std_msgs/Header header\ngeometry_msgs/Pose pose\n"};
+constexpr Definition kDuration{"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"};
+constexpr Definition kColor{"std_msgs/ColorRGBA", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n"};
+constexpr Definition kCompressedImage{"sensor_msgs/CompressedImage",
+                                      "std_msgs/Header header\nstring format\nuint8[] data\n"};
+constexpr Definition kUvCoordinate{"visualization_msgs/UVCoordinate", "float32 u\nfloat32 v\n"};
+constexpr Definition kMeshFile{"visualization_msgs/MeshFile", "string filename\nuint8[] data\n"};
+constexpr Definition kMarker{
+    "visualization_msgs/Marker",
+    "int32 ARROW=0\nint32 CUBE=1\nint32 SPHERE=2\nint32 CYLINDER=3\nint32 LINE_STRIP=4\nint32 LINE_LIST=5\n"
+    "int32 CUBE_LIST=6\nint32 SPHERE_LIST=7\nint32 POINTS=8\nint32 TEXT_VIEW_FACING=9\nint32 "
+    "MESH_RESOURCE=10\n"
+    "int32 TRIANGLE_LIST=11\nint32 ADD=0\nint32 MODIFY=0\nint32 DELETE=2\nint32 DELETEALL=3\n"
+    "std_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 action\ngeometry_msgs/Pose pose\n"
+    "geometry_msgs/Vector3 scale\nstd_msgs/ColorRGBA color\nbuiltin_interfaces/Duration lifetime\n"
+    "bool frame_locked\ngeometry_msgs/Point[] points\nstd_msgs/ColorRGBA[] colors\nstring texture_resource\n"
+    "sensor_msgs/CompressedImage texture\nvisualization_msgs/UVCoordinate[] uv_coordinates\nstring text\n"
+    "string mesh_resource\nvisualization_msgs/MeshFile mesh_file\nbool mesh_use_embedded_materials\n"};
+constexpr std::int32_t kLineList = 5;
 
 std::string join(std::string_view root, std::initializer_list<Definition> parts) {
   std::string text(root);
@@ -174,6 +194,15 @@ std::string definition_of(std::string_view type) {
         "geometry_msgs/Vector3 angular_velocity\nfloat64[9] angular_velocity_covariance\n"
         "geometry_msgs/Vector3 linear_acceleration\nfloat64[9] linear_acceleration_covariance\n",
         {kHeader, kTime, kQuaternion, kVector3});
+  }
+  if (type == kPath) {
+    return join("std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n",
+                {kHeader, kTime, kPoseStamped, kPose, kPoint, kQuaternion});
+  }
+  if (type == kMarkers) {
+    return join("visualization_msgs/Marker[] markers\n",
+                {kMarker, kHeader, kTime, kDuration, kPose, kPoint, kQuaternion, kVector3, kColor,
+                 kCompressedImage, kUvCoordinate, kMeshFile});
   }
   ADIT_CHECK(type == kTransforms, "no definition of this type");
   return join("geometry_msgs/TransformStamped[] transforms\n",
@@ -319,6 +348,49 @@ Result<std::vector<TransformMessage>> decode_transforms(std::string_view message
   }
   if (!reader.ok()) return fail("the TFMessage ends early");
   return transforms;
+}
+
+std::string encode_path(std::string_view frame, const Trajectory& poses) {
+  ADIT_CHECK(!poses.empty(), "a path has the stamp of its first pose");
+  CdrWriter writer;
+  write_header(writer, poses.front().stamp, frame);
+  writer.number(static_cast<std::uint32_t>(poses.size()));
+  for (const StampedPose& pose : poses) {
+    write_header(writer, pose.stamp, frame);
+    write_pose(writer, pose.T_world_body);
+  }
+  return writer.take();
+}
+
+std::string encode_markers(const std::vector<LinesMarker>& markers) {
+  CdrWriter writer;
+  const auto zero = [&](std::size_t bytes_each, int count) {
+    for (int i = 0; i < count; ++i)
+      bytes_each == 4 ? writer.number(std::uint32_t{0}) : writer.number(std::uint8_t{0});
+  };
+  writer.number(static_cast<std::uint32_t>(markers.size()));
+  std::int32_t id = 0;
+  for (const LinesMarker& marker : markers) {
+    write_header(writer, marker.stamp, marker.frame);
+    writer.text(marker.name).number(id++).number(kLineList).number(std::int32_t{0});
+    write_pose(writer, Pose());
+    for (const double scale : {marker.width, 0.0, 0.0}) writer.number(scale);
+    for (const float channel : marker.color) writer.number(channel);
+    zero(4, 2);  // for ever
+    zero(1, 1);  // not locked to the frame
+    writer.number(static_cast<std::uint32_t>(marker.points.size()));
+    for (const Vector3& point : marker.points)
+      for (const double value : point) writer.number(value);
+    zero(4, 1);  // no colours of their own
+    writer.text("");
+    zero(4, 2);  // a texture's header
+    writer.text("").text("");
+    zero(4, 2);  // no image, no coordinates in one
+    writer.text("").text("").text("");
+    zero(4, 1);  // no mesh
+    zero(1, 1);
+  }
+  return writer.take();
 }
 
 std::string encode_imu(const ImuMessage& imu) {

@@ -4,6 +4,7 @@
 /// MCAP's `ros2msg` schemas; read in CDR and as ROS 1 writes them.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,8 @@ inline constexpr std::string_view kPointCloud2 = "sensor_msgs/msg/PointCloud2";
 inline constexpr std::string_view kOdometry = "nav_msgs/msg/Odometry";
 inline constexpr std::string_view kImu = "sensor_msgs/msg/Imu";
 inline constexpr std::string_view kTransforms = "tf2_msgs/msg/TFMessage";
+inline constexpr std::string_view kPath = "nav_msgs/msg/Path";
+inline constexpr std::string_view kMarkers = "visualization_msgs/msg/MarkerArray";  ///< As from Humble on.
 
 /// The CustomMsg of Livox's drivers (decode_livox).
 [[nodiscard]] bool is_livox(std::string_view type);
@@ -61,6 +64,19 @@ Result<OdometryMessage> decode_odometry(std::string_view message,
 [[nodiscard]] std::string encode_transforms(const std::vector<TransformMessage>& transforms);
 Result<std::vector<TransformMessage>> decode_transforms(std::string_view message,
                                                         MessageEncoding encoding = MessageEncoding::cdr);
+
+[[nodiscard]] std::string encode_path(std::string_view frame, const Trajectory& poses);
+
+/// Separate line segments: points 2i and 2i + 1 are the ends of one.
+struct LinesMarker {
+  std::string frame;
+  std::string name;  ///< Namespace: viewers switch markers on and off by it.
+  Stamp stamp;
+  std::array<float, 4> color = {};  ///< Red, green, blue, opacity; 0 to 1.
+  double width = 0.0;               ///< Metres.
+  std::vector<Vector3> points;
+};
+[[nodiscard]] std::string encode_markers(const std::vector<LinesMarker>& markers);
 
 /// One measurement of an IMU, as sensor_msgs/msg/Imu defines it: a covariance of zeros is unknown, one whose
 /// first element is -1 says that its quantity was not measured.

@@ -72,6 +72,8 @@ struct SavedLoop {
   LoopClosure loop;  ///< Ends, transform, inliers, overlap and verdict.
   bool in_clique = false;
   double weight = 0.0;
+
+  [[nodiscard]] bool in_use() const { return weight >= 0.5; }
 };
 
 /// What `adit evaluate` and `adit info` read back.

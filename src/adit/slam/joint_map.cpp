@@ -3,11 +3,11 @@
 #include "adit/slam/joint_map.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/las.hpp"
 #include "adit/io/occupancy_map.hpp"
-#include "adit/io/session_dir.hpp"
 #include "adit/io/text.hpp"
 #include "adit/slam/saved_fleet.hpp"
 
@@ -35,35 +35,51 @@ std::vector<PlacedScan> scans_of(const JointMap& map) {
 }  // namespace
 
 Fields fields_of(MapsConfig& c) {
-  Fields fields = {
-      {"voxel_m", &c.voxel_m, "m", 0.01, 10.0, "one point a voxel of this edge in .las, .pcd and .ply"}};
+  Fields fields = {{"voxel_m", &c.voxel_m, "m", 0.01, 10.0,
+                    "one point a voxel of this edge in .las, .pcd, .ply and .mcap"},
+                   {"start_together", &c.start_together, "", 0, 1,
+                    "in an .mcap, whether each robot starts when the first one does, whatever the stamps of "
+                    "its recording"}};
   append(fields, "grid", fields_of(c.grid));
   return fields;
 }
 
-Result<JointMap> read_joint_map(const std::filesystem::path& session) {
-  const Result<SavedSession> saved = read_session(session);
+Result<PlacedSession> read_placed_session(const std::filesystem::path& session) {
+  Result<SavedSession> saved = read_session(session);
   if (!saved) return tl::unexpected(saved.error());
   const Result<SavedFleet> fleet = read_fleet(session);
   if (!fleet) return tl::unexpected(fleet.error());
-  const auto largest = std::ranges::max_element(saved->components, {}, &std::vector<std::string>::size);
+  std::vector<std::vector<std::string>> shared_maps = saved->components;
+  std::ranges::stable_sort(shared_maps, std::greater<>(), &std::vector<std::string>::size);
+  PlacedSession out;
+  for (const auto& map : fleet->maps) {
+    const auto index = std::ranges::find(saved->robots, map->name) - saved->robots.begin();
+    const auto shared = std::ranges::find_if(shared_maps, [&](const std::vector<std::string>& names) {
+      return std::ranges::find(names, map->name) != names.end();
+    });
+    if (index == std::ssize(saved->robots) ||
+        saved->optimized[static_cast<std::size_t>(index)].size() != map->keyframes.size()) {
+      return fail((session / map->name).string() +
+                  ": trajectory.tum and map.adit do not belong together; one of them was changed");
+    }
+    PlacedRobot robot{map, {}, static_cast<std::size_t>(shared - shared_maps.begin())};
+    for (const StampedPose& pose : saved->optimized[static_cast<std::size_t>(index)])
+      robot.T_world_keyframe.push_back(pose.T_world_body);
+    out.robots.push_back(std::move(robot));
+  }
+  out.saved = std::move(*saved);
+  return out;
+}
+
+JointMap joint_map_of(const PlacedSession& session) {
   JointMap map;
-  for (const auto& robot : fleet->maps) {
-    const bool is_in =
-        largest != saved->components.end() && std::ranges::find(*largest, robot->name) != largest->end();
-    if (!is_in) {
-      map.left_out.push_back(robot->name);
+  for (const PlacedRobot& robot : session.robots) {
+    if (robot.shared_map != 0) {
+      map.left_out.push_back(robot.map->name);
       continue;
     }
-    const auto index = std::ranges::find(saved->robots, robot->name) - saved->robots.begin();
-    const Trajectory& trajectory = saved->optimized[static_cast<std::size_t>(index)];
-    if (trajectory.size() != robot->keyframes.size())
-      return fail(
-          (session / robot->name).string() +
-          ": trajectory.tum and map.adit have different numbers of keyframes; one of them was changed");
-    map.maps.push_back(robot);
-    map.T_world_keyframe.emplace_back();
-    for (const StampedPose& pose : trajectory) map.T_world_keyframe.back().push_back(pose.T_world_body);
+    map.maps.push_back(robot.map);
+    map.T_world_keyframe.push_back(robot.T_world_keyframe);
   }
   return map;
 }
@@ -77,7 +93,9 @@ Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map,
     });
   if (extension == ".pcd" || extension == ".ply")
     return write_cloud(path, merged_cloud(map.maps, map.T_world_keyframe, config.voxel_m));
-  return fail(path.string() + ": a session becomes .las, .pcd, .ply or .pgm (with .yaml)");
+  return fail(
+      path.string() +
+      ": a session becomes .las, .pcd, .ply, .pgm (with .yaml), .mcap (with a layout), .tum or .kitti");
 }
 
 }  // namespace adit

@@ -10,15 +10,30 @@
 
 #include "adit/core/config.hpp"
 #include "adit/geometry/occupancy_grid.hpp"
+#include "adit/io/session_dir.hpp"
 #include "adit/robot/robot_map.hpp"
 
 namespace adit {
 
 struct MapsConfig {
   double voxel_m = 0.1;
+  bool start_together = false;
   OccupancyConfig grid;
 };
 [[nodiscard]] Fields fields_of(MapsConfig& config);
+
+/// A robot of a session, with its keyframes in the frame of its shared map.
+struct PlacedRobot {
+  std::shared_ptr<const RobotMap> map;
+  std::vector<Pose> T_world_keyframe;  ///< One for each keyframe.
+  std::size_t shared_map = 0;          ///< Number of the shared map; that of the most robots is 0.
+};
+struct PlacedSession {
+  SavedSession saved;
+  std::vector<PlacedRobot> robots;
+};
+/// Fails as read_fleet does, and where a robot's trajectory and map do not belong together.
+[[nodiscard]] Result<PlacedSession> read_placed_session(const std::filesystem::path& session);
 
 /// Robots that share a frame, with their keyframes in it.
 struct JointMap {
@@ -26,8 +41,8 @@ struct JointMap {
   std::vector<std::vector<Pose>> T_world_keyframe;  ///< One for each keyframe of each map.
   std::vector<std::string> left_out;                ///< Robots of the session that are in other maps.
 };
-/// The map of the most robots in a session directory, the first of several. Fails as read_fleet does.
-[[nodiscard]] Result<JointMap> read_joint_map(const std::filesystem::path& session);
+/// The map of the most robots, the first of several.
+[[nodiscard]] JointMap joint_map_of(const PlacedSession& session);
 
 /// Writes .las (local coordinates; the source ID is the number of the robot), .pcd or .ply (one point a
 /// voxel) or .pgm with its .yaml (occupancy_of). Fails on other endings.

@@ -12,8 +12,6 @@
 namespace adit {
 namespace {
 
-constexpr double kInUse = 0.5;  // final weight
-
 std::size_t index_of(const SavedSession& session, std::string_view robot) {
   return static_cast<std::size_t>(std::ranges::find(session.robots, robot) - session.robots.begin());
 }
@@ -112,7 +110,7 @@ void add_loops(const SavedSession& session, const std::vector<std::optional<Traj
     name = to_string(*loop_class);
     evaluation.registered.add(*loop_class);
     if (saved.in_clique) evaluation.consistent.add(*loop_class);
-    if (saved.weight >= kInUse) evaluation.in_use.add(*loop_class);
+    if (saved.in_use()) evaluation.in_use.add(*loop_class);
   }
 }
 

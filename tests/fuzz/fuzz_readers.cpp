@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+// Gives bytes to the readers of one kind of file: tools/fuzz.sh. ADIT_FUZZ_AS is the extension ("mcap"),
+// which says which. Readers take any bytes without a fault of memory, without undefined behaviour and without
+// a contract violation, and take no more memory than the bytes warrant; what they make of them is for other
+// tests.
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "adit/io/file_info.hpp"
+#include "adit/io/loops_csv.hpp"
+#include "adit/io/recording_files.hpp"
+#include "adit/io/trajectory_files.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string& extension() {
+  static const std::string name = [] {
+    const char* value = std::getenv("ADIT_FUZZ_AS");
+    if (value == nullptr) {
+      std::fputs("ADIT_FUZZ_AS has to name the extension of the files\n", stderr);
+      std::exit(2);
+    }
+    return std::string(value);
+  }();
+  return name;
+}
+
+/// A folder of this process's own, gone at its end.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "adit-fuzz-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) std::abort();
+    path_ = name;
+  }
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  [[nodiscard]] fs::path file() const { return path_ / ("input." + extension()); }
+
+ private:
+  fs::path path_;
+};
+
+void read_as_recording(const fs::path& path) {
+  constexpr std::size_t kScans = 4;
+  const adit::Result<adit::Recording> recording = adit::open_recording(path.string());
+  if (!recording) return;
+  for (std::size_t i = 0; i < std::min(kScans, recording->num_scans()); ++i)
+    static_cast<void>(recording->read_scan(i));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  static const Folder folder;
+  const std::string_view text(reinterpret_cast<const char*>(bytes), size);
+  if (extension() == "loops") {
+    static_cast<void>(adit::parse_loops_csv(text));
+    return 0;
+  }
+  const fs::path path = folder.file();
+  std::ofstream(path, std::ios::binary) << text;
+  static_cast<void>(adit::file_info(path.string(), {}));
+  if (extension() == "mcap" || extension() == "bag" || extension() == "db3") read_as_recording(path);
+  if (extension() == "csv" || extension() == "tum") static_cast<void>(adit::read_trajectory(path));
+  return 0;
+}

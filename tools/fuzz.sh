@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The adit authors
+# SPDX-License-Identifier: MIT
+# Gives the readers of files arbitrary bytes for SECONDS each, under the address and undefined-behaviour sanitizers, from
+# the small files of tests/conformance and what earlier runs found new:  tools/fuzz.sh SECONDS [EXTENSION...]
+# Ends with 1 where a reader failed; the bytes that did it are then in build/fuzz/faults.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+[ $# -gt 0 ] || { sed -n '4,7s/^# //p' "$0" >&2; exit 2; }
+seconds=$1
+shift
+kinds=("$@")
+[ ${#kinds[@]} -gt 0 ] || kinds=(mcap bag db3 pcd ply bin tum csv g2o jrl yaml adit loops)
+tools/build.sh fuzz adit_fuzz_readers
+export TMPDIR=${TMPDIR:-/dev/shm} # each input is a file
+faults=build/fuzz/faults
+mkdir -p "$faults"
+failed=()
+for kind in "${kinds[@]}"; do
+  corpus=build/fuzz/corpus/$kind
+  mkdir -p "$corpus"
+  for seed in tests/conformance/*."$kind" tests/fuzz/seeds/*."$kind"; do
+    [ ! -f "$seed" ] || cp "$seed" "$corpus/"
+  done
+  # No allocation beyond 64 MB for inputs of up to 64 kB, and none that takes seconds.
+  if ADIT_FUZZ_AS=$kind build/fuzz/tests/adit_fuzz_readers "$corpus" -max_total_time="$seconds" -max_len=65536 -timeout=10 \
+      -rss_limit_mb=2048 -malloc_limit_mb=64 -artifact_prefix="$faults/$kind-" -print_final_stats=1 >"build/fuzz/$kind.log" 2>&1; then
+    echo "fuzz: $kind: $(sed -n 's/^stat::number_of_executed_units: *//p' "build/fuzz/$kind.log") inputs, none failed"
+  else
+    failed+=("$kind")
+    echo "fuzz: $kind: failed; see build/fuzz/$kind.log" >&2
+  fi
+done
+[ ${#failed[@]} -eq 0 ]
