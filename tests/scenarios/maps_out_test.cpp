@@ -116,6 +116,52 @@ auto messages_of(const Bag& bag, const std::string& topic, Decode decode) {
   return out;
 }
 
+/// What the messages of a session say of one robot.
+struct ShownRobot {
+  Trajectory at_scans;                      ///< Of the file that `adit convert` wrote.
+  Trajectory keyframes;                     ///< Of the session.
+  std::map<std::int64_t, Pose> T_map_base;  ///< By the stamp of the message.
+
+  [[nodiscard]] Duration later() const { return Stamp{T_map_base.begin()->first} - at_scans.front().stamp; }
+};
+
+ShownRobot shown_robot(const Bag& bag, const std::filesystem::path& folder, const std::string& robot) {
+  ShownRobot out;
+  out.at_scans = read_tum(folder / ("poses_" + robot + ".tum")).value();
+  out.keyframes = read_tum(folder / "s" / robot / "trajectory.tum").value();
+  const auto decode = [](std::string_view message, MessageEncoding encoding) {
+    return ros::decode_transforms(message, encoding);
+  };
+  for (const std::vector<ros::TransformMessage>& both : messages_of(bag, "/tf", decode)) {
+    EXPECT_EQ(both.size(), 2U);
+    EXPECT_EQ(both[0].frame, "map");
+    EXPECT_EQ(both[0].child, both[1].frame);
+    if (both[1].child == robot + "/base_link")
+      out.T_map_base[both[1].pose.stamp.ns] = both[0].pose.T_world_body * both[1].pose.T_world_body;
+  }
+  return out;
+}
+
+void expect_shown(const ShownRobot& robot, const Trajectory& poses) {
+  for (const StampedPose& pose : poses) {
+    const Pose& shown = robot.T_map_base.at((pose.stamp + robot.later()).ns);
+    EXPECT_LT((shown.inverse() * pose.T_world_body).log().norm(), 1e-5) << stamp_text(pose.stamp);
+  }
+}
+
+void expect_topics(const Bag& bag, const std::string& robot, const ShownRobot& shown) {
+  const std::string topic = "/" + robot;
+  EXPECT_EQ(messages_of(bag, topic + "/odometry", ros::decode_odometry).size(), shown.at_scans.size());
+  EXPECT_EQ(messages_of(bag, topic + "/path", ros::decode_stamp).size(), 1U);
+  EXPECT_EQ(messages_of(bag, topic + "/map", ros::decode_stamp).size(), 1U);
+  const auto decode = [](std::string_view message, MessageEncoding encoding) {
+    return ros::decode_cloud(message, encoding);
+  };
+  const auto clouds = messages_of(bag, topic + "/points", decode);
+  EXPECT_EQ(clouds.size(), shown.keyframes.size());
+  for (const ros::CloudMessage& cloud : clouds) EXPECT_EQ(cloud.frame, robot + "/base_link");
+}
+
 TEST(MapsOut, ASessionPlaysAsRosMessages) {
   const test::TemporaryFolder folder;
   test::put_two_drives(folder.path());
@@ -126,54 +172,26 @@ TEST(MapsOut, ASessionPlaysAsRosMessages) {
 
   const Bag bag = open_bag(folder / "s.mcap").value();
   EXPECT_TRUE(bag.warnings.empty());
-  const auto transforms = messages_of(bag, "/tf", [](std::string_view message, MessageEncoding encoding) {
-    return ros::decode_transforms(message, encoding);
-  });
   EXPECT_EQ(messages_of(bag, "/graph", ros::decode_stamp).size(), 1U);
-  std::vector<Stamp> starts;
+  std::vector<std::int64_t> starts;
   for (const std::string robot : {"ahead", "behind"}) {
-    const Trajectory odometry = read_tum(folder / "s" / robot / "odometry.tum").value();
-    const Trajectory keyframes = read_tum(folder / "s" / robot / "trajectory.tum").value();
-    const Trajectory at_scans = read_tum(folder / ("poses_" + robot + ".tum")).value();
-    std::map<std::int64_t, Pose> T_map_base;
-    for (const std::vector<ros::TransformMessage>& both : transforms) {
-      ASSERT_EQ(both.size(), 2U);
-      EXPECT_EQ(both[0].frame, "map");
-      EXPECT_EQ(both[0].child, both[1].frame);
-      if (both[1].child != robot + "/base_link") continue;
-      T_map_base[both[1].pose.stamp.ns] = both[0].pose.T_world_body * both[1].pose.T_world_body;
-    }
-    ASSERT_EQ(T_map_base.size(), at_scans.size());
-    const Duration later = Stamp{T_map_base.begin()->first} - at_scans.front().stamp;
-    for (const StampedPose& pose : at_scans) {
-      const Pose& shown = T_map_base.at((pose.stamp + later).ns);
-      EXPECT_LT((shown.inverse() * pose.T_world_body).log().norm(), 1e-5);
-    }
-    for (const StampedPose& pose : keyframes) {
-      const Pose placed = T_map_base.at((pose.stamp + later).ns);
-      EXPECT_LT((placed.inverse() * pose.T_world_body).log().norm(), 1e-5) << robot;
-    }
-    const std::string topic = "/" + robot;
-    EXPECT_EQ(messages_of(bag, topic + "/odometry", ros::decode_odometry).size(), at_scans.size());
-    EXPECT_EQ(messages_of(bag, topic + "/path", ros::decode_stamp).size(), 1U);
-    EXPECT_EQ(messages_of(bag, topic + "/map", ros::decode_stamp).size(), 1U);
-    const auto clouds = messages_of(bag, topic + "/points", [](std::string_view message, auto encoding) {
-      return ros::decode_cloud(message, encoding);
-    });
-    EXPECT_EQ(clouds.size(), keyframes.size());
-    for (const ros::CloudMessage& cloud : clouds) EXPECT_EQ(cloud.frame, robot + "/base_link");
-    starts.push_back(Stamp{T_map_base.begin()->first});
-    EXPECT_GT(odometry.size(), keyframes.size());
+    const ShownRobot shown = shown_robot(bag, folder.path(), robot);
+    ASSERT_EQ(shown.T_map_base.size(), shown.at_scans.size());
+    EXPECT_GT(shown.at_scans.size(), shown.keyframes.size());
+    expect_shown(shown, shown.at_scans);
+    expect_shown(shown, shown.keyframes);
+    expect_topics(bag, robot, shown);
+    starts.push_back(shown.T_map_base.begin()->first);
   }
   EXPECT_EQ(starts[0], starts[1]);
 
   const nlohmann::json layout = nlohmann::json::parse(get_file(folder / "s.layout.json"));
   const nlohmann::json& panel = layout["configById"][layout["layout"].get<std::string>()];
   EXPECT_EQ(panel["followTf"], "map");
-  for (const auto& [topic, settings] : panel["topics"].items()) {
-    EXPECT_TRUE(std::ranges::any_of(bag.topics, [&](const BagTopic& t) { return t.name == topic; })) << topic;
-  }
-  // Both files, or what was there before.
+  EXPECT_EQ(panel["topics"].size(), 9U);
+  for (const auto& [topic, settings] : panel["topics"].items())
+    EXPECT_TRUE(std::ranges::count(bag.topics, topic, &BagTopic::name) == 1) << topic;
+  // Nothing that was there is lost.
   const std::string before = get_file(folder / "s.mcap");
   std::filesystem::remove(folder / "s/ahead/map.adit");
   expect_refused("convert " + session + " " + (folder / "s.mcap").string(), 1, "ahead/map.adit");

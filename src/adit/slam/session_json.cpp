@@ -1,13 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-// metrics.json of a session, and what an evaluation adds to it.
+// metrics.json of a session, what an evaluation adds to it, and the layout in which Foxglove shows it.
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "adit/core/format.hpp"
 #include "adit/core/version.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/loops_csv.hpp"
+#include "adit/report/palette.hpp"
 #include "adit/slam/session_evaluation.hpp"
+#include "adit/slam/session_mcap.hpp"
 #include "adit/slam/session_pages.hpp"
 
 namespace adit {
@@ -153,6 +157,53 @@ Result<> save_evaluation(const std::filesystem::path& session, const SessionEval
   if (!metrics.is_object()) return fail(file.string() + ": not JSON; remove the file and evaluate again");
   metrics["evaluation"] = evaluation_json(evaluation);
   return write_bytes(file, metrics.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+std::string foxglove_layout(const PlacedSession& session) {
+  Json topics = {{"/graph", {{"visible", true}}}};
+  Eigen::AlignedBox3d box;
+  for (std::size_t i = 0; i < session.robots.size(); ++i) {
+    const PlacedRobot& robot = session.robots[i];
+    if (robot.map->keyframes.empty()) continue;
+    const std::string name = "/" + robot.map->name;
+    const std::string color = hex(robot_color(i));
+    topics[name + "/map"] = {
+        {"visible", true}, {"colorMode", "flat"}, {"flatColor", color}, {"pointSize", 1.5}};
+    topics[name + "/path"] = {
+        {"visible", true}, {"type", "line"}, {"gradient", {color, color}}, {"lineWidth", 0.2}};
+    topics[name + "/points"] = {
+        {"visible", true}, {"colorMode", "flat"}, {"flatColor", hex(kInk)}, {"pointSize", 2}};
+    topics[name + "/odometry"] = {{"visible", false}};
+    if (robot.shared_map != 0) continue;
+    for (const Pose& T : robot.T_world_keyframe) box.extend(T.translation());
+  }
+  const Vector3 centre = box.center();
+  // From so far away the whole map fits into the view.
+  const double distance = std::max(20.0, 1.3 * box.diagonal().norm());
+  const Json camera = {{"distance", distance},
+                       {"perspective", true},
+                       {"phi", 30},
+                       {"thetaOffset", 0},
+                       {"target", {0, 0, 0}},
+                       {"targetOffset", {centre.x(), centre.y(), centre.z()}},
+                       {"targetOrientation", {0, 0, 0, 1}},
+                       {"fovy", 45},
+                       {"near", 0.5},
+                       {"far", 20.0 * distance}};
+  const Json panel = {
+      {"cameraState", camera},
+      {"followMode", "follow-none"},
+      {"followTf", "map"},
+      {"scene", {{"backgroundColor", hex(kWhite)}, {"transforms", {{"axisScale", 2}, {"showLabel", false}}}}},
+      {"topics", topics},
+      {"transforms", Json::object()},
+      {"layers", Json::object()}};
+  const Json layout = {{"configById", {{"3D!adit", panel}}},
+                       {"globalVariables", Json::object()},
+                       {"userNodes", Json::object()},
+                       {"playbackConfig", {{"speed", 5}}},
+                       {"layout", "3D!adit"}};
+  return layout.dump(2) + "\n";
 }
 
 }  // namespace adit

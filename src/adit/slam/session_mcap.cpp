@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
@@ -24,7 +24,6 @@ namespace fs = std::filesystem;
 // Bytes of messages in a chunk, before compression.
 constexpr std::size_t kChunkBytes = 4'000'000;
 constexpr double kLineWidth = 0.1;  // metres
-constexpr double kFieldOfView = 45.0;
 
 std::string map_frame(const PlacedRobot& robot) {
   return robot.shared_map == 0 ? "map" : format("map_{}", robot.shared_map + 1);
@@ -205,57 +204,6 @@ void add_pose(Messages& messages, std::uint16_t tf, const ShownRobot& robot, con
   messages.add(robot.odometry, due.stamp, ros::encode_odometry(message));
 }
 
-nlohmann::json layout_of(const std::vector<ShownRobot>& robots) {
-  nlohmann::json topics = {{"/graph", {{"visible", true}}}};
-  Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
-  Vector3 high = -low;
-  for (std::size_t i = 0; i < robots.size(); ++i) {
-    const PlacedRobot& robot = *robots[i].placed;
-    const std::string name = "/" + robot.map->name;
-    const std::string color = hex(robot_color(i));
-    topics[name + "/map"] = {
-        {"visible", true}, {"colorMode", "flat"}, {"flatColor", color}, {"pointSize", 1.5}};
-    topics[name + "/path"] = {
-        {"visible", true}, {"type", "line"}, {"gradient", {color, color}}, {"lineWidth", 0.2}};
-    topics[name + "/points"] = {
-        {"visible", true}, {"colorMode", "flat"}, {"flatColor", hex(kInk)}, {"pointSize", 2}};
-    topics[name + "/odometry"] = {{"visible", false}};
-    if (robot.shared_map != 0) continue;
-    for (const Pose& T : robot.T_world_keyframe) {
-      low = low.cwiseMin(T.translation());
-      high = high.cwiseMax(T.translation());
-    }
-  }
-  const Vector3 centre = 0.5 * (low + high);
-  // From so far the whole map fits into the view.
-  const double distance = std::max(20.0, 1.3 * (high - low).norm());
-  const nlohmann::json camera = {{"distance", distance},
-                                 {"perspective", true},
-                                 {"phi", 30},
-                                 {"thetaOffset", 0},
-                                 {"target", {0, 0, 0}},
-                                 {"targetOffset", {centre.x(), centre.y(), centre.z()}},
-                                 {"targetOrientation", {0, 0, 0, 1}},
-                                 {"fovy", kFieldOfView},
-                                 {"near", 0.5},
-                                 {"far", 20.0 * distance}};
-  const nlohmann::json scene = {{"backgroundColor", hex(kWhite)},
-                                {"transforms", {{"axisScale", 2}, {"showLabel", false}}}};
-  return {{"configById",
-           {{"3D!adit",
-             {{"cameraState", camera},
-              {"followMode", "follow-none"},
-              {"followTf", "map"},
-              {"scene", scene},
-              {"topics", topics},
-              {"transforms", nlohmann::json::object()},
-              {"layers", nlohmann::json::object()}}}}},
-          {"globalVariables", nlohmann::json::object()},
-          {"userNodes", nlohmann::json::object()},
-          {"playbackConfig", {{"speed", 5}}},
-          {"layout", "3D!adit"}};
-}
-
 }  // namespace
 
 Result<> write_session_mcap(const fs::path& path, const PlacedSession& session, double voxel_m,
@@ -291,7 +239,7 @@ Result<> write_session_mcap(const fs::path& path, const PlacedSession& session, 
   if (!file->stream()) return fail(path.string() + ": writing failed; is the disk full?");
   fs::path layout = path;
   layout.replace_extension(".layout.json");
-  return file->commit().and_then([&] { return write_bytes(layout, layout_of(robots).dump(2) + "\n"); });
+  return file->commit().and_then([&] { return write_bytes(layout, foxglove_layout(session)); });
 }
 
 }  // namespace adit

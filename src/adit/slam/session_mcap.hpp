@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "adit/slam/joint_map.hpp"
 
@@ -21,5 +22,8 @@ namespace adit {
 /// with `together` each starts when the first one does. Both files appear whole or not at all.
 Result<> write_session_mcap(const std::filesystem::path& path, const PlacedSession& session, double voxel_m,
                             bool together);
+
+/// A layout for Foxglove that shows what write_session_mcap writes: JSON.
+[[nodiscard]] std::string foxglove_layout(const PlacedSession& session);
 
 }  // namespace adit
