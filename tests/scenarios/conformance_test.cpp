@@ -28,7 +28,11 @@ TEST(Conformance, EveryFileIsUnderstoodAsItsCaseSays) {
     const std::string file = (kCases / entry.path().stem()).string();
     const test::ProgramRun run = test::run_adit("--json info " + file);
     ASSERT_EQ(run.exit_code, 0) << file << ": " << run.err;
-    EXPECT_EQ(nlohmann::json::parse(run.out), nlohmann::json::parse(test::get_file(entry.path()))) << file;
+    std::string said = run.out;
+    const std::string folder = kCases.string() + "/";  // in the command to type next
+    for (std::size_t at = 0; (at = said.find(folder, at)) != std::string::npos;)
+      said.erase(at, folder.size());
+    EXPECT_EQ(nlohmann::json::parse(said), nlohmann::json::parse(test::get_file(entry.path()))) << file;
     ++num_cases;
   }
   EXPECT_EQ(num_cases, 10);

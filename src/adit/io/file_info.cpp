@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <variant>
 
+#include "adit/core/format.hpp"
 #include "adit/io/bag.hpp"
+#include "adit/io/bag_topics.hpp"
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/g2o.hpp"
 #include "adit/io/jrl.hpp"
@@ -15,6 +17,7 @@
 #include "adit/io/mesh_files.hpp"
 #include "adit/io/mount.hpp"
 #include "adit/io/robot_map_file.hpp"
+#include "adit/io/ros_messages.hpp"
 #include "adit/io/routes_yaml.hpp"
 #include "adit/io/session_dir.hpp"
 #include "adit/io/text.hpp"
@@ -176,47 +179,123 @@ Json recording_json(const Recording& recording) {
   return info;
 }
 
-/// What any MCAP file holds, whether or not it is a recording that adit can use.
-Result<Json> mcap_topics_info(const fs::path& path) {
-  const Result<ByteSource> source = open_source(path);
-  if (!source) return tl::unexpected(source.error());
-  const Result<mcap::Reader> reader = mcap::Reader::open(*source);
-  if (!reader) return fail(path.string(), reader.error());
-  const mcap::Contents& contents = reader->contents();
-  std::map<std::uint16_t, std::size_t> counts;
-  for (const mcap::MessageRef& message : contents.messages) ++counts[message.channel_id];
-  Json topics = Json::array();
-  for (const auto& [id, channel] : contents.channels) {
-    const auto schema = contents.schemas.find(channel.schema_id);
-    topics.push_back({{"topic", channel.topic},
-                      {"type", schema == contents.schemas.end() ? "" : schema->second.name},
-                      {"encoding", channel.message_encoding},
-                      {"messages", counts[id]}});
+/// When the messages of one topic were recorded.
+struct TopicTimes {
+  std::size_t count = 0;
+  Stamp last;
+  std::vector<Duration> intervals;
+};
+
+std::vector<TopicTimes> times_of(const Bag& bag) {
+  std::vector<TopicTimes> times(bag.topics.size());
+  for (const BagMessage& message : bag.messages) {
+    TopicTimes& topic = times[message.topic];
+    if (topic.count++ > 0) topic.intervals.push_back(message.log_time - topic.last);
+    topic.last = message.log_time;
   }
-  return Json{{"kind", "mcap"},
-              {"profile", contents.header.profile},
-              {"chunks", contents.chunks.size()},
-              {"messages", contents.messages.size()},
-              {"topics", topics}};
+  return times;
 }
 
-/// The same of a bag of any storage.
-Result<Json> bag_topics_info(const fs::path& path) {
-  return open_bag(path).map([](const Bag& bag) {
-    std::vector<std::size_t> counts(bag.topics.size(), 0);
-    for (const BagMessage& message : bag.messages) ++counts[message.topic];
-    Json topics = Json::array();
-    for (std::size_t i = 0; i < bag.topics.size(); ++i)
-      topics.push_back({{"topic", bag.topics[i].name},
-                        {"type", bag.topics[i].type},
-                        {"encoding", bag.topics[i].encoding},
-                        {"messages", counts[i]}});
+/// The rate is that of the median interval, which gaps do not change.
+void add_times(Json& topic, TopicTimes& times) {
+  topic["messages"] = times.count;
+  if (times.intervals.empty()) return;
+  const auto middle = times.intervals.begin() + std::ssize(times.intervals) / 2;
+  std::ranges::nth_element(times.intervals, middle);
+  topic["rate_hz"] = *middle > Duration(0) ? 1.0 / to_seconds(*middle) : 0.0;
+  topic["longest_gap_s"] = to_seconds(*std::ranges::max_element(times.intervals));
+}
+
+/// What the messages say of themselves, by the first and the last one. A stamp that is far from the time of
+/// recording, or another distance from it at the end, tells of clocks that differ or were set.
+void add_contents(Json& topic, const Bag& bag, std::size_t index) {
+  const std::string& type = bag.topics[index].type;
+  if (!ros::is_cloud(type) && type != ros::kOdometry && type != ros::kImu) return;
+  const auto is_of_topic = [index](const BagMessage& message) { return message.topic == index; };
+  const auto first = std::ranges::find_if(bag.messages, is_of_topic);
+  const auto last = std::find_if(bag.messages.rbegin(), bag.messages.rend(), is_of_topic);
+  if (first == bag.messages.end()) return;
+  const auto header = decoded(bag, *first, ros::decode_header);
+  const auto end = decoded(bag, *last, ros::decode_header);
+  if (!header || !end) return;
+  topic["frame"] = header->frame;
+  topic["recorded_after_stamp_s"] = {to_seconds(first->log_time - header->stamp),
+                                     to_seconds(last->log_time - end->stamp)};
+  if (type != ros::kPointCloud2) return;
+  if (const auto fields = decoded(bag, *first, ros::describe_cloud)) topic["fields"] = *fields;
+}
+
+/// What adit would take each topic for; empty where it cannot choose.
+std::vector<std::string> uses_of(const Bag& bag, const RecordingConfig& config) {
+  std::vector<std::string> uses(bag.topics.size());
+  const Result<BagTopics> chosen = choose_topics(bag, config);
+  if (!chosen) return uses;
+  const auto mark = [&](const TopicIndices& topics, const char* use) {
+    for (const std::size_t i : topics) uses[i] = use;
+  };
+  mark(chosen->points, "points");
+  mark(chosen->wheel, "wheel");
+  mark(chosen->truth, "truth");
+  mark(chosen->imu, "imu");
+  mark(chosen->transforms, "mounts");
+  return uses;
+}
+
+Json topics_json(const Bag& bag, const RecordingConfig& config) {
+  std::vector<TopicTimes> times = times_of(bag);
+  const std::vector<std::string> uses = uses_of(bag, config);
+  Json topics = Json::array();
+  for (std::size_t i = 0; i < bag.topics.size(); ++i) {
+    Json topic{
+        {"topic", bag.topics[i].name}, {"type", bag.topics[i].type}, {"encoding", bag.topics[i].encoding}};
+    add_times(topic, times[i]);
+    if (!uses[i].empty()) topic["used_as"] = uses[i];
+    add_contents(topic, bag, i);
+    topics.push_back(std::move(topic));
+  }
+  return topics;
+}
+
+/// What a bag holds, whether or not it is a recording that adit can use.
+Result<Json> bag_info(const fs::path& path, const RecordingConfig& config) {
+  return open_bag(path).map([&](const Bag& bag) {
     return Json{{"kind", "bag"},
                 {"storage", bag.storage},
                 {"files", bag.num_files},
                 {"messages", bag.messages.size()},
-                {"topics", topics}};
+                {"topics", topics_json(bag, config)}};
   });
+}
+
+/// Of a single MCAP file also how it is built.
+Result<Json> mcap_info(const fs::path& path, const RecordingConfig& config) {
+  const Result<ByteSource> source = open_source(path);
+  if (!source) return tl::unexpected(source.error());
+  const Result<mcap::Reader> reader = mcap::Reader::open(*source);
+  if (!reader) return fail(path.string(), reader.error());
+  return bag_info(path, config).map([&](const Json& bag) {
+    return Json{{"kind", "mcap"},
+                {"profile", reader->contents().header.profile},
+                {"chunks", reader->contents().chunks.size()},
+                {"messages", bag["messages"]},
+                {"topics", bag["topics"]}};
+  });
+}
+
+/// What to type next, with the options that were given.
+std::string next_command(const fs::path& path, const RecordingConfig& config) {
+  const std::string name = path.string();
+  std::string command = "adit doctor " + (name.find(' ') == std::string::npos ? name : '"' + name + '"');
+  const auto add = [&](const char* option, const std::string& value) {
+    if (!value.empty()) command += format(" {} {}", option, value);
+  };
+  add("--mount", config.mount);
+  add("--points", config.points);
+  add("--wheel", config.wheel);
+  add("--imu", config.imu);
+  add("--imu-mount", config.imu_mount);
+  add("--point-times", config.point_times);
+  return command;
 }
 
 /// With what adit makes of it, or why it cannot use it.
@@ -225,6 +304,7 @@ Result<Json> with_recording(Result<Json> topics, const fs::path& path, const Rec
     const Result<Recording> recording = open_recording(path.string(), config);
     if (recording) {
       info.update(recording_json(*recording));
+      info["next"] = next_command(path, config);
     } else {
       info["not_a_recording"] = recording.error().message;
     }
@@ -247,15 +327,15 @@ Result<Json> session_info(const fs::path& path) {
 
 Result<Json> folder_info(const fs::path& path, const RecordingConfig& config) {
   if (fs::exists(path / "session.toml")) return session_info(path);
-  if (is_bag_folder(path)) return with_recording(bag_topics_info(path), path, config);
+  if (is_bag_folder(path)) return with_recording(bag_info(path, config), path, config);
   return open_recording(path.string(), config).map(recording_json);
 }
 
 Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
   if (fs::is_directory(path)) return folder_info(path, config);
   const std::string extension = lower_case(path.extension().string());
-  if (extension == ".mcap") return with_recording(mcap_topics_info(path), path, config);
-  if (is_bag_file(path)) return with_recording(bag_topics_info(path), path, config);
+  if (extension == ".mcap") return with_recording(mcap_info(path, config), path, config);
+  if (is_bag_file(path)) return with_recording(bag_info(path, config), path, config);
   if (extension == ".pcd" || extension == ".bin") return cloud_info(path);
   if (extension == ".ply") return ply_info(path);
   if (extension == ".obj" || extension == ".stl" || extension == ".dae" || extension == ".glb")

@@ -263,6 +263,24 @@ Result<CloudMessage> decode_cloud(std::string_view message, MessageEncoding enco
   return unpacked(packed, std::move(out));
 }
 
+Result<std::string> describe_cloud(std::string_view message, MessageEncoding encoding) {
+  static constexpr std::string_view kNames[] = {"int8",  "uint8",  "int16",   "uint16",
+                                                "int32", "uint32", "float32", "float64"};
+  MessageReader reader(message, encoding);
+  static_cast<void>(read_stamp(reader));
+  static_cast<void>(reader.text());
+  const auto height = reader.number<std::uint32_t>();
+  const auto width = reader.number<std::uint32_t>();
+  std::vector<std::string> fields;
+  for (const CloudField& field : read_fields(reader)) {
+    const bool is_known = field.datatype >= 1 && field.datatype <= 8;
+    fields.push_back(
+        format("{} {}", field.name, is_known ? kNames[field.datatype - 1] : "of an unknown type"));
+  }
+  if (!reader.ok()) return fail(format("byte {}: the PointCloud2 message ends early", reader.offset()));
+  return format("{}; {} x {} points", fmt::join(fields, ", "), width, height);
+}
+
 bool is_livox(std::string_view type) {
   return type == "livox_ros_driver2/msg/CustomMsg" || type == "livox_ros_driver/msg/CustomMsg" ||
          type == "livox_interfaces/msg/CustomMsg";
@@ -420,11 +438,16 @@ Result<ImuMessage> decode_imu(std::string_view message, MessageEncoding encoding
   return out;
 }
 
-Result<Stamp> decode_stamp(std::string_view message, MessageEncoding encoding) {
+Result<MessageHeader> decode_header(std::string_view message, MessageEncoding encoding) {
   MessageReader reader(message, encoding);
-  const Stamp stamp = read_stamp(reader);
+  MessageHeader header{read_stamp(reader), {}};
+  header.frame = reader.text();
   if (!reader.ok()) return fail("the message is too short for a header");
-  return stamp;
+  return header;
+}
+
+Result<Stamp> decode_stamp(std::string_view message, MessageEncoding encoding) {
+  return decode_header(message, encoding).map([](const MessageHeader& header) { return header.stamp; });
 }
 
 bool fits_ros(Stamp stamp) {

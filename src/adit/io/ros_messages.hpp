@@ -44,6 +44,8 @@ struct CloudMessage {
 /// `time_unit`: of the times of points, where it is known (packed_cloud.hpp).
 Result<CloudMessage> decode_cloud(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr,
                                   std::optional<TimeUnit> time_unit = {});
+/// What a PointCloud2 holds, as it stands: "x float32, y float32, z float32, t uint32; 1024 x 64 points".
+Result<std::string> describe_cloud(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
 /// The same of Livox's CustomMsg: intensity is the reflectivity, times are nanoseconds from its time base,
 /// which the stamp states.
 Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
@@ -95,7 +97,13 @@ inline constexpr double kUnmeasured = -1.0;
 /// Whether a covariance says that its quantity was not measured.
 [[nodiscard]] inline bool is_unmeasured(const Matrix3& covariance) { return covariance(0, 0) == kUnmeasured; }
 
-/// The stamp that nearly every message starts with.
+/// What nearly every message starts with.
+struct MessageHeader {
+  Stamp stamp;
+  std::string frame;
+};
+Result<MessageHeader> decode_header(std::string_view message,
+                                    MessageEncoding encoding = MessageEncoding::cdr);
 Result<Stamp> decode_stamp(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
 /// ROS keeps seconds in 32 bits, up to 2038; MCAP none before 0.
 [[nodiscard]] bool fits_ros(Stamp stamp);
