@@ -11,6 +11,7 @@
 #include "adit/io/bag_recording.hpp"
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/g2o.hpp"
+#include "adit/io/jrl.hpp"
 #include "adit/io/mesh_files.hpp"
 #include "adit/io/scan_folder.hpp"
 #include "adit/io/text.hpp"
@@ -40,7 +41,7 @@ Kind kind_of(const std::string& name) {
   if (is_any_of(extension, {".pcd", ".bin", ".ply"})) return Kind::cloud;
   if (is_any_of(extension, {".obj", ".stl", ".dae", ".glb", ".gltf"})) return Kind::mesh;
   if (is_any_of(extension, {".tum", ".csv", ".kitti", ".txt"})) return Kind::trajectory;
-  if (extension == ".g2o") return Kind::graph;
+  if (is_any_of(extension, {".g2o", ".jrl", ".cbor"})) return Kind::graph;
   const bool is_folder = extension.empty() || fs::is_directory(name) || name.find('@') != std::string::npos;
   return is_folder || extension == ".mcap" || extension == ".db3" || extension == ".bag" ? Kind::recording
                                                                                          : Kind::unknown;
@@ -63,11 +64,31 @@ Result<> convert_cloud(const fs::path& in, const fs::path& out) {
       [&](const CloudFile& file) { return write_cloud(out, file.cloud, file.viewpoint.value_or(Pose())); });
 }
 
+Result<> write_graph(const fs::path& out, const std::variant<PoseGraph, PoseGraph2>& graph) {
+  std::ostringstream text;
+  std::visit([&](const auto& of_any_dimension) { write_g2o(text, of_any_dimension); }, graph);
+  return write_bytes(out, text.str());
+}
+
+Result<> write_jrl(const fs::path& out, const JrlFile& log) {
+  return jrl_text(log).and_then([&](const std::string& text) { return write_bytes(out, text); });
+}
+
+/// .g2o or .jrl to .g2o or .jrl. A g2o file has no priors: several become edges from one more node.
 Result<> convert_graph(const fs::path& in, const fs::path& out) {
-  return read_g2o(in).and_then([&](const G2oFile& file) {
-    std::ostringstream text;
-    std::visit([&](const auto& graph) { write_g2o(text, graph); }, file.graph);
-    return write_bytes(out, text.str());
+  const bool to_jrl = extension_of(out) == ".jrl";
+  if (extension_of(in) == ".g2o") {
+    return read_g2o(in).and_then([&](const G2oFile& file) {
+      if (!to_jrl) return write_graph(out, file.graph);
+      return jrl_of(in.stem().string(), file.graph).and_then([&](const JrlFile& log) {
+        return write_jrl(out, log);
+      });
+    });
+  }
+  return read_jrl(in).and_then([&](const JrlFile& log) {
+    if (to_jrl) return write_jrl(out, log);
+    return std::visit([&](const auto& content) { return write_graph(out, with_priors_as_edges(content)); },
+                      log.content);
   });
 }
 
@@ -117,6 +138,8 @@ Result<> convert_map(const PlacedSession& session, const fs::path& out, const Ma
 }
 
 Result<> convert_session(const ConvertOptions& options, const MapsConfig& config) {
+  if (kind_of(options.out) == Kind::graph)
+    return convert_graph(fs::path(options.in) / "graph_initial.g2o", options.out);
   return read_placed_session(options.in).and_then([&](const PlacedSession& session) {
     if (kind_of(options.out) == Kind::trajectory) return convert_poses(session, options.out);
     if (extension_of(options.out) != ".mcap") return convert_map(session, options.out, config);
@@ -164,12 +187,13 @@ void add_convert(Program& program) {
   command.footer(
       "session -> its joint map: .las, .pcd, .ply, or .pgm with .yaml (occupancy grid); .mcap with a layout "
       "for "
-      "Foxglove; poses at every scan: NAME_ROBOT.tum (.csv .kitti); fields maps.*\n"
+      "Foxglove; poses at every scan: NAME_ROBOT.tum (.csv .kitti); all its loops: .jrl, .g2o; fields "
+      "maps.*\n"
       "recording (.mcap, .db3, .bag, bag folder, folder of clouds, FOLDER@even) -> .mcap, folder, or its "
       "poses (.tum .csv .kitti)\n"
       "cloud (.pcd .ply .bin) -> cloud; mesh (.obj .stl .dae .glb .ply) -> .ply, and of a .ply the vertices "
       "-> cloud\n"
-      "trajectory (.tum .csv) -> .tum .csv .kitti; graph (.g2o) -> .g2o, rewritten");
+      "trajectory (.tum .csv) -> .tum .csv .kitti; graph (.g2o .jrl) -> .g2o .jrl");
 }
 
 }  // namespace adit::app

@@ -101,6 +101,17 @@ TEST(MapsOut, ASessionBecomesCloudsAndAGridThatARobotCanDriveOn) {
               " --set maps.grid.resolution_m=0.05");
   EXPECT_GT(NavMap(folder / "fine.pgm").width, 1.9 * static_cast<double>(map.width));
 
+  const auto info_of = [](const std::filesystem::path& path) {
+    return nlohmann::json::parse(test::run_adit("--json info " + path.string()).out);
+  };
+  expect_done("convert " + session + " " + (folder / "s.jrl").string());
+  const nlohmann::json log = info_of(folder / "s.jrl");
+  EXPECT_EQ(log["robots"], nlohmann::json::array({"a", "b"}));
+  for (const char* what : {"nodes", "edges"})
+    EXPECT_EQ(log[what], info_of(folder / "s/graph_initial.g2o")[what]) << what;
+  expect_done("convert " + (folder / "s.jrl").string() + " " + (folder / "again.g2o").string());
+  EXPECT_EQ(info_of(folder / "again.g2o")["edges"], log["edges"]);
+
   expect_refused("convert " + session + " " + (folder / "map.dwg").string(), 1,
                  "becomes .las, .pcd, .ply, .pgm");
   std::filesystem::remove(folder / "s/ahead/map.adit");

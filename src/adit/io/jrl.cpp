@@ -239,8 +239,128 @@ Result<JrlFile> file_of(JrlRecords records) {
   return GraphMaker<Pose>(std::move(records)).make();
 }
 
+// The other way: from a graph to records.
+template <class P>
+class RecordsMaker {
+ public:
+  RecordsMaker(const JrlFile& file, const JrlGraph<P>& log) : log_(log) {
+    out_.name = file.name;
+    out_.robots = file.robots;
+    out_.potential.emplace();
+    for (const std::string& robot : file.robots) (*out_.potential)[robot];
+    const bool has_labels =
+        std::ranges::any_of(log.labels, [](JrlLabel l) { return l != JrlLabel::unlabelled; });
+    if (has_labels) out_.outliers = out_.potential;
+  }
+
+  JrlRecords make() {
+    add_poses();
+    for (const auto& prior : log_.priors)
+      add({{log_.graph.nodes[prior.node].key},
+           prior.T_world_node,
+           covariance_of(prior.information),
+           0,
+           {},
+           {}},
+          prior.node);
+    for (std::size_t e = 0; e < log_.graph.edges.size(); ++e) {
+      const auto& edge = log_.graph.edges[e];
+      const std::vector<std::uint64_t> keys = {log_.graph.nodes[edge.from].key,
+                                               log_.graph.nodes[edge.to].key};
+      const JrlFactorId id = add({keys, edge.T_from_to, covariance_of(edge.information), 0, {}, {}}, edge.to);
+      const std::string& robot = out_.robots[log_.robot_of_node[edge.to]];
+      if (edge.kind == EdgeKind::loop) (*out_.potential)[robot].insert(id);
+      if (out_.outliers && log_.labels[e] == JrlLabel::outlier) (*out_.outliers)[robot].insert(id);
+    }
+    std::ranges::stable_sort(out_.factors, {}, [](const JrlFactor& f) { return std::pair(f.robot, f.id); });
+    return std::move(out_);
+  }
+
+ private:
+  void add_poses() {
+    std::vector<std::size_t> nodes_of_robot(out_.robots.size(), 0);
+    for (std::size_t i = 0; i < log_.graph.nodes.size(); ++i) {
+      const std::size_t robot = log_.robot_of_node[i];
+      entry_of_node_.push_back(nodes_of_robot[robot]++);
+      out_.initialization.push_back({log_.graph.nodes[i].key, log_.graph.nodes[i].pose, robot, {}});
+      if (i < log_.truth.size() && log_.truth[i])
+        out_.truth.push_back({log_.graph.nodes[i].key, *log_.truth[i], robot, {}});
+    }
+  }
+
+  [[nodiscard]] static std::vector<double> covariance_of(const typename P::Jacobian& information) {
+    constexpr std::size_t D = P::kDof;
+    const typename P::Jacobian covariance = information.inverse();
+    std::vector<double> out(D * D);
+    for (std::size_t i = 0; i < D; ++i)
+      for (std::size_t k = 0; k < D; ++k)
+        out[kTheirRow<P>[i] * D + kTheirRow<P>[k]] = covariance(static_cast<int>(i), static_cast<int>(k));
+    return out;
+  }
+
+  JrlFactorId add(JrlFactor factor, std::size_t node) {
+    factor.robot = log_.robot_of_node[node];
+    const std::size_t entry = entry_of_node_[node];
+    factor.id = {entry, num_in_entry_[{factor.robot, entry}]++};
+    out_.factors.push_back(std::move(factor));
+    return out_.factors.back().id;
+  }
+
+  const JrlGraph<P>& log_;
+  JrlRecords out_;
+  std::vector<std::size_t> entry_of_node_;
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> num_in_entry_;
+};
+
 }  // namespace
 }  // namespace jrl
+
+Result<JrlFile> jrl_of(std::string name, const std::variant<PoseGraph, PoseGraph2>& graph) {
+  return std::visit(
+      [&]<class P>(const BasicPoseGraph<P>& given) -> Result<JrlFile> {
+        JrlGraph<P> log{given,
+                        {},
+                        {},
+                        std::vector<std::optional<P>>(given.nodes.size()),
+                        std::vector<JrlLabel>(given.edges.size(), JrlLabel::unlabelled)};
+        std::map<char, std::size_t> robots;
+        for (const auto& node : given.nodes) {
+          const auto byte = static_cast<char>(node.key >> 56U);
+          const char letter = byte == '\0' ? 'a' : byte;
+          if (letter < '!' || letter > '~')
+            return fail(format("the key {} has no letter of a robot in its top byte", node.key));
+          robots.try_emplace(letter, 0);
+        }
+        JrlFile file{std::move(name), {}, {}, {}, {}};
+        for (auto& [letter, number] : robots) {
+          number = file.robots.size();
+          file.robots.emplace_back(1, letter);
+        }
+        for (const auto& node : given.nodes) {
+          const auto byte = static_cast<char>(node.key >> 56U);
+          log.robot_of_node.push_back(robots.at(byte == '\0' ? 'a' : byte));
+        }
+        file.content = std::move(log);
+        return file;
+      },
+      graph);
+}
+
+Result<std::string> jrl_text(const JrlFile& file) {
+  return std::visit(
+      [&]<class P>(const JrlGraph<P>& log) -> Result<std::string> {
+        for (const auto& edge : log.graph.edges) {
+          const Eigen::LLT<typename P::Jacobian> factorization(edge.information);
+          if (factorization.info() == Eigen::Success && factorization.rcond() > 1e-15) continue;
+          return fail(
+              format("the edge from {} to {} leaves a direction open; a JSON Robot Log states covariances, "
+                     "which such an edge has not",
+                     log.graph.nodes[edge.from].key, log.graph.nodes[edge.to].key));
+        }
+        return jrl_text(jrl::RecordsMaker<P>(file, log).make());
+      },
+      file.content);
+}
 
 Result<JrlFile> parse_jrl(const std::string& bytes, const std::string& name) {
   Result<JrlFile> file = parse_jrl_records(bytes).and_then(jrl::file_of);

@@ -283,8 +283,79 @@ class RecordsReader {
   std::map<std::string, std::set<JrlFactorId>> ids_;  // of all measurements
 };
 
+Json json_of(const JrlPose& pose) {
+  if (const Pose2* plane = std::get_if<Pose2>(&pose)) {
+    return {{"type", "Pose2"},
+            {"x", plane->translation().x()},
+            {"y", plane->translation().y()},
+            {"theta", plane->theta()}};
+  }
+  const Pose& space = std::get<Pose>(pose);
+  const Vector3& t = space.translation();
+  const Eigen::Quaterniond& q = space.rotation();
+  return {
+      {"type", "Pose3"}, {"translation", {t.x(), t.y(), t.z()}}, {"rotation", {q.w(), q.x(), q.y(), q.z()}}};
+}
+
+Json json_of(const JrlFactor& factor) {
+  const std::string dimension = std::holds_alternative<Pose>(factor.pose) ? "Pose3" : "Pose2";
+  Json out{{"covariance", factor.covariance}};
+  if (factor.keys.size() == 1) {
+    out["type"] = "PriorFactor" + dimension;
+    out["key"] = factor.keys[0];
+    out["prior"] = json_of(factor.pose);
+  } else {
+    out["type"] = "BetweenFactor" + dimension;
+    out["key1"] = factor.keys[0];
+    out["key2"] = factor.keys[1];
+    out["measurement"] = json_of(factor.pose);
+  }
+  return out;
+}
+
+Json json_of(const std::vector<JrlValue>& values, const std::vector<std::string>& robots) {
+  Json out = Json::object();
+  for (const std::string& robot : robots) out[robot] = Json::array();
+  for (const JrlValue& value : values) {
+    Json json = json_of(value.pose);
+    json["key"] = value.key;
+    out[robots[value.robot]].push_back(std::move(json));
+  }
+  return out;
+}
+
+Json json_of(const std::map<std::string, std::set<JrlFactorId>>& ids) {
+  Json out = Json::object();
+  for (const auto& [robot, list] : ids) {
+    out[robot] = Json::array();
+    for (const auto& [entry, measurement] : list)
+      out[robot].push_back(Json::array({Json(entry), Json(measurement)}));
+  }
+  return out;
+}
+
 }  // namespace
 }  // namespace jrl
+
+std::string jrl_text(const JrlRecords& records) {
+  jrl::Json file{{"name", records.name}};
+  file["robots"] = jrl::Json::array();
+  for (const std::string& robot : records.robots) {
+    file["robots"].push_back(static_cast<unsigned>(static_cast<unsigned char>(robot.front())));
+    file["measurements"][robot] = jrl::Json::array();
+  }
+  for (const JrlFactor& factor : records.factors) {
+    jrl::Json& entries = file["measurements"][records.robots[factor.robot]];
+    while (entries.size() <= factor.id.first)
+      entries.push_back({{"stamp", entries.size()}, {"measurements", jrl::Json::array()}});
+    entries[factor.id.first]["measurements"].push_back(jrl::json_of(factor));
+  }
+  file["initialization"] = jrl::json_of(records.initialization, records.robots);
+  if (!records.truth.empty()) file["groundtruth"] = jrl::json_of(records.truth, records.robots);
+  if (records.potential) file["potential_outlier_factors"] = jrl::json_of(*records.potential);
+  if (records.outliers) file["outlier_factors"] = jrl::json_of(*records.outliers);
+  return file.dump() + "\n";
+}
 
 Result<JrlRecords> parse_jrl_records(const std::string& bytes) {
   const auto first = static_cast<unsigned char>(bytes.empty() ? '\0' : bytes.front());

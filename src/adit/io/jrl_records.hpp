@@ -58,4 +58,8 @@ struct JrlRecords {
 /// From JSON or CBOR. Checks the form of everything, not whether it makes a graph. Errors name the place.
 [[nodiscard]] Result<JrlRecords> parse_jrl_records(const std::string& bytes);
 
+/// As JSON, the inverse of that. Factors stand in the order of their robots and ids; `place` and `left_out`
+/// are not written.
+[[nodiscard]] std::string jrl_text(const JrlRecords& records);
+
 }  // namespace adit

@@ -94,6 +94,70 @@ TEST(Jrl, KnowsRobotsKindsAndPriors) {
   EXPECT_NEAR(jrl.graph.nodes[2].pose.translation().x(), 7.0, 1e-12);
 }
 
+TEST(Jrl, WrittenAndReadItIsTheSame) {
+  Json log = log_of_two();
+  log["outlier_factors"]["b"] = Json::array({id(1, 0)});
+  log["groundtruth"]["a"] = Json::array({pose3(3)});
+  log["groundtruth"]["a"][0]["key"] = key('a', 1);
+  log["measurements"]["a"][1]["measurements"][0]["covariance"] = diagonal({1, 2, 4, 8, 16, 32});
+  const JrlFile before = parse_jrl(log.dump(), "before.jrl").value();
+  const JrlFile after = parse_jrl(jrl_text(before).value(), "after.jrl").value();
+  EXPECT_EQ(after.name, before.name);
+  EXPECT_EQ(after.robots, before.robots);
+  const auto& a = std::get<JrlGraph<Pose>>(before.content);
+  const auto& b = std::get<JrlGraph<Pose>>(after.content);
+  ASSERT_EQ(b.graph.nodes.size(), a.graph.nodes.size());
+  EXPECT_EQ(b.robot_of_node, a.robot_of_node);
+  for (std::size_t i = 0; i < a.graph.nodes.size(); ++i) {
+    EXPECT_EQ(b.graph.nodes[i].key, a.graph.nodes[i].key);
+    EXPECT_LT((b.graph.nodes[i].pose.inverse() * a.graph.nodes[i].pose).log().norm(), 1e-12);
+    EXPECT_EQ(b.truth[i].has_value(), a.truth[i].has_value()) << i;
+  }
+  ASSERT_EQ(b.graph.edges.size(), a.graph.edges.size());
+  for (std::size_t e = 0; e < a.graph.edges.size(); ++e) {
+    EXPECT_EQ(b.graph.edges[e].from, a.graph.edges[e].from);
+    EXPECT_EQ(b.graph.edges[e].to, a.graph.edges[e].to);
+    EXPECT_EQ(b.graph.edges[e].kind, a.graph.edges[e].kind);
+    EXPECT_TRUE(b.graph.edges[e].information.isApprox(a.graph.edges[e].information, 1e-12)) << e;
+    EXPECT_EQ(b.labels[e], a.labels[e]);
+  }
+  ASSERT_EQ(b.priors.size(), 1U);
+  EXPECT_EQ(b.priors[0].node, a.priors[0].node);
+}
+
+TEST(Jrl, AGraphOfTwoRobotsBecomesALogOfThem) {
+  PoseGraph graph;
+  for (const char robot : {'a', 'c'})
+    for (std::uint64_t i = 0; i < 2; ++i)
+      graph.nodes.push_back({key(robot, i), Pose::planar(static_cast<double>(i), 0, 0)});
+  graph.edges = {{0, 1, Pose::planar(1, 0, 0), Matrix6::Identity(), EdgeKind::odometry},
+                 {2, 3, Pose::planar(1, 0, 0.5), 4.0 * Matrix6::Identity(), EdgeKind::odometry},
+                 {0, 3, Pose::planar(2, 1, 0), Matrix6::Identity(), EdgeKind::loop}};
+  const JrlFile file = parse_jrl(jrl_text(jrl_of("mine", graph).value()).value(), "mine.jrl").value();
+  EXPECT_EQ(file.name, "mine");
+  EXPECT_EQ(file.robots, (std::vector<std::string>{"a", "c"}));
+  const auto& log = std::get<JrlGraph<Pose>>(file.content);
+  ASSERT_EQ(log.graph.edges.size(), 3U);
+  EXPECT_EQ(log.graph.edges[2].kind, EdgeKind::loop);
+  EXPECT_EQ(log.labels[2], JrlLabel::unlabelled);
+  EXPECT_TRUE(log.graph.edges[1].information.isApprox(graph.edges[1].information, 1e-12));
+
+  PoseGraph2 plane;
+  plane.nodes = {{0, Pose2()}, {1, Pose2(1.0, 0.5, 0.3)}};
+  plane.edges = {{0, 1, Pose2(1.0, 0.5, 0.3), Matrix3(Vector3(1, 2, 3).asDiagonal()), EdgeKind::odometry}};
+  const JrlFile of_plane = parse_jrl(jrl_text(jrl_of("plane", plane).value()).value(), "plane.jrl").value();
+  EXPECT_EQ(of_plane.robots, std::vector<std::string>{"a"});
+  EXPECT_TRUE(std::get<JrlGraph<Pose2>>(of_plane.content)
+                  .graph.edges[0]
+                  .information.isApprox(plane.edges[0].information, 1e-12));
+  graph.edges[2].information(2, 2) = 0.0;
+  const auto open = jrl_text(jrl_of("mine", graph).value());
+  ASSERT_FALSE(open);
+  EXPECT_NE(open.error().message.find("leaves a direction open"), std::string::npos);
+  graph.nodes[0].key = std::uint64_t{7} << 56U;
+  EXPECT_FALSE(jrl_of("bell", graph));
+}
+
 TEST(Jrl, ReadsTheSameFromCbor) {
   const std::vector<std::uint8_t> cbor = Json::to_cbor(log_of_two());
   const auto file = parse_jrl(std::string(cbor.begin(), cbor.end()), "test.jrl.cbor");
