@@ -11,6 +11,7 @@
 
 #include "adit/core/rng.hpp"
 #include "adit/io/bag_recording.hpp"
+#include "adit/io/cdr.hpp"
 #include "adit/io/mcap_records.hpp"
 #include "adit/io/ros_messages.hpp"
 
@@ -55,6 +56,7 @@ class ForeignFile {
     schema(2, ros::kOdometry);
     schema(3, ros::kTransforms);
     schema(4, ros::kImu);
+    schema(5, ros::kTwist);
   }
   /// Three clouds in the frame `frame`, recorded 5 ms after the scans' own stamps.
   ForeignFile& clouds(const std::string& topic, const std::string& frame = "os_lidar") {
@@ -82,6 +84,18 @@ class ForeignFile {
   ForeignFile& imu(const std::string& topic, const std::vector<ros::ImuMessage>& samples) {
     const std::uint16_t id = channel(4, topic);
     for (const ros::ImuMessage& sample : samples) message(id, sample.sample.stamp, ros::encode_imu(sample));
+    return *this;
+  }
+  ForeignFile& twists(const std::string& topic, const std::vector<ros::TwistMessage>& twists) {
+    const std::uint16_t id = channel(5, topic);
+    for (const ros::TwistMessage& twist : twists) {
+      CdrWriter writer;
+      writer.number(static_cast<std::int32_t>(twist.stamp.ns / 1'000'000'000))
+          .number(static_cast<std::uint32_t>(twist.stamp.ns % 1'000'000'000))
+          .text(twist.frame);
+      for (const double value : twist.twist) writer.number(value);
+      message(id, twist.stamp, writer.take());
+    }
     return *this;
   }
   ForeignFile& links(const std::vector<ros::TransformMessage>& transforms) {

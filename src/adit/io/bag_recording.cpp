@@ -29,7 +29,8 @@ std::vector<BagMessage> messages_of(const Bag& bag, const TopicIndices& topics) 
 struct PoseTrack {
   Trajectory poses;
   std::string child;  ///< Frame of the body.
-  WheelCovariance covariance;
+  WheelCovariance covariance = {};
+  std::string warning = {};
 };
 
 /// Keeps the first covariances, or the first that cannot be.
@@ -55,6 +56,38 @@ Result<PoseTrack> read_poses(const Bag& bag, const TopicIndices& topics) {
     take_covariance(track.covariance, pose->covariance, track.poses.empty());
     track.poses.push_back(pose->pose);
     track.child = pose->child;
+  }
+  return track;
+}
+
+/// Adds up twists: between two of them their mean. A gap is driven through as if that held.
+Result<PoseTrack> read_twists(const Bag& bag, const TopicIndices& topics) {
+  constexpr double kLongestGap = 0.5;  // seconds
+  PoseTrack track;
+  Vector6 last = Vector6::Zero();
+  double longest = 0.0;
+  for (const BagMessage& message : messages_of(bag, topics)) {
+    const Result<ros::TwistMessage> twist = decoded(bag, message, ros::decode_twist);
+    const std::string place = format("{}, message {}", names_of(bag, topics), track.poses.size());
+    if (!twist) return fail(place, twist.error());
+    Pose T_odom_body;
+    if (!track.poses.empty()) {
+      const StampedPose& before = track.poses.back();
+      if (twist->stamp <= before.stamp) {
+        return fail(format("{}: stamp {} is not after {}, that of the one before", place,
+                           stamp_text(twist->stamp), stamp_text(before.stamp)));
+      }
+      const double dt = to_seconds(twist->stamp - before.stamp);
+      longest = std::max(longest, dt);
+      T_odom_body = before.T_world_body * Pose::exp(0.5 * dt * (last + twist->twist));
+    }
+    track.poses.push_back({twist->stamp, T_odom_body});
+    track.child = twist->frame;
+    last = twist->twist;
+  }
+  if (longest > kLongestGap) {
+    track.warning = format("{}: a gap of {:.1f} s was driven through at the mean of the twists around it",
+                           names_of(bag, topics), longest);
   }
   return track;
 }
@@ -219,6 +252,16 @@ void note_point_times(Recording& recording, const ros::CloudMessage& first) {
     recording.assumptions.push_back(point_times_note(*first.time_unit));
 }
 
+/// What nobody has asked for and may be wheels.
+void note_twists(Recording& recording, const Bag& bag, const BagTopics& topics,
+                 const RecordingConfig& config) {
+  if (!topics.wheel.empty() || topics.twists.empty() || config.wheel == kNoWheel) return;
+  recording.assumptions.push_back(
+      format("wheels: none; if the wheels have measured {} (TwistStamped), and it is no command, give "
+             "--wheel {}",
+             names_of(bag, topics.twists), bag.topics[topics.twists.front()].name));
+}
+
 /// Stamps, wheels, ground truth and IMU.
 struct Tracks {
   std::vector<Stamp> scans;
@@ -229,9 +272,12 @@ struct Tracks {
 
 /// Without wheels (`kNoWheel`) only the frame that they are of.
 Result<PoseTrack> read_wheels(const Bag& bag, const BagTopics& topics, const RecordingConfig& config) {
-  if (config.wheel != kNoWheel) return read_poses(bag, topics.wheel);
+  if (config.wheel != kNoWheel) {
+    const bool is_twist = !topics.wheel.empty() && bag.topics[topics.wheel.front()].type == ros::kTwist;
+    return is_twist ? read_twists(bag, topics.wheel) : read_poses(bag, topics.wheel);
+  }
   return body_frame(bag, topics.wheel).map([](std::string&& child) {
-    return PoseTrack{{}, std::move(child), {}};
+    return PoseTrack{{}, std::move(child)};
   });
 }
 
@@ -262,6 +308,8 @@ Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, RecordingC
   recording.scan_stamps = std::move(tracks->scans);
   recording.wheel = std::move(tracks->wheel.poses);
   recording.wheel_covariance = tracks->wheel.covariance;
+  if (!tracks->wheel.warning.empty()) recording.warnings.push_back(tracks->wheel.warning);
+  note_twists(recording, *bag, *topics, config);
   recording.truth = std::move(tracks->truth.poses);
   recording.imu = std::move(tracks->imu.samples);
   recording.imu_covariance = tracks->imu.covariance;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <iterator>
 #include <utility>
 
 #include "adit/core/format.hpp"
@@ -41,6 +42,7 @@ BagTopics find_topics(const Bag& bag, const std::string& under) {
       topics.transforms.push_back(i);
     if (!is_under(name, under)) continue;
     if (ros::is_cloud(type)) topics.points.push_back(i);
+    if (type == ros::kTwist) topics.twists.push_back(i);
     if (type == ros::kImu) topics.imu.push_back(i);
     if (type == ros::kOdometry) (is_truth(name) ? topics.truth : topics.wheel).push_back(i);
   }
@@ -115,6 +117,14 @@ void take_truth(const Bag& bag, BagTopics& topics, const RecordingConfig& config
   std::erase_if(topics.wheel, is_chosen);
 }
 
+/// A twist may be measured or a command, so that it counts as wheels only where people say so.
+void take_twist(const Bag& bag, BagTopics& topics, const RecordingConfig& config) {
+  const std::string chosen = whole_name(config.wheel, config.topics_under);
+  const auto is_chosen = [&](std::size_t topic) { return bag.topics[topic].name == chosen; };
+  std::ranges::copy_if(topics.twists, std::back_inserter(topics.wheel), is_chosen);
+  std::erase_if(topics.twists, is_chosen);
+}
+
 }  // namespace
 
 std::string names_of(const Bag& bag, const TopicIndices& topics) {
@@ -131,6 +141,7 @@ Result<BagTopics> choose_topics(const Bag& bag, const RecordingConfig& config) {
         config.topics_under.empty() ? "" : " under " + config.topics_under));
   if (config.imu == kNoImu) topics.imu.clear();
   take_truth(bag, topics, config);
+  take_twist(bag, topics, config);
   const std::string imu = config.imu == kNoImu ? "" : config.imu;
   const bool has_wheels = config.wheel != kNoWheel;
   return choose_one(bag, topics.points, {"clouds", "--points", config.points, config.topics_under})

@@ -18,10 +18,11 @@ using TopicIndices = std::vector<std::size_t>;
 
 struct BagTopics {
   TopicIndices points;
-  TopicIndices wheel;
+  TopicIndices wheel;  ///< nav_msgs/Odometry; or geometry_msgs/TwistStamped, where it was asked for by name.
   TopicIndices truth;
   TopicIndices imu;
   TopicIndices transforms;
+  TopicIndices twists;  ///< TwistStamped that is not used: measured, or only commanded.
 };
 
 /// Their names, apart by commas.

@@ -3,7 +3,9 @@
 /// Wheel odometry in recordings of other programs.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "adit/io/bag_recording.hpp"
 #include "support/files.hpp"
@@ -63,6 +65,44 @@ TEST(McapWheel, CovariancesAreThoseOfTheFirstMessageOrOfTheFirstThatCannotBe) {
   EXPECT_FALSE(spoilt.wheel_covariance.twist.allFinite());
   EXPECT_EQ(spoilt.wheel.size(), 3U);
   EXPECT_TRUE(file_with_links().odometry("/odom").read()->wheel_covariance.pose.isZero(0.0));
+}
+
+// Half a circle of 2 m radius at a constant twist.
+TEST(McapWheel, ATwistThatTheWheelsMeasuredIsAddedUpWhereItIsAskedFor) {
+  constexpr double kTurnRate = 0.5;
+  std::vector<ros::TwistMessage> twists;
+  const int num = 1 + static_cast<int>(std::numbers::pi / kTurnRate / 0.05);
+  for (int i = 0; i < num; ++i)
+    twists.push_back({Stamp{5'000'000'000 + 50'000'000LL * i}, "base_link",
+                      (Vector6() << 2.0 * kTurnRate, 0, 0, 0, 0, kTurnRate).finished()});
+  ForeignFile file = file_with_links();
+  file.twists("/wheel_twist", twists).twists("/cmd_vel", twists);
+  const Result<Recording> recording = file.read({.wheel = "/wheel_twist"});
+  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_EQ(recording->wheel.size(), twists.size());
+  EXPECT_TRUE(recording->warnings.empty());
+  const double angle = kTurnRate * 0.05 * (num - 1);
+  const Pose expected = Pose::planar(2.0 * std::sin(angle), 2.0 * (1.0 - std::cos(angle)), angle);
+  EXPECT_LT((expected.inverse() * recording->wheel.back().T_world_body).log().norm(), 1e-9);
+  EXPECT_EQ(recording->mount_source, "/tf_static: base_link -> os_lidar");
+
+  // Nobody knows which of them was measured.
+  const Result<Recording> unasked = file.read();
+  ASSERT_TRUE(unasked) << unasked.error().message;
+  EXPECT_TRUE(unasked->wheel.empty());
+  ASSERT_FALSE(unasked->assumptions.empty());
+  EXPECT_NE(unasked->assumptions.back().find("--wheel /wheel_twist"), std::string::npos);
+  EXPECT_TRUE(file.read({.wheel = "none"})->wheel.empty());
+
+  twists.erase(twists.begin() + 10, twists.begin() + 30);
+  const Result<Recording> with_gap = file_with_links().twists("/t", twists).read({.wheel = "/t"});
+  ASSERT_TRUE(with_gap);
+  ASSERT_EQ(with_gap->warnings.size(), 1U);
+  EXPECT_NE(with_gap->warnings[0].find("a gap of 1.1 s"), std::string::npos) << with_gap->warnings[0];
+  twists[3].stamp = twists[2].stamp;
+  EXPECT_ERROR(file_with_links().twists("/t", twists).read({.wheel = "/t"}), "/t, message 3: stamp");
+  twists[1].twist[0] = std::numeric_limits<double>::infinity();
+  EXPECT_ERROR(file_with_links().twists("/t", twists).read({.wheel = "/t"}), "/t, message 1");
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ constexpr Definition kVector3{"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfl
 constexpr Definition kQuaternion{"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"};
 constexpr Definition kPose{"geometry_msgs/Pose",
                            "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"};
-constexpr Definition kTwist{"geometry_msgs/Twist",
-                            "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"};
+constexpr Definition kTwistOnly{"geometry_msgs/Twist",
+                                "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"};
 constexpr Definition kPoseWithCovariance{"geometry_msgs/PoseWithCovariance",
                                          "geometry_msgs/Pose pose\nfloat64[36] covariance\n"};
 constexpr Definition kTwistWithCovariance{"geometry_msgs/TwistWithCovariance",
@@ -185,7 +185,7 @@ std::string definition_of(std::string_view type) {
     return join(
         "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
         "geometry_msgs/TwistWithCovariance twist\n",
-        {kHeader, kTime, kPoseWithCovariance, kPose, kPoint, kQuaternion, kTwistWithCovariance, kTwist,
+        {kHeader, kTime, kPoseWithCovariance, kPose, kPoint, kQuaternion, kTwistWithCovariance, kTwistOnly,
          kVector3});
   }
   if (type == kImu) {
@@ -366,6 +366,17 @@ Result<std::vector<TransformMessage>> decode_transforms(std::string_view message
   }
   if (!reader.ok()) return fail("the TFMessage ends early");
   return transforms;
+}
+
+Result<TwistMessage> decode_twist(std::string_view message, MessageEncoding encoding) {
+  MessageReader reader(message, encoding);
+  TwistMessage out;
+  out.stamp = read_stamp(reader);
+  out.frame = reader.text();
+  read_rows(reader, out.twist);
+  if (!reader.ok()) return fail(format("byte {}: the TwistStamped message ends early", reader.offset()));
+  if (!out.twist.allFinite()) return fail("a number of the TwistStamped message is not finite");
+  return out;
 }
 
 std::string encode_path(std::string_view frame, const Trajectory& poses) {

@@ -18,6 +18,7 @@ namespace adit::ros {
 
 inline constexpr std::string_view kPointCloud2 = "sensor_msgs/msg/PointCloud2";
 inline constexpr std::string_view kOdometry = "nav_msgs/msg/Odometry";
+inline constexpr std::string_view kTwist = "geometry_msgs/msg/TwistStamped";
 inline constexpr std::string_view kImu = "sensor_msgs/msg/Imu";
 inline constexpr std::string_view kTransforms = "tf2_msgs/msg/TFMessage";
 inline constexpr std::string_view kPath = "nav_msgs/msg/Path";
@@ -66,6 +67,15 @@ Result<OdometryMessage> decode_odometry(std::string_view message,
 [[nodiscard]] std::string encode_transforms(const std::vector<TransformMessage>& transforms);
 Result<std::vector<TransformMessage>> decode_transforms(std::string_view message,
                                                         MessageEncoding encoding = MessageEncoding::cdr);
+
+/// A twist of the body in its own frame: metres per second, radians per second.
+struct TwistMessage {
+  Stamp stamp;
+  std::string frame;
+  Vector6 twist = Vector6::Zero();  ///< [linear; angular]
+};
+/// Fails when the message ends early or a number is not finite.
+Result<TwistMessage> decode_twist(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
 
 [[nodiscard]] std::string encode_path(std::string_view frame, const Trajectory& poses);
 
