@@ -49,7 +49,9 @@ void print_json(const std::vector<Diagnosis>& found) {
                       {"health", to_string(one.health)},
                       {"found", one.sentence},
                       {"remedy", one.remedy}});
-  std::printf("%s\n", nlohmann::ordered_json{{"checks", checks}}.dump(2).c_str());
+  std::printf("%s\n", nlohmann::ordered_json{{"checks", checks}}
+                          .dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+                          .c_str());
 }
 
 Result<> doctor_command(const DoctorOptions& options, const Common& common) {

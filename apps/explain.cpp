@@ -138,7 +138,7 @@ Result<> explain(const ExplainOptions& options, const Common& common) {
   if (common.json) {
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
     for (const SavedMerge& merge : *merges) all.push_back(json_of(merge));
-    std::printf("%s\n", all.dump().c_str());
+    std::printf("%s\n", all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   } else {
     for (const SavedMerge& merge : *merges) print_text(merge);
   }

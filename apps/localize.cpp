@@ -75,7 +75,8 @@ Result<> localize_command(const LocalizeOptions& options, const Common& common) 
       std::printf("  by the map of %s%s\n", other.c_str(),
                   pair.accuracy ? (": " + to_string(*pair.accuracy)).c_str() : "");
   }
-  if (common.json) std::printf("%s\n", json.dump(2).c_str());
+  if (common.json)
+    std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   return {};
 }
 

@@ -120,7 +120,8 @@ void print(const SimulateOptions& options, const std::vector<Recording>& recordi
     if (common.json) continue;
     std::printf("%s: %zu scans, %.1f m in %.1f s\n", file.c_str(), recording.num_scans(), length, duration);
   }
-  if (common.json) std::printf("%s\n", report.dump().c_str());
+  if (common.json)
+    std::printf("%s\n", report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
 Result<> simulate_command(const SimulateOptions& options, const Common& common) {

@@ -245,7 +245,10 @@ Result<> run(const SolveOptions& options, const Common& common) {
     if (!common.json) print_line(*result, options.gnc);
     all.push_back(*result);
   }
-  if (common.json) std::puts((all.size() == 1 ? all.front() : all).dump(2).c_str());
+  if (common.json)
+    std::puts((all.size() == 1 ? all.front() : all)
+                  .dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
+                  .c_str());
   return {};
 }
 

@@ -358,7 +358,9 @@ Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
 }  // namespace
 
 Result<std::string> file_info(const std::string& path, const RecordingConfig& config) {
-  return info_of(path, config).map([](const Json& info) { return info.dump(2); });
+  return info_of(path, config).map([](const Json& info) {
+    return info.dump(2, ' ', false, Json::error_handler_t::replace);  // names of topics are any bytes
+  });
 }
 
 }  // namespace adit

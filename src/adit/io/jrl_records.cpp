@@ -138,7 +138,8 @@ Result<std::vector<std::string>> robots_of(const Json& file) {
     } else if (robot.is_string() && robot.get<std::string>().size() == 1) {
       robots.push_back(robot.get<std::string>());
     } else {
-      return fail(format("robots: {} is not one letter or its code", robot.dump()));
+      return fail(format("robots: {} is not one letter or its code",
+                         robot.dump(-1, ' ', false, Json::error_handler_t::replace)));
     }
     if (std::ranges::count(robots, robots.back()) > 1)
       return fail(format("robots: '{}' comes twice", robots.back()));
@@ -354,7 +355,7 @@ std::string jrl_text(const JrlRecords& records) {
   if (!records.truth.empty()) file["groundtruth"] = jrl::json_of(records.truth, records.robots);
   if (records.potential) file["potential_outlier_factors"] = jrl::json_of(*records.potential);
   if (records.outliers) file["outlier_factors"] = jrl::json_of(*records.outliers);
-  return file.dump() + "\n";
+  return file.dump(-1, ' ', false, jrl::Json::error_handler_t::replace) + "\n";
 }
 
 Result<JrlRecords> parse_jrl_records(const std::string& bytes) {

@@ -41,6 +41,7 @@ Fields fields_of(MapsConfig& c) {
                     "in an .mcap, whether each robot starts when the first one does, whatever the stamps of "
                     "its recording"}};
   append(fields, "grid", fields_of(c.grid));
+  append(fields, "octomap", fields_of(c.octomap));
   return fields;
 }
 
@@ -91,11 +92,12 @@ Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map,
     return occupancy_of(scans_of(map), config.grid).and_then([&](const OccupancyGrid& grid) {
       return write_occupancy_map(path, grid);
     });
+  if (extension == ".bt") return write_octomap(path, scans_of(map), config.octomap);
   if (extension == ".pcd" || extension == ".ply")
     return write_cloud(path, merged_cloud(map.maps, map.T_world_keyframe, config.voxel_m));
   return fail(
       path.string() +
-      ": a session becomes .las, .pcd, .ply, .pgm (with .yaml), .mcap (with a layout), .tum or .kitti");
+      ": a session becomes .las, .pcd, .ply, .pgm (with .yaml), .bt, .mcap (with a layout), .tum or .kitti");
 }
 
 }  // namespace adit

@@ -10,6 +10,7 @@
 
 #include "adit/core/config.hpp"
 #include "adit/geometry/occupancy_grid.hpp"
+#include "adit/io/octomap_file.hpp"
 #include "adit/io/session_dir.hpp"
 #include "adit/robot/robot_map.hpp"
 
@@ -19,6 +20,7 @@ struct MapsConfig {
   double voxel_m = 0.1;
   bool start_together = false;
   OccupancyConfig grid;
+  OctomapConfig octomap;
 };
 [[nodiscard]] Fields fields_of(MapsConfig& config);
 

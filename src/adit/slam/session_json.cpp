@@ -140,7 +140,9 @@ std::string session_metrics(const SlamRun& run) {
   return metrics.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string json_of(const SessionEvaluation& evaluation) { return evaluation_json(evaluation).dump(); }
+std::string json_of(const SessionEvaluation& evaluation) {
+  return evaluation_json(evaluation).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
 
 Result<> save_evaluation(const std::filesystem::path& session, const SessionEvaluation& evaluation) {
   const std::filesystem::path loops = session / "loops.csv";
@@ -203,7 +205,7 @@ std::string foxglove_layout(const PlacedSession& session) {
                        {"userNodes", Json::object()},
                        {"playbackConfig", {{"speed", 5}}},
                        {"layout", "3D!adit"}};
-  return layout.dump(2) + "\n";
+  return layout.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace adit

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/octomap_file.hpp"
+
+#include <octomap/OcTree.h>
+
+#include "adit/core/format.hpp"
+#include "adit/core/progress.hpp"
+#include "adit/io/atomic_file.hpp"
+
+namespace adit {
+namespace {
+
+octomap::point3d point_of(const Vector3& p) {
+  return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+}
+
+}  // namespace
+
+Result<> write_octomap(const std::filesystem::path& path, const std::vector<PlacedScan>& scans,
+                       const OctomapConfig& config) {
+  if (scans.empty()) return fail(path.string() + ": there are no scans to map");
+  octomap::OcTree tree(config.resolution_m);
+  const Phase phase("filling the octree", scans.size());
+  for (const PlacedScan& scan : scans) {
+    const octomap::point3d sensor = point_of(scan.T_world_base * scan.viewpoint);
+    octomap::Pointcloud cloud;
+    cloud.reserve(scan.cloud_base->size());
+    for (const Eigen::Vector3f& point : scan.cloud_base->points)
+      cloud.push_back(point_of(scan.T_world_base * point.cast<double>()));
+    octomap::OcTreeKey key;
+    if (!tree.coordToKeyChecked(sensor, key)) {
+      return fail(
+          format("{}: the map is larger than a tree of {} m cells can hold; give a larger "
+                 "maps.octomap.resolution_m",
+                 path.string(), config.resolution_m));
+    }
+    constexpr bool kLazy = true;        // inner nodes once, at the end
+    constexpr bool kDiscretize = true;  // one ray a cell
+    tree.insertPointCloud(cloud, sensor, config.reach_m, kLazy, kDiscretize);
+    phase.advance();
+  }
+  tree.updateInnerOccupancy();
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return tl::unexpected(file.error());
+  if (!tree.writeBinary(file->stream()) || !file->stream())
+    return fail(path.string() + ": writing failed; is the disk full?");
+  return file->commit();
+}
+
+}  // namespace adit
