@@ -16,6 +16,17 @@ namespace adit {
 namespace {
 
 constexpr std::size_t kLargest = std::size_t{1} << 30U;
+// Bytes that one compressed byte can stand for: a zstd block of 128 KiB that repeats one byte takes four, LZ4
+// counts runs in 255s, and a block of 900 kB of bzip2, in which five bytes stand for 259, takes some 32.
+constexpr std::size_t kMostOfZstd = 32 * 1024;
+constexpr std::size_t kMostOfLz4 = 255;
+constexpr std::size_t kMostOfBz2 = 1'500'000;
+
+/// Before memory is taken for them.
+Result<> check_claim(std::string_view bytes, std::size_t size, std::size_t most_of_a_byte) {
+  if (size / most_of_a_byte <= bytes.size()) return {};
+  return fail(format("{} compressed bytes cannot hold {} bytes; the size is damaged", bytes.size(), size));
+}
 
 Result<std::string> decompress_zstd(std::string_view bytes, std::size_t size) {
   // The frame says its size as well; a claim that differs is damage, found before memory is taken.
@@ -23,6 +34,8 @@ Result<std::string> decompress_zstd(std::string_view bytes, std::size_t size) {
   if (stated == ZSTD_CONTENTSIZE_ERROR) return fail("not a zstd frame");
   if (stated != ZSTD_CONTENTSIZE_UNKNOWN && stated > size)
     return fail(format("holds {} bytes, not {}", stated, size));
+  if (const Result<> possible = check_claim(bytes, size, kMostOfZstd); !possible)
+    return tl::unexpected(possible.error());
   std::string out(size, '\0');
   const std::size_t got = ZSTD_decompress(out.data(), out.size(), bytes.data(), bytes.size());
   if (ZSTD_isError(got) != 0) return fail(format("damaged zstd data: {}", ZSTD_getErrorName(got)));
@@ -31,6 +44,8 @@ Result<std::string> decompress_zstd(std::string_view bytes, std::size_t size) {
 }
 
 Result<std::string> decompress_lz4(std::string_view bytes, std::size_t size) {
+  if (const Result<> possible = check_claim(bytes, size, kMostOfLz4); !possible)
+    return tl::unexpected(possible.error());
   LZ4F_dctx* context = nullptr;
   ADIT_CHECK(LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) == 0, "out of memory");
   const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> owner(
@@ -52,6 +67,8 @@ Result<std::string> decompress_lz4(std::string_view bytes, std::size_t size) {
 }
 
 Result<std::string> decompress_bz2(std::string_view bytes, std::size_t size) {
+  if (const Result<> possible = check_claim(bytes, size, kMostOfBz2); !possible)
+    return tl::unexpected(possible.error());
   std::string out(size, '\0');
   auto got = static_cast<unsigned>(size);
   std::string in(bytes);  // the library's argument is not const

@@ -15,7 +15,7 @@ namespace adit {
 /// zstd at its fastest ordinary level: point clouds are mostly noise, and higher ones gain little.
 [[nodiscard]] std::string compress_zstd(std::string_view bytes);
 
-/// Exactly `size` bytes, or an error; `size` above 1 GiB is refused as damage.
+/// Exactly `size` bytes, or an error; more than 1 GiB, or than so few bytes can hold, is refused as damage.
 Result<std::string> decompress(std::string_view bytes, std::string_view compression, std::size_t size);
 
 /// Whether the bytes begin as a zstd frame does.

@@ -25,6 +25,17 @@ TEST(Compression, RoundTripAndDamage) {
   EXPECT_ERROR(decompress(packed, "zstd", std::size_t{1} << 50U), "1 GiB is the most");
 }
 
+TEST(Compression, AClaimThatSoFewBytesCannotHoldTakesNoMemory) {
+  // As much as a byte can stand for is no false claim.
+  const std::string zeros(10'000'000, '\0');
+  EXPECT_EQ(decompress(compress_zstd(zeros), "zstd", zeros.size()).value(), zeros);
+  for (const char* compression : {"zstd", "lz4"})
+    EXPECT_ERROR(decompress(std::string("\x04\x22\x4D\x18 and some more", 18), compression, 1U << 30U),
+                 compression == std::string("lz4") ? "cannot hold" : "not a zstd frame");
+  const std::string few = compress_zstd("few");
+  EXPECT_ERROR(decompress(few, "zstd", 1U << 30U), "cannot hold");
+}
+
 TEST(Compression, Lz4Frames) {
   // By hand: 6 literals, a match of 7 bytes 6 back, 5 literals; frame head and end mark around the one block.
   const std::string frame = std::string("\x04\x22\x4d\x18\x60\x40\x82\x0f\0\0\0", 11) +
