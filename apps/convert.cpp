@@ -70,26 +70,29 @@ Result<> write_graph(const fs::path& out, const std::variant<PoseGraph, PoseGrap
   return write_bytes(out, text.str());
 }
 
-Result<> write_jrl(const fs::path& out, const JrlFile& log) {
-  return jrl_text(log).and_then([&](const std::string& text) { return write_bytes(out, text); });
-}
-
-/// .g2o or .jrl to .g2o or .jrl. A g2o file has no priors: several become edges from one more node.
-Result<> convert_graph(const fs::path& in, const fs::path& out) {
+/// .g2o or .jrl to .g2o or .jrl; `name` is that of the log. A g2o file has no priors: several become edges
+/// from one more node.
+Result<> convert_graph(const fs::path& in, const std::string& name, const fs::path& out) {
   const bool to_jrl = extension_of(out) == ".jrl";
-  if (extension_of(in) == ".g2o") {
-    return read_g2o(in).and_then([&](const G2oFile& file) {
-      if (!to_jrl) return write_graph(out, file.graph);
-      return jrl_of(in.stem().string(), file.graph).and_then([&](const JrlFile& log) {
-        return write_jrl(out, log);
+  if (!to_jrl && extension_of(out) != ".g2o")
+    return fail(out.string() + ": graphs are written as .g2o or .jrl");
+  const auto write_jrl = [&](const JrlFile& log) {
+    return jrl_text(log).and_then([&](const std::string& text) { return write_bytes(out, text); });
+  };
+  const auto convert = [&]() -> Result<> {
+    if (extension_of(in) != ".g2o") {
+      return read_jrl(in).and_then([&](const JrlFile& log) {
+        if (to_jrl) return write_jrl(log);
+        return std::visit(
+            [&](const auto& content) { return write_graph(out, with_priors_as_edges(content)); },
+            log.content);
       });
+    }
+    return read_g2o(in).and_then([&](const G2oFile& file) {
+      return to_jrl ? jrl_of(name, file.graph).and_then(write_jrl) : write_graph(out, file.graph);
     });
-  }
-  return read_jrl(in).and_then([&](const JrlFile& log) {
-    if (to_jrl) return write_jrl(out, log);
-    return std::visit([&](const auto& content) { return write_graph(out, with_priors_as_edges(content)); },
-                      log.content);
-  });
+  };
+  return convert();
 }
 
 /// The ground truth, which nothing else can compute; without one the wheel odometry.
@@ -121,6 +124,9 @@ Result<> convert_recording(const ConvertOptions& options, const RecordingConfig&
 /// Every robot's poses at every scan, in OUT with the robot's name before the extension.
 Result<> convert_poses(const PlacedSession& session, const fs::path& out) {
   for (const PlacedRobot& robot : session.robots) {
+    if (robot.shared_map != 0)
+      print_notes("convert",
+                  {robot.map->name + " is in another map: its poses are in the frame of that one"});
     fs::path path = out;
     path.replace_filename(out.stem().string() + "_" + robot.map->name + out.extension().string());
     if (Result<> done = write_trajectory(path, at_every_scan(*robot.map, robot.T_world_keyframe)); !done)
@@ -139,7 +145,8 @@ Result<> convert_map(const PlacedSession& session, const fs::path& out, const Ma
 
 Result<> convert_session(const ConvertOptions& options, const MapsConfig& config) {
   if (kind_of(options.out) == Kind::graph)
-    return convert_graph(fs::path(options.in) / "graph_initial.g2o", options.out);
+    return convert_graph(fs::path(options.in) / "graph_initial.g2o", fs::path(options.in).filename().string(),
+                         options.out);
   return read_placed_session(options.in).and_then([&](const PlacedSession& session) {
     if (kind_of(options.out) == Kind::trajectory) return convert_poses(session, options.out);
     if (extension_of(options.out) != ".mcap") return convert_map(session, options.out, config);
@@ -164,7 +171,7 @@ Result<> convert(const ConvertOptions& options, const Common& common) {
   if (from == Kind::mesh && extension_of(out) == ".ply") return convert_mesh(in, out);
   if (from == Kind::cloud && to == Kind::cloud) return convert_cloud(in, out);
   if (from == Kind::trajectory && to == Kind::trajectory) return convert_trajectory(in, out);
-  if (from == Kind::graph && to == Kind::graph) return convert_graph(in, out);
+  if (from == Kind::graph && to == Kind::graph) return convert_graph(in, fs::path(in).stem().string(), out);
   usage_error(in + " cannot become " + out);
 }
 

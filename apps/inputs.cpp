@@ -74,8 +74,9 @@ void add_recording_options(const Command& command, RecordingConfig& config) {
           "recordings say")
       .check(mount_fault);
   command.add_option("--points", config.points, "Topic of the clouds, for recordings with several");
-  command.add_option("--wheel", config.wheel,
-                     "Topic of the wheel odometry, for recordings with several; none: without");
+  command.add_option(
+      "--wheel", config.wheel,
+      "Topic of the wheel odometry, for recordings with several or with a TwistStamped; none: without");
   command.add_option("--imu", config.imu, "Topic of the IMU, for recordings with several; none: without");
   command.add_option("--imu-mount", config.imu_mount, "Pose of the IMU on the robot, as --mount")
       .check(mount_fault);

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The adit authors
 # SPDX-License-Identifier: MIT
 # Gives the readers of files arbitrary bytes for SECONDS each, under the address and undefined-behaviour sanitizers, from
-# the small files of tests/conformance and what earlier runs found new:  tools/fuzz.sh SECONDS [EXTENSION...]
+# the small files of tests/conformance and tests/fuzz/seeds and what earlier runs found new:  tools/fuzz.sh SECONDS [EXTENSION...]
 # Ends with 1 where a reader failed; the bytes that did it are then in build/fuzz/faults.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 seconds=$1
 shift
 kinds=("$@")
-[ ${#kinds[@]} -gt 0 ] || kinds=(mcap bag db3 pcd ply bin tum csv g2o jrl yaml adit loops)
+[ ${#kinds[@]} -gt 0 ] || kinds=(mcap bag db3 pcd ply bin tum csv g2o jrl cbor yaml adit loops)
 tools/build.sh fuzz adit_fuzz_readers
 export TMPDIR=${TMPDIR:-/dev/shm} # each input is a file
 faults=build/fuzz/faults
@@ -22,6 +22,7 @@ for kind in "${kinds[@]}"; do
   for seed in tests/conformance/*."$kind" tests/fuzz/seeds/*."$kind"; do
     [ ! -f "$seed" ] || cp "$seed" "$corpus/"
   done
+  [ -n "$(ls -A "$corpus")" ] || { echo "fuzz: no file to begin with: put one into tests/fuzz/seeds/*.$kind" >&2; exit 1; }
   # Inputs of up to 64 kB; a compressed one may hold 1 GiB.
   if ADIT_FUZZ_AS=$kind build/fuzz/tests/adit_fuzz_readers "$corpus" -max_total_time="$seconds" -max_len=65536 -timeout=10 \
       -rss_limit_mb=4096 -malloc_limit_mb=1100 -artifact_prefix="$faults/$kind-" -print_final_stats=1 >"build/fuzz/$kind.log" 2>&1; then

@@ -51,9 +51,9 @@ class Folder {
   fs::path path_;
 };
 
-void read_as_recording(const fs::path& path) {
+void read_as_recording(const fs::path& path, const adit::RecordingConfig& config) {
   constexpr std::size_t kScans = 4;
-  const adit::Result<adit::Recording> recording = adit::open_recording(path.string());
+  const adit::Result<adit::Recording> recording = adit::open_recording(path.string(), config);
   if (!recording) return;
   for (std::size_t i = 0; i < std::min(kScans, recording->num_scans()); ++i)
     static_cast<void>(recording->read_scan(i));
@@ -71,7 +71,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const fs::path path = folder.file();
   std::ofstream(path, std::ios::binary) << text;
   static_cast<void>(adit::file_info(path.string(), {}));
-  if (extension() == "mcap" || extension() == "bag" || extension() == "db3") read_as_recording(path);
+  if (extension() == "mcap" || extension() == "bag" || extension() == "db3") {
+    read_as_recording(path, {});
+    read_as_recording(path, {.mount = "0,0,1", .wheel = "/twist"});
+  }
   if (extension() == "csv" || extension() == "tum") static_cast<void>(adit::read_trajectory(path));
   return 0;
 }

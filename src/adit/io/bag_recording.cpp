@@ -43,16 +43,20 @@ void take_covariance(WheelCovariance& kept, const WheelCovariance& stated, bool 
     kept.twist = stated.twist;
 }
 
+Result<> check_after(Stamp stamp, const Trajectory& before, const std::string& place) {
+  if (before.empty() || stamp > before.back().stamp) return {};
+  return fail(format("{}: stamp {} is not after {}, that of the one before", place, stamp_text(stamp),
+                     stamp_text(before.back().stamp)));
+}
+
 Result<PoseTrack> read_poses(const Bag& bag, const TopicIndices& topics) {
   PoseTrack track;
   for (const BagMessage& message : messages_of(bag, topics)) {
     const Result<ros::OdometryMessage> pose = decoded(bag, message, ros::decode_odometry);
     const std::string place = format("{}, message {}", names_of(bag, topics), track.poses.size());
     if (!pose) return fail(place, pose.error());
-    if (!track.poses.empty() && pose->pose.stamp <= track.poses.back().stamp) {
-      return fail(format("{}: stamp {} is not after {}, that of the one before", place,
-                         stamp_text(pose->pose.stamp), stamp_text(track.poses.back().stamp)));
-    }
+    if (Result<> after = check_after(pose->pose.stamp, track.poses, place); !after)
+      return tl::unexpected(after.error());
     take_covariance(track.covariance, pose->covariance, track.poses.empty());
     track.poses.push_back(pose->pose);
     track.child = pose->child;
@@ -63,6 +67,7 @@ Result<PoseTrack> read_poses(const Bag& bag, const TopicIndices& topics) {
 /// Adds up twists: between two of them their mean. A gap is driven through as if that held.
 Result<PoseTrack> read_twists(const Bag& bag, const TopicIndices& topics) {
   constexpr double kLongestGap = 0.5;  // seconds
+  constexpr double kFastest = 1000.0;
   PoseTrack track;
   Vector6 last = Vector6::Zero();
   double longest = 0.0;
@@ -70,13 +75,13 @@ Result<PoseTrack> read_twists(const Bag& bag, const TopicIndices& topics) {
     const Result<ros::TwistMessage> twist = decoded(bag, message, ros::decode_twist);
     const std::string place = format("{}, message {}", names_of(bag, topics), track.poses.size());
     if (!twist) return fail(place, twist.error());
+    if (!(twist->twist.cwiseAbs().maxCoeff() < kFastest))
+      return fail(format("{}: no robot is faster than {} m/s or rad/s", place, kFastest));
+    if (Result<> after = check_after(twist->stamp, track.poses, place); !after)
+      return tl::unexpected(after.error());
     Pose T_odom_body;
     if (!track.poses.empty()) {
       const StampedPose& before = track.poses.back();
-      if (twist->stamp <= before.stamp) {
-        return fail(format("{}: stamp {} is not after {}, that of the one before", place,
-                           stamp_text(twist->stamp), stamp_text(before.stamp)));
-      }
       const double dt = to_seconds(twist->stamp - before.stamp);
       longest = std::max(longest, dt);
       T_odom_body = before.T_world_body * Pose::exp(0.5 * dt * (last + twist->twist));
@@ -256,7 +261,7 @@ void note_point_times(Recording& recording, const ros::CloudMessage& first) {
 void note_twists(Recording& recording, const Bag& bag, const BagTopics& topics,
                  const RecordingConfig& config) {
   if (!topics.wheel.empty() || topics.twists.empty() || config.wheel == kNoWheel) return;
-  recording.assumptions.push_back(
+  recording.warnings.push_back(
       format("wheels: none; if the wheels have measured {} (TwistStamped), and it is no command, give "
              "--wheel {}",
              names_of(bag, topics.twists), bag.topics[topics.twists.front()].name));

@@ -30,15 +30,15 @@ namespace adit {
 /// not finished is read as far as it goes, which `warnings` says.
 ///
 /// Of a bag that adit did not write are taken: the only topic of clouds (PointCloud2, Livox's CustomMsg), or
-/// the one that `config.points` names; the only Odometry topic that is not ground truth for the wheels; as
-/// ground truth the one that `config.truth` names, or the only one whose name has "truth", "groundtruth" or
-/// "gt" as a whole word; and of /tf_static the chain of links from the wheels' frame to the LiDAR's, without
-/// wheels from base_footprint, base_link, base or the root. Without such a chain the mount is unknown, an
-/// error unless `config.mount` gives it. The IMU is the only Imu topic, or the one that `config.imu` names;
-/// without links to it, its mount is taken for the LiDAR's, which `assumptions` says. With
-/// `config.topics_under` only topics below that name are looked at, beside /tf_static, and names without a
-/// slash at the front count from there. The unit of point times is `config.point_times`, or what the first
-/// scan shows (packed_cloud.hpp).
+/// the one that `config.points` names; for the wheels the only Odometry topic that is not ground
+/// truth, or the one, of Odometry or TwistStamped, that `config.wheel` names; as ground truth the one that
+/// `config.truth` names, or the only one whose name has "truth", "groundtruth" or "gt" as a whole word; and
+/// of /tf_static the chain of links from the wheels' frame to the LiDAR's, without wheels from
+/// base_footprint, base_link, base or the root. Without such a chain the mount is unknown, an error unless
+/// `config.mount` gives it. The IMU is the only Imu topic, or the one that `config.imu` names; without links
+/// to it, its mount is taken for the LiDAR's, which `assumptions` says. With `config.topics_under` only
+/// topics below that name are looked at, beside /tf_static, and names without a slash at the front count from
+/// there. The unit of point times is `config.point_times`, or what the first scan shows (packed_cloud.hpp).
 [[nodiscard]] Result<Recording> read_recording(const std::filesystem::path& path,
                                                const RecordingConfig& config = {});
 [[nodiscard]] Result<Recording> read_recording(Bag bag, const RecordingConfig& config = {});

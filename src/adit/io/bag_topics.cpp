@@ -61,10 +61,11 @@ std::string whole_name(const std::string& topic, const std::string& under) {
 
 /// How people choose one of several topics.
 struct TopicChoice {
-  std::string_view type;    ///< "clouds"
-  std::string_view option;  ///< "--points"
-  std::string topic;        ///< "": the only one.
-  std::string under;        ///< RecordingConfig::topics_under.
+  std::string_view type;      ///< "clouds"
+  std::string_view option;    ///< "--points"
+  std::string topic;          ///< "": the only one.
+  std::string under;          ///< RecordingConfig::topics_under.
+  TopicIndices further = {};  ///< That may be asked for, too.
 };
 
 /// How likely a topic is the one that is meant: by its name, then by its messages.
@@ -94,7 +95,9 @@ std::string choices(const Bag& bag, TopicIndices topics, const TopicChoice& choi
 
 /// Leaves the topic asked for, or the only one, if there is any.
 Result<> choose_one(const Bag& bag, TopicIndices& topics, const TopicChoice& choice) {
-  const std::string all = names_of(bag, topics);
+  TopicIndices known = topics;
+  std::ranges::copy(choice.further, std::back_inserter(known));
+  const std::string all = names_of(bag, known);
   if (!choice.topic.empty())
     std::erase_if(topics, [&](std::size_t topic) {
       return bag.topics[topic].name != whole_name(choice.topic, choice.under);
@@ -133,7 +136,9 @@ std::string names_of(const Bag& bag, const TopicIndices& topics) {
   return format("{}", fmt::join(names, ", "));
 }
 
-Result<BagTopics> choose_topics(const Bag& bag, const RecordingConfig& config) {
+Result<BagTopics> choose_topics(const Bag& bag, const RecordingConfig& given) {
+  RecordingConfig config = given;
+  while (config.topics_under.ends_with('/')) config.topics_under.pop_back();
   BagTopics topics = find_topics(bag, config.topics_under);
   if (topics.points.empty())
     return fail(format(
@@ -151,7 +156,7 @@ Result<BagTopics> choose_topics(const Bag& bag, const RecordingConfig& config) {
       .and_then([&]() -> Result<> {
         if (!has_wheels) return {};
         return choose_one(bag, topics.wheel,
-                          {"wheel odometry", "--wheel", config.wheel, config.topics_under});
+                          {"wheel odometry", "--wheel", config.wheel, config.topics_under, topics.twists});
       })
       .and_then([&] {
         return choose_one(

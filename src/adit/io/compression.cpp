@@ -20,7 +20,7 @@ constexpr std::size_t kLargest = std::size_t{1} << 30U;
 // counts runs in 255s, and a block of 900 kB of bzip2, in which five bytes stand for 259, takes some 32.
 constexpr std::size_t kMostOfZstd = 32 * 1024;
 constexpr std::size_t kMostOfLz4 = 255;
-constexpr std::size_t kMostOfBz2 = 1'500'000;
+constexpr std::size_t kMostOfBz2 = 3'000'000;
 
 /// Before memory is taken for them.
 Result<> check_claim(std::string_view bytes, std::size_t size, std::size_t most_of_a_byte) {

@@ -3,7 +3,7 @@
 #include "adit/io/file_info.hpp"
 
 #include <algorithm>
-#include <map>
+#include <cctype>
 #include <nlohmann/json.hpp>
 #include <variant>
 
@@ -136,19 +136,36 @@ Result<Json> routes_info(const fs::path& path) {
   });
 }
 
+// Any two stamps, whose difference may not fit 64 bits.
+double seconds_between(Stamp earlier, Stamp later) {
+  return static_cast<double>((static_cast<long double>(later.ns) - static_cast<long double>(earlier.ns)) /
+                             1e9L);
+}
+
 /// The rate is that of the median interval, which gaps do not change.
+struct Rhythm {
+  double rate_hz = 0.0;
+  double longest_gap_s = 0.0;
+};
+Rhythm rhythm_of(std::vector<double> intervals) {
+  if (intervals.empty()) return {};
+  const auto middle = intervals.begin() + std::ssize(intervals) / 2;
+  std::ranges::nth_element(intervals, middle);
+  return {*middle > 0.0 ? 1.0 / *middle : 0.0, *std::ranges::max_element(intervals)};
+}
+
 Json imu_json(const Recording& recording) {
   const std::vector<ImuSample>& imu = recording.imu;
-  std::vector<Duration> intervals;
-  for (std::size_t i = 1; i < imu.size(); ++i) intervals.push_back(imu[i].stamp - imu[i - 1].stamp);
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  if (!intervals.empty()) std::ranges::nth_element(intervals, middle);
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < imu.size(); ++i)
+    intervals.push_back(seconds_between(imu[i - 1].stamp, imu[i].stamp));
+  const Rhythm rhythm = rhythm_of(std::move(intervals));
   return {{"name", recording.imu_name},
           {"mount", mount_text(recording.T_base_imu)},
           {"mount_from", recording.imu_mount_source},
           {"samples", imu.size()},
-          {"rate_hz", intervals.empty() ? 0.0 : 1.0 / to_seconds(*middle)},
-          {"longest_gap_s", intervals.empty() ? 0.0 : to_seconds(*std::ranges::max_element(intervals))},
+          {"rate_hz", rhythm.rate_hz},
+          {"longest_gap_s", rhythm.longest_gap_s},
           {"first_stamp_s", stamp_text(imu.front().stamp)},
           {"last_stamp_s", stamp_text(imu.back().stamp)}};
 }
@@ -183,27 +200,17 @@ Json recording_json(const Recording& recording) {
 struct TopicTimes {
   std::size_t count = 0;
   Stamp last;
-  std::vector<Duration> intervals;
+  std::vector<double> intervals;  ///< Seconds.
 };
 
 std::vector<TopicTimes> times_of(const Bag& bag) {
   std::vector<TopicTimes> times(bag.topics.size());
   for (const BagMessage& message : bag.messages) {
     TopicTimes& topic = times[message.topic];
-    if (topic.count++ > 0) topic.intervals.push_back(message.log_time - topic.last);
+    if (topic.count++ > 0) topic.intervals.push_back(seconds_between(topic.last, message.log_time));
     topic.last = message.log_time;
   }
   return times;
-}
-
-/// The rate is that of the median interval, which gaps do not change.
-void add_times(Json& topic, TopicTimes& times) {
-  topic["messages"] = times.count;
-  if (times.intervals.empty()) return;
-  const auto middle = times.intervals.begin() + std::ssize(times.intervals) / 2;
-  std::ranges::nth_element(times.intervals, middle);
-  topic["rate_hz"] = *middle > Duration(0) ? 1.0 / to_seconds(*middle) : 0.0;
-  topic["longest_gap_s"] = to_seconds(*std::ranges::max_element(times.intervals));
 }
 
 /// What the messages say of themselves, by the first and the last one. A stamp that is far from the time of
@@ -219,8 +226,8 @@ void add_contents(Json& topic, const Bag& bag, std::size_t index) {
   const auto end = decoded(bag, *last, ros::decode_header);
   if (!header || !end) return;
   topic["frame"] = header->frame;
-  topic["recorded_after_stamp_s"] = {to_seconds(first->log_time - header->stamp),
-                                     to_seconds(last->log_time - end->stamp)};
+  topic["recorded_after_stamp_s"] = {seconds_between(header->stamp, first->log_time),
+                                     seconds_between(end->stamp, last->log_time)};
   if (type != ros::kPointCloud2) return;
   if (const auto fields = decoded(bag, *first, ros::describe_cloud)) topic["fields"] = *fields;
 }
@@ -234,7 +241,7 @@ std::vector<std::string> uses_of(const Bag& bag, const RecordingConfig& config) 
     for (const std::size_t i : topics) uses[i] = use;
   };
   mark(chosen->points, "points");
-  mark(chosen->wheel, "wheel");
+  if (config.wheel != kNoWheel) mark(chosen->wheel, "wheel");
   mark(chosen->truth, "truth");
   mark(chosen->imu, "imu");
   mark(chosen->transforms, "mounts");
@@ -248,7 +255,12 @@ Json topics_json(const Bag& bag, const RecordingConfig& config) {
   for (std::size_t i = 0; i < bag.topics.size(); ++i) {
     Json topic{
         {"topic", bag.topics[i].name}, {"type", bag.topics[i].type}, {"encoding", bag.topics[i].encoding}};
-    add_times(topic, times[i]);
+    topic["messages"] = times[i].count;
+    if (times[i].count > 1) {
+      const Rhythm rhythm = rhythm_of(std::move(times[i].intervals));
+      topic["rate_hz"] = rhythm.rate_hz;
+      topic["longest_gap_s"] = rhythm.longest_gap_s;
+    }
     if (!uses[i].empty()) topic["used_as"] = uses[i];
     add_contents(topic, bag, i);
     topics.push_back(std::move(topic));
@@ -282,19 +294,33 @@ Result<Json> mcap_info(const fs::path& path, const RecordingConfig& config) {
   });
 }
 
+/// As a shell takes it for one word.
+std::string quoted(const std::string& word) {
+  const bool is_plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_./:,=@%+-").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (is_plain) return word;
+  std::string out = "'";
+  for (const char c : word) c == '\'' ? out.append("'\\''") : out.append(1, c);
+  return out + "'";
+}
+
 /// What to type next, with the options that were given.
 std::string next_command(const fs::path& path, const RecordingConfig& config) {
-  const std::string name = path.string();
-  std::string command = "adit doctor " + (name.find(' ') == std::string::npos ? name : '"' + name + '"');
-  const auto add = [&](const char* option, const std::string& value) {
-    if (!value.empty()) command += format(" {} {}", option, value);
+  std::string command = "adit doctor " + quoted(path.string());
+  const auto add = [&](const std::string& option, const std::string& value) {
+    if (!value.empty()) command += option + quoted(value);
   };
-  add("--mount", config.mount);
-  add("--points", config.points);
-  add("--wheel", config.wheel);
-  add("--imu", config.imu);
-  add("--imu-mount", config.imu_mount);
-  add("--point-times", config.point_times);
+  add(" --mount ", config.mount);
+  add(" --points ", config.points);
+  add(" --wheel ", config.wheel);
+  add(" --imu ", config.imu);
+  add(" --imu-mount ", config.imu_mount);
+  add(" --point-times ", config.point_times);
+  add(" --set recording.truth=", config.truth);
+  add(" --set recording.topics_under=", config.topics_under);
+  if (config.stamp_at != RecordingConfig().stamp_at) add(" --set recording.stamp_at=", config.stamp_at);
   return command;
 }
 

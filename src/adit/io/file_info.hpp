@@ -10,10 +10,11 @@
 
 namespace adit {
 
-/// A JSON object with "kind" (recording, mcap, cloud, mesh, trajectory, graph, robot map, routes or session)
-/// and what that kind has: counts, stamps in seconds, lengths and boxes in metres. `path` is as for
-/// `open_recording`, or any other file that adit reads, by its ending. An MCAP file that is not a recording
-/// is described by its topics and the reason.
+/// A JSON object with "kind" (recording, mcap, bag, cloud, mesh, trajectory, graph, robot map, routes or
+/// session) and what that kind has: counts, stamps in seconds, lengths and boxes in metres. `path` is as for
+/// `open_recording`, or any other file that adit reads, by its ending. Of a bag each topic with its
+/// rate in hertz, longest gap, frame, fields and use, then what adit reads of it and the command to type
+/// next, or why it is no recording.
 Result<std::string> file_info(const std::string& path, const RecordingConfig& config);
 
 }  // namespace adit

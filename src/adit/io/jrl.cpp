@@ -315,6 +315,14 @@ class RecordsMaker {
 }  // namespace
 }  // namespace jrl
 
+namespace {
+// Of a robot; 'a' where the key has none.
+char letter_of(std::uint64_t key) {
+  const auto byte = static_cast<char>(key >> 56U);
+  return byte == '\0' ? 'a' : byte;
+}
+}  // namespace
+
 Result<JrlFile> jrl_of(std::string name, const std::variant<PoseGraph, PoseGraph2>& graph) {
   return std::visit(
       [&]<class P>(const BasicPoseGraph<P>& given) -> Result<JrlFile> {
@@ -325,10 +333,13 @@ Result<JrlFile> jrl_of(std::string name, const std::variant<PoseGraph, PoseGraph
                         std::vector<JrlLabel>(given.edges.size(), JrlLabel::unlabelled)};
         std::map<char, std::size_t> robots;
         for (const auto& node : given.nodes) {
-          const auto byte = static_cast<char>(node.key >> 56U);
-          const char letter = byte == '\0' ? 'a' : byte;
-          if (letter < '!' || letter > '~')
-            return fail(format("the key {} has no letter of a robot in its top byte", node.key));
+          const char letter = letter_of(node.key);
+          if (letter < '!' || letter > '~') {
+            return fail(
+                format("the top byte of key {} is no letter of a robot; number nodes from 0, or as GTSAM's "
+                       "Symbol does",
+                       node.key));
+          }
           robots.try_emplace(letter, 0);
         }
         JrlFile file{std::move(name), {}, {}, {}, {}};
@@ -336,10 +347,7 @@ Result<JrlFile> jrl_of(std::string name, const std::variant<PoseGraph, PoseGraph
           number = file.robots.size();
           file.robots.emplace_back(1, letter);
         }
-        for (const auto& node : given.nodes) {
-          const auto byte = static_cast<char>(node.key >> 56U);
-          log.robot_of_node.push_back(robots.at(byte == '\0' ? 'a' : byte));
-        }
+        for (const auto& node : given.nodes) log.robot_of_node.push_back(robots.at(letter_of(node.key)));
         file.content = std::move(log);
         return file;
       },
@@ -349,13 +357,14 @@ Result<JrlFile> jrl_of(std::string name, const std::variant<PoseGraph, PoseGraph
 Result<std::string> jrl_text(const JrlFile& file) {
   return std::visit(
       [&]<class P>(const JrlGraph<P>& log) -> Result<std::string> {
+        if (log.graph.edges.empty()) return fail("there are no edges, of which a JSON Robot Log is made");
         for (const auto& edge : log.graph.edges) {
           const Eigen::LLT<typename P::Jacobian> factorization(edge.information);
           if (factorization.info() == Eigen::Success && factorization.rcond() > 1e-15) continue;
-          return fail(
-              format("the edge from {} to {} leaves a direction open; a JSON Robot Log states covariances, "
-                     "which such an edge has not",
-                     log.graph.nodes[edge.from].key, log.graph.nodes[edge.to].key));
+          return fail(format(
+              "the edge from {} to {} leaves a direction open and has no covariance, which a JSON Robot Log "
+              "states; give it a little information there",
+              log.graph.nodes[edge.from].key, log.graph.nodes[edge.to].key));
         }
         return jrl_text(jrl::RecordsMaker<P>(file, log).make());
       },

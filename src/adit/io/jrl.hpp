@@ -57,13 +57,13 @@ struct JrlFile {
 [[nodiscard]] Result<JrlFile> parse_jrl(const std::string& bytes, const std::string& name);
 
 /// The graph of one or several robots as such a log: loops are the potential outliers. The robot of a node is
-/// the letter in the top byte of its key, 'a' where there is none. Fails on another byte than a letter.
+/// the letter in the top byte of its key, 'a' where there is none. Fails on a byte that cannot be printed.
 [[nodiscard]] Result<JrlFile> jrl_of(std::string name, const std::variant<PoseGraph, PoseGraph2>& graph);
 
 /// As JSON. A measurement is that of the robot of its second node; an entry has those of one node, and its
-/// stamp is its number, since graphs know no time. Read again it is the same graph, with nodes in the order
-/// of their keys and edges in that of robots and nodes.
-/// Fails on an edge whose information is singular.
+/// stamp is its number, since graphs know no time. Read again it is the same graph, but for nodes without an
+/// edge, with nodes in the order of their keys and edges in that of robots and nodes. Fails without edges,
+/// and on one whose information is singular.
 [[nodiscard]] Result<std::string> jrl_text(const JrlFile& file);
 
 /// The graph in which priors are edges from an additional last node, the world, at the identity. Without

@@ -90,8 +90,10 @@ TEST(McapWheel, ATwistThatTheWheelsMeasuredIsAddedUpWhereItIsAskedFor) {
   const Result<Recording> unasked = file.read();
   ASSERT_TRUE(unasked) << unasked.error().message;
   EXPECT_TRUE(unasked->wheel.empty());
-  ASSERT_FALSE(unasked->assumptions.empty());
-  EXPECT_NE(unasked->assumptions.back().find("--wheel /wheel_twist"), std::string::npos);
+  ASSERT_EQ(unasked->warnings.size(), 1U);
+  EXPECT_NE(unasked->warnings[0].find("--wheel /wheel_twist"), std::string::npos);
+  EXPECT_ERROR(file.read({.wheel = "/whel_twist"}),
+               "no topic of wheel odometry '/whel_twist'; there are: /wheel_twist, /cmd_vel");
   EXPECT_TRUE(file.read({.wheel = "none"})->wheel.empty());
 
   twists.erase(twists.begin() + 10, twists.begin() + 30);
@@ -101,6 +103,9 @@ TEST(McapWheel, ATwistThatTheWheelsMeasuredIsAddedUpWhereItIsAskedFor) {
   EXPECT_NE(with_gap->warnings[0].find("a gap of 1.1 s"), std::string::npos) << with_gap->warnings[0];
   twists[3].stamp = twists[2].stamp;
   EXPECT_ERROR(file_with_links().twists("/t", twists).read({.wheel = "/t"}), "/t, message 3: stamp");
+  twists[2].twist[5] = 1e300;
+  EXPECT_ERROR(file_with_links().twists("/t", twists).read({.wheel = "/t"}),
+               "/t, message 2: no robot is faster");
   twists[1].twist[0] = std::numeric_limits<double>::infinity();
   EXPECT_ERROR(file_with_links().twists("/t", twists).read({.wheel = "/t"}), "/t, message 1");
 }

@@ -23,13 +23,20 @@ Result<> write_octomap(const std::filesystem::path& path, const std::vector<Plac
   octomap::OcTree tree(config.resolution_m);
   const Phase phase("filling the octree", scans.size());
   for (const PlacedScan& scan : scans) {
-    const octomap::point3d sensor = point_of(scan.T_world_base * scan.viewpoint);
+    // Coordinates outside of the tree would come out at its other side.
+    octomap::OcTreeKey key;
+    bool fits = true;
+    const auto placed = [&](const Vector3& p_base) {
+      const octomap::point3d p = point_of(scan.T_world_base * p_base);
+      fits = fits && tree.coordToKeyChecked(p, key);
+      return p;
+    };
+    const octomap::point3d sensor = placed(scan.viewpoint);
     octomap::Pointcloud cloud;
     cloud.reserve(scan.cloud_base->size());
     for (const Eigen::Vector3f& point : scan.cloud_base->points)
-      cloud.push_back(point_of(scan.T_world_base * point.cast<double>()));
-    octomap::OcTreeKey key;
-    if (!tree.coordToKeyChecked(sensor, key)) {
+      cloud.push_back(placed(point.cast<double>()));
+    if (!fits) {
       return fail(
           format("{}: the map is larger than a tree of {} m cells can hold; give a larger "
                  "maps.octomap.resolution_m",

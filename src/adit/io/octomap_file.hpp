@@ -14,8 +14,8 @@
 namespace adit {
 
 struct OctomapConfig {
-  double resolution_m = 0.2;
-  double reach_m = 20.0;
+  double resolution_m = 0.2;  ///< Edge of a cell, metres.
+  double reach_m = 20.0;      ///< Metres from the sensor.
 };
 inline Fields fields_of(OctomapConfig& c) {
   return {{"resolution_m", &c.resolution_m, "m", 0.01, 10.0, "edge of a cell of the .bt"},

@@ -29,7 +29,8 @@ inline constexpr std::string_view kMarkers = "visualization_msgs/msg/MarkerArray
 /// What decode_cloud or decode_livox take.
 [[nodiscard]] inline bool is_cloud(std::string_view type) { return type == kPointCloud2 || is_livox(type); }
 
-/// The full text of a message type and all types in it; the type must be one of the above.
+/// The full text of a message type and all types in it; the type must be one of
+/// those that are encoded below.
 [[nodiscard]] std::string definition_of(std::string_view type);
 
 /// A cloud in the frame named.

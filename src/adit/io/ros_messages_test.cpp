@@ -165,5 +165,77 @@ TEST(RosMessages, PaddedRowsOfAnOrganisedCloud) {
   EXPECT_EQ(cloud->scan.cloud.points[1], Eigen::Vector3f(2, 2, 2));
 }
 
+void expect_pose(MessageReader& reader, const Pose& pose) {
+  for (const double value : pose.translation()) EXPECT_EQ(reader.number<double>(), value);
+  for (const double value : pose.rotation().coeffs()) EXPECT_EQ(reader.number<double>(), value);
+}
+
+// nav_msgs/Path, field by field.
+TEST(RosMessages, PathsAreAsRosDefinesThem) {
+  const Trajectory poses = {{Stamp{5'000'000'001}, Pose::planar(1, 2, 0.3)}, {Stamp{6'000'000'000}, Pose()}};
+  const std::string message = ros::encode_path("map", poses);
+  MessageReader reader(message);
+  EXPECT_EQ(reader.number<std::int32_t>(), 5);
+  EXPECT_EQ(reader.number<std::uint32_t>(), 1U);
+  EXPECT_EQ(reader.text(), "map");
+  ASSERT_EQ(reader.number<std::uint32_t>(), 2U);
+  for (const StampedPose& pose : poses) {
+    EXPECT_EQ(reader.number<std::int32_t>(), pose.stamp.ns / 1'000'000'000);
+    EXPECT_EQ(reader.number<std::uint32_t>(), pose.stamp.ns % 1'000'000'000);
+    EXPECT_EQ(reader.text(), "map");
+    expect_pose(reader, pose.T_world_body);
+  }
+  EXPECT_TRUE(reader.ok());
+  EXPECT_EQ(reader.offset(), message.size());
+}
+
+// visualization_msgs/MarkerArray from Humble on, field by field.
+TEST(RosMessages, MarkersAreAsRosDefinesThem) {
+  const ros::LinesMarker lines{
+      "map", "loops", Stamp{7'000'000'000}, {0.25F, 0.5F, 0.75F, 1.0F}, 0.1, {{1, 2, 3}, {4, 5, 6}}};
+  const std::string message = ros::encode_markers({lines, lines});
+  MessageReader reader(message);
+  ASSERT_EQ(reader.number<std::uint32_t>(), 2U);
+  for (std::int32_t id = 0; id < 2; ++id) {
+    EXPECT_EQ(reader.number<std::int32_t>(), 7);
+    EXPECT_EQ(reader.number<std::uint32_t>(), 0U);
+    EXPECT_EQ(reader.text(), "map");
+    EXPECT_EQ(reader.text(), "loops");
+    for (const std::int32_t value : {id, 5, 0})
+      EXPECT_EQ(reader.number<std::int32_t>(), value);  // LINE_LIST, ADD
+    expect_pose(reader, Pose());
+    for (const double scale : {0.1, 0.0, 0.0}) EXPECT_EQ(reader.number<double>(), scale);
+    for (const float channel : lines.color) EXPECT_EQ(reader.number<float>(), channel);
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(reader.number<std::uint32_t>(), 0U);  // lifetime
+    EXPECT_EQ(reader.number<std::uint8_t>(), 0);                                // frame_locked
+    ASSERT_EQ(reader.number<std::uint32_t>(), 2U);
+    for (const Vector3& point : lines.points)
+      for (const double value : point) EXPECT_EQ(reader.number<double>(), value);
+    EXPECT_EQ(reader.number<std::uint32_t>(), 0U);                              // colors
+    EXPECT_EQ(reader.text(), "");                                               // texture_resource
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(reader.number<std::uint32_t>(), 0U);  // texture: stamp,
+    EXPECT_EQ(reader.text(), "");                                               // frame,
+    EXPECT_EQ(reader.text(), "");                                               // format,
+    EXPECT_EQ(reader.number<std::uint32_t>(), 0U);                              // data
+    EXPECT_EQ(reader.number<std::uint32_t>(), 0U);                              // uv_coordinates
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(reader.text(), "");  // text, mesh_resource, mesh_file.filename
+    EXPECT_EQ(reader.number<std::uint32_t>(), 0U);             // mesh_file.data
+    EXPECT_EQ(reader.number<std::uint8_t>(), 0);               // mesh_use_embedded_materials
+  }
+  EXPECT_TRUE(reader.ok());
+  EXPECT_EQ(reader.offset(), message.size());
+}
+
+TEST(RosMessages, CloudsAreDescribedAsTheyStand) {
+  Scan scan{Stamp{1'000'000'000}, {}};
+  scan.cloud.points = {{1, 2, 3}, {4, 5, 6}};
+  scan.cloud.intensities = {7, 8};
+  const std::string message = ros::encode_cloud(scan, "lidar");
+  EXPECT_EQ(ros::describe_cloud(message).value(),
+            "x float32, y float32, z float32, intensity float32; 2 x 1 points");
+  EXPECT_EQ(ros::decode_header(message)->frame, "lidar");
+  EXPECT_FALSE(ros::describe_cloud(message.substr(0, 40)));
+}
+
 }  // namespace
 }  // namespace adit

@@ -50,8 +50,14 @@ Result<PlacedSession> read_placed_session(const std::filesystem::path& session) 
   if (!saved) return tl::unexpected(saved.error());
   const Result<SavedFleet> fleet = read_fleet(session);
   if (!fleet) return tl::unexpected(fleet.error());
+  // The map of the most robots comes first; robots without keyframes count for nothing.
   std::vector<std::vector<std::string>> shared_maps = saved->components;
-  std::ranges::stable_sort(shared_maps, std::greater<>(), &std::vector<std::string>::size);
+  const auto num_mapped = [&](const std::vector<std::string>& names) {
+    return std::ranges::count_if(fleet->maps, [&](const auto& map) {
+      return !map->keyframes.empty() && std::ranges::find(names, map->name) != names.end();
+    });
+  };
+  std::ranges::stable_sort(shared_maps, std::greater<>(), num_mapped);
   PlacedSession out;
   for (const auto& map : fleet->maps) {
     const auto index = std::ranges::find(saved->robots, map->name) - saved->robots.begin();
@@ -63,7 +69,9 @@ Result<PlacedSession> read_placed_session(const std::filesystem::path& session) 
       return fail((session / map->name).string() +
                   ": trajectory.tum and map.adit do not belong together; one of them was changed");
     }
-    PlacedRobot robot{map, {}, static_cast<std::size_t>(shared - shared_maps.begin())};
+    const auto number = static_cast<std::size_t>(shared - shared_maps.begin());
+    const bool is_listed = shared != shared_maps.end();
+    PlacedRobot robot{map, {}, is_listed ? number : number + out.robots.size()};
     for (const StampedPose& pose : saved->optimized[static_cast<std::size_t>(index)])
       robot.T_world_keyframe.push_back(pose.T_world_body);
     out.robots.push_back(std::move(robot));
@@ -95,9 +103,9 @@ Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map,
   if (extension == ".bt") return write_octomap(path, scans_of(map), config.octomap);
   if (extension == ".pcd" || extension == ".ply")
     return write_cloud(path, merged_cloud(map.maps, map.T_world_keyframe, config.voxel_m));
-  return fail(
-      path.string() +
-      ": a session becomes .las, .pcd, .ply, .pgm (with .yaml), .bt, .mcap (with a layout), .tum or .kitti");
+  return fail(path.string() +
+              ": a session becomes .las, .pcd, .ply, .pgm (with .yaml), .bt, .mcap (with a layout), .tum, "
+              ".kitti, .csv, .jrl or .g2o");
 }
 
 }  // namespace adit

@@ -17,8 +17,8 @@
 namespace adit {
 
 struct MapsConfig {
-  double voxel_m = 0.1;
-  bool start_together = false;
+  double voxel_m = 0.1;         ///< Of clouds: one point in a cube of this edge, metres.
+  bool start_together = false;  ///< Of .mcap: all robots start when the first one does.
   OccupancyConfig grid;
   OctomapConfig octomap;
 };
@@ -28,7 +28,7 @@ struct MapsConfig {
 struct PlacedRobot {
   std::shared_ptr<const RobotMap> map;
   std::vector<Pose> T_world_keyframe;  ///< One for each keyframe.
-  std::size_t shared_map = 0;          ///< Number of the shared map; that of the most robots is 0.
+  std::size_t shared_map = 0;          ///< Number of the shared map; 0 is that of the most robots.
 };
 struct PlacedSession {
   SavedSession saved;
@@ -47,7 +47,7 @@ struct JointMap {
 [[nodiscard]] JointMap joint_map_of(const PlacedSession& session);
 
 /// Writes .las (local coordinates; the source ID is the number of the robot), .pcd or .ply (one point a
-/// voxel) or .pgm with its .yaml (occupancy_of). Fails on other endings.
+/// voxel), .bt (write_octomap) or .pgm with its .yaml (occupancy_of). Fails on other endings.
 Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config);
 
 }  // namespace adit

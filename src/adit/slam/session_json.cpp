@@ -163,11 +163,12 @@ Result<> save_evaluation(const std::filesystem::path& session, const SessionEval
 
 std::string foxglove_layout(const PlacedSession& session) {
   Json topics = {{"/graph", {{"visible", true}}}};
+  const std::vector<std::string> names = ros_names(session);
   Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < session.robots.size(); ++i) {
     const PlacedRobot& robot = session.robots[i];
-    if (robot.map->keyframes.empty()) continue;
-    const std::string name = "/" + robot.map->name;
+    if (robot.map->keyframes.empty() || robot.map->odometry.empty()) continue;
+    const std::string name = "/" + names[i];
     const std::string color = hex(robot_color(i));
     topics[name + "/map"] = {
         {"visible", true}, {"colorMode", "flat"}, {"flatColor", color}, {"pointSize", 1.5}};
@@ -179,6 +180,7 @@ std::string foxglove_layout(const PlacedSession& session) {
     if (robot.shared_map != 0) continue;
     for (const Pose& T : robot.T_world_keyframe) box.extend(T.translation());
   }
+  if (box.isEmpty()) box.extend(Vector3::Zero().eval());
   const Vector3 centre = box.center();
   // From so far away the whole map fits into the view.
   const double distance = std::max(20.0, 1.3 * box.diagonal().norm());

@@ -13,6 +13,7 @@
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/mcap_writer.hpp"
 #include "adit/io/ros_messages.hpp"
+#include "adit/io/tum.hpp"
 #include "adit/report/palette.hpp"
 #include "adit/robot/full_rate.hpp"
 
@@ -28,18 +29,20 @@ constexpr double kLineWidth = 0.1;  // metres
 std::string map_frame(const PlacedRobot& robot) {
   return robot.shared_map == 0 ? "map" : format("map_{}", robot.shared_map + 1);
 }
-std::string odom_frame(const PlacedRobot& robot) { return robot.map->name + "/odom"; }
-std::string base_frame(const PlacedRobot& robot) { return robot.map->name + "/base_link"; }
 
 /// One robot with what is written of it.
 struct ShownRobot {
   const PlacedRobot* placed = nullptr;
+  std::string name;            ///< As ROS takes it.
   Trajectory at_scans;         ///< In the shared map, own stamps, like the odometry.
   Duration later{};            ///< Added to its stamps.
   std::uint16_t odometry = 0;  ///< Channels.
   std::uint16_t points = 0;
   std::uint16_t path = 0;
   std::uint16_t map = 0;
+
+  [[nodiscard]] std::string odom_frame() const { return name + "/odom"; }
+  [[nodiscard]] std::string base_frame() const { return name + "/base_link"; }
 };
 
 /// A message to come: a scan's pose or a keyframe's cloud.
@@ -85,17 +88,35 @@ class Messages {
   std::size_t bytes_ = 0;
 };
 
-std::vector<ShownRobot> shown_robots(const PlacedSession& session, bool together) {
+std::vector<ShownRobot> shown_robots(const PlacedSession& session) {
+  const std::vector<std::string> names = ros_names(session);
   std::vector<ShownRobot> robots;
-  for (const PlacedRobot& placed : session.robots) {
-    if (placed.map->keyframes.empty()) continue;
-    robots.push_back({&placed, at_every_scan(*placed.map, placed.T_world_keyframe)});
+  for (std::size_t i = 0; i < session.robots.size(); ++i) {
+    const PlacedRobot& placed = session.robots[i];
+    Trajectory at_scans = at_every_scan(*placed.map, placed.T_world_keyframe);
+    if (!at_scans.empty()) robots.push_back({&placed, names[i], std::move(at_scans)});
   }
-  if (!together || robots.empty()) return robots;
-  Stamp first{std::numeric_limits<std::int64_t>::max()};
-  for (const ShownRobot& robot : robots) first = std::min(first, robot.at_scans.front().stamp);
-  for (ShownRobot& robot : robots) robot.later = first - robot.at_scans.front().stamp;
   return robots;
+}
+
+Result<> check_stamps(const std::vector<ShownRobot>& robots) {
+  for (const ShownRobot& robot : robots) {
+    const std::vector<Keyframe>& keyframes = robot.placed->map->keyframes;
+    for (const Stamp stamp : {robot.at_scans.front().stamp, robot.at_scans.back().stamp,
+                              keyframes.front().stamp, keyframes.back().stamp}) {
+      if (!ros::fits_ros(stamp)) {
+        return fail(format("{}: the stamp {} is outside what ROS messages hold (0 to 2^31 s)",
+                           robot.placed->map->name, stamp_text(stamp)));
+      }
+    }
+  }
+  return {};
+}
+
+void start_together(std::vector<ShownRobot>& robots) {
+  const auto start = [](const ShownRobot& robot) { return robot.at_scans.front().stamp; };
+  const Stamp first = start(std::ranges::min(robots, {}, start));
+  for (ShownRobot& robot : robots) robot.later = first - start(robot);
 }
 
 std::vector<Due> all_due(const std::vector<ShownRobot>& robots) {
@@ -158,7 +179,7 @@ std::vector<ros::LinesMarker> loop_markers(const PlacedSession& session,
 
 void add_channels(Messages& messages, std::vector<ShownRobot>& robots) {
   for (ShownRobot& robot : robots) {
-    const std::string name = "/" + robot.placed->map->name;
+    const std::string name = "/" + robot.name;
     robot.odometry = messages.add_channel(name + "/odometry", ros::kOdometry);
     robot.points = messages.add_channel(name + "/points", ros::kPointCloud2);
     robot.path = messages.add_channel(name + "/path", ros::kPath);
@@ -189,12 +210,10 @@ void add_pose(Messages& messages, std::uint16_t tf, const ShownRobot& robot, con
   const RobotMap& map = *robot.placed->map;
   const Pose& T_odom_base = map.odometry[due.index].T_world_body;
   const Pose T_map_odom = robot.at_scans[due.index].T_world_body * T_odom_base.inverse();
-  const ros::TransformMessage odometry{
-      odom_frame(*robot.placed), base_frame(*robot.placed), {due.stamp, T_odom_base}};
-  messages.add(
-      tf, due.stamp,
-      ros::encode_transforms(
-          {{map_frame(*robot.placed), odom_frame(*robot.placed), {due.stamp, T_map_odom}}, odometry}));
+  const ros::TransformMessage odometry{robot.odom_frame(), robot.base_frame(), {due.stamp, T_odom_base}};
+  messages.add(tf, due.stamp,
+               ros::encode_transforms(
+                   {{map_frame(*robot.placed), robot.odom_frame(), {due.stamp, T_map_odom}}, odometry}));
   ros::OdometryMessage message{odometry};
   const Stamp own = map.odometry[due.index].stamp;
   const auto keyframe = std::ranges::lower_bound(map.keyframes, own, {}, &Keyframe::stamp);
@@ -206,15 +225,31 @@ void add_pose(Messages& messages, std::uint16_t tf, const ShownRobot& robot, con
 
 }  // namespace
 
+std::vector<std::string> ros_names(const PlacedSession& session) {
+  std::vector<std::string> names;
+  for (const PlacedRobot& robot : session.robots) {
+    std::string name = robot.map->name;
+    std::ranges::replace_if(
+        name,
+        [](char c) {
+          const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+          return !is_letter && (c < '0' || c > '9');
+        },
+        '_');
+    if (name.empty() || (name.front() >= '0' && name.front() <= '9')) name.insert(0, "robot_");
+    while (std::ranges::find(names, name) != names.end()) name += "_2";
+    names.push_back(name);
+  }
+  return names;
+}
+
 Result<> write_session_mcap(const fs::path& path, const PlacedSession& session, double voxel_m,
                             bool together) {
-  std::vector<ShownRobot> robots = shown_robots(session, together);
+  std::vector<ShownRobot> robots = shown_robots(session);
   if (robots.empty()) return fail(path.string() + ": no robot of the session has a map");
+  if (const Result<> checked = check_stamps(robots); !checked) return fail(path.string(), checked.error());
+  if (together) start_together(robots);
   const std::vector<Due> due = all_due(robots);
-  if (!ros::fits_ros(due.front().stamp) || !ros::fits_ros(due.back().stamp)) {
-    return fail(format("{}: stamps from {} to {} s are outside what ROS messages hold (0 to 2^31 s)",
-                       path.string(), due.front().stamp.seconds(), due.back().stamp.seconds()));
-  }
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
   Messages messages(file->stream());
@@ -229,7 +264,7 @@ Result<> write_session_mcap(const fs::path& path, const PlacedSession& session, 
     const ShownRobot& robot = robots[next.robot];
     if (next.is_keyframe) {
       const Scan cloud{next.stamp, *robot.placed->map->keyframes[next.index].cloud};
-      messages.add(robot.points, next.stamp, ros::encode_cloud(cloud, base_frame(*robot.placed)));
+      messages.add(robot.points, next.stamp, ros::encode_cloud(cloud, robot.base_frame()));
     } else {
       add_pose(messages, tf, robot, next);
     }

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "adit/slam/joint_map.hpp"
 
@@ -19,9 +20,14 @@ namespace adit {
 /// - /ROBOT/path (Path), /ROBOT/map (PointCloud2, one point a voxel of `voxel_m` metres): in the shared map.
 /// - /graph (MarkerArray): loops in use, and loops that were accepted one by one and not used.
 /// The last three are written once, with the first stamp of all. Robots keep the stamps of their recordings;
-/// with `together` each starts when the first one does. Both files appear whole or not at all.
+/// with `together` each starts when the first one does. ROBOT is its name as ROS takes it (`ros_names`). Each
+/// file appears whole or not at all.
 Result<> write_session_mcap(const std::filesystem::path& path, const PlacedSession& session, double voxel_m,
                             bool together);
+
+/// The names of the robots in topics and frames, one each: letters, digits and underscores, no digit first,
+/// and no two alike.
+[[nodiscard]] std::vector<std::string> ros_names(const PlacedSession& session);
 
 /// A layout for Foxglove that shows what write_session_mcap writes: JSON.
 [[nodiscard]] std::string foxglove_layout(const PlacedSession& session);
