@@ -295,7 +295,7 @@ Result<Json> mcap_info(const fs::path& path, const RecordingConfig& config) {
 }
 
 /// As a shell takes it for one word.
-std::string quoted(const std::string& word) {
+std::string shell_word(const std::string& word) {
   const bool is_plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
     return std::isalnum(c) != 0 ||
            std::string_view("_./:,=@%+-").find(static_cast<char>(c)) != std::string_view::npos;
@@ -308,9 +308,9 @@ std::string quoted(const std::string& word) {
 
 /// What to type next, with the options that were given.
 std::string next_command(const fs::path& path, const RecordingConfig& config) {
-  std::string command = "adit doctor " + quoted(path.string());
+  std::string command = "adit doctor " + shell_word(path.string());
   const auto add = [&](const std::string& option, const std::string& value) {
-    if (!value.empty()) command += option + quoted(value);
+    if (!value.empty()) command += option + shell_word(value);
   };
   add(" --mount ", config.mount);
   add(" --points ", config.points);
