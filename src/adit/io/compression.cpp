@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kLargest = std::size_t{1} << 30U;
 // Bytes that one compressed byte can stand for: a zstd block of 128 KiB that repeats one byte takes four, LZ4
 // counts runs in 255s, and a block of 900 kB of bzip2, in which five bytes stand for 259, takes some 32.
-constexpr std::size_t kMostOfZstd = 32 * 1024;
+constexpr std::size_t kMostOfZstd = 32768;
 constexpr std::size_t kMostOfLz4 = 255;
 constexpr std::size_t kMostOfBz2 = 3'000'000;
 
