@@ -23,7 +23,7 @@ PlacedRobot robot(std::uint8_t id, const std::string& name, std::int64_t begin_s
   cloud->points = {{1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.5F}};
   PlacedRobot out;
   for (int i = 0; i < 5; ++i) {
-    const Stamp stamp{begin_s * 1'000'000'000 + i * 100'000'000};
+    const Stamp stamp{begin_s * 1'000'000'000 + std::int64_t{i} * 100'000'000};
     map->odometry.push_back({stamp, Pose::translation_of(0.5 * i, 0.0, 0.0)});
     if (i % 4 != 0) continue;
     Keyframe keyframe;
