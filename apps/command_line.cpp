@@ -11,6 +11,7 @@
 
 #include "adit/core/parallel.hpp"
 #include "adit/core/version.hpp"
+#include "adit/io/text.hpp"
 #include "run_command.hpp"
 
 namespace adit::app {
@@ -98,17 +99,6 @@ namespace {
 bool changes_results(const std::string& option) {
   constexpr std::array kNeutral{"--out", "--page", "--threads", "--json", "--help", "--rerun"};
   return std::ranges::find(kNeutral, option) == kNeutral.end();
-}
-
-std::string shell_quoted(const std::string& text) {
-  const bool is_plain = !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
-    return std::isalnum(c) != 0 ||
-           std::string_view("_-./=:@%+,").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  if (is_plain) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
 }
 
 /// The option as it was given, with a blank in front; "" where it was not.

@@ -79,20 +79,16 @@ Result<> convert_graph(const fs::path& in, const std::string& name, const fs::pa
   const auto write_jrl = [&](const JrlFile& log) {
     return jrl_text(log).and_then([&](const std::string& text) { return write_bytes(out, text); });
   };
-  const auto convert = [&]() -> Result<> {
-    if (extension_of(in) != ".g2o") {
-      return read_jrl(in).and_then([&](const JrlFile& log) {
-        if (to_jrl) return write_jrl(log);
-        return std::visit(
-            [&](const auto& content) { return write_graph(out, with_priors_as_edges(content)); },
-            log.content);
-      });
-    }
+  if (extension_of(in) == ".g2o") {
     return read_g2o(in).and_then([&](const G2oFile& file) {
       return to_jrl ? jrl_of(name, file.graph).and_then(write_jrl) : write_graph(out, file.graph);
     });
-  };
-  return convert();
+  }
+  return read_jrl(in).and_then([&](const JrlFile& log) {
+    if (to_jrl) return write_jrl(log);
+    return std::visit([&](const auto& content) { return write_graph(out, with_priors_as_edges(content)); },
+                      log.content);
+  });
 }
 
 /// The ground truth, which nothing else can compute; without one the wheel odometry.

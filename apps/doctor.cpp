@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 #include "adit/slam/doctor.hpp"
+#include "adit/core/json_text.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -49,9 +50,7 @@ void print_json(const std::vector<Diagnosis>& found) {
                       {"health", to_string(one.health)},
                       {"found", one.sentence},
                       {"remedy", one.remedy}});
-  std::printf("%s\n", nlohmann::ordered_json{{"checks", checks}}
-                          .dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-                          .c_str());
+  std::printf("%s\n", json_text(nlohmann::ordered_json{{"checks", checks}}, 2).c_str());
 }
 
 Result<> doctor_command(const DoctorOptions& options, const Common& common) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adit/core/format.hpp"
+#include "adit/core/json_text.hpp"
 #include "adit/fleet/joint/merge_accuracy.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/session_toml.hpp"
@@ -138,7 +139,7 @@ Result<> explain(const ExplainOptions& options, const Common& common) {
   if (common.json) {
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
     for (const SavedMerge& merge : *merges) all.push_back(json_of(merge));
-    std::printf("%s\n", all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    std::printf("%s\n", json_text(all).c_str());
   } else {
     for (const SavedMerge& merge : *merges) print_text(merge);
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "adit/core/format.hpp"
+#include "adit/core/json_text.hpp"
 #include "adit/fleet/joint/merge_accuracy.hpp"
 #include "adit/io/tum.hpp"
 #include "adit/robot/keyframe_trajectory.hpp"
@@ -75,8 +76,7 @@ Result<> localize_command(const LocalizeOptions& options, const Common& common) 
       std::printf("  by the map of %s%s\n", other.c_str(),
                   pair.accuracy ? (": " + to_string(*pair.accuracy)).c_str() : "");
   }
-  if (common.json)
-    std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  if (common.json) std::printf("%s\n", json_text(json, 2).c_str());
   return {};
 }
 

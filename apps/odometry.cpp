@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adit/core/format.hpp"
+#include "adit/core/json_text.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/evaluation/ate.hpp"
 #include "adit/evaluation/statistics.hpp"
@@ -107,9 +108,7 @@ Result<> odometry(const OdometryOptions& options, const Common& common) {
     report["ate_rmse_m"] = error->rmse_m;
     line += format(", ATE max {:.3f} m, rmse {:.3f} m", error->max_m, error->rmse_m);
   }
-  std::printf("%s\n", common.json
-                          ? report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str()
-                          : line.c_str());
+  std::printf("%s\n", common.json ? json_text(report).c_str() : line.c_str());
   return {};
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "adit/core/format.hpp"
+#include "adit/core/json_text.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/io/atomic_file.hpp"
@@ -120,8 +121,7 @@ void print(const SimulateOptions& options, const std::vector<Recording>& recordi
     if (common.json) continue;
     std::printf("%s: %zu scans, %.1f m in %.1f s\n", file.c_str(), recording.num_scans(), length, duration);
   }
-  if (common.json)
-    std::printf("%s\n", report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  if (common.json) std::printf("%s\n", json_text(report).c_str());
 }
 
 Result<> simulate_command(const SimulateOptions& options, const Common& common) {

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "adit/core/format.hpp"
+#include "adit/core/json_text.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/g2o.hpp"
 #include "adit/io/jrl.hpp"
@@ -245,10 +246,7 @@ Result<> run(const SolveOptions& options, const Common& common) {
     if (!common.json) print_line(*result, options.gnc);
     all.push_back(*result);
   }
-  if (common.json)
-    std::puts((all.size() == 1 ? all.front() : all)
-                  .dump(2, ' ', false, nlohmann::json::error_handler_t::replace)
-                  .c_str());
+  if (common.json) std::puts(json_text(all.size() == 1 ? all.front() : all, 2).c_str());
   return {};
 }
 

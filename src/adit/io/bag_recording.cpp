@@ -67,7 +67,7 @@ Result<PoseTrack> read_poses(const Bag& bag, const TopicIndices& topics) {
 /// Adds up twists: between two of them their mean. A gap is driven through as if that held.
 Result<PoseTrack> read_twists(const Bag& bag, const TopicIndices& topics) {
   constexpr double kLongestGap = 0.5;  // seconds
-  constexpr double kFastest = 1000.0;
+  constexpr double kFastest = 1000.0;  // m/s, rad/s: beyond it a message is damaged
   PoseTrack track;
   Vector6 last = Vector6::Zero();
   double longest = 0.0;

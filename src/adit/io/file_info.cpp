@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 #include "adit/io/file_info.hpp"
+#include "adit/core/json_text.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 #include <variant>
 
@@ -294,23 +294,11 @@ Result<Json> mcap_info(const fs::path& path, const RecordingConfig& config) {
   });
 }
 
-/// As a shell takes it for one word.
-std::string shell_word(const std::string& word) {
-  const bool is_plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
-    return std::isalnum(c) != 0 ||
-           std::string_view("_./:,=@%+-").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  if (is_plain) return word;
-  std::string out = "'";
-  for (const char c : word) c == '\'' ? out.append("'\\''") : out.append(1, c);
-  return out + "'";
-}
-
 /// What to type next, with the options that were given.
 std::string next_command(const fs::path& path, const RecordingConfig& config) {
-  std::string command = "adit doctor " + shell_word(path.string());
+  std::string command = "adit doctor " + shell_quoted(path.string());
   const auto add = [&](const std::string& option, const std::string& value) {
-    if (!value.empty()) command += option + shell_word(value);
+    if (!value.empty()) command += option + shell_quoted(value);
   };
   add(" --mount ", config.mount);
   add(" --points ", config.points);
@@ -384,9 +372,7 @@ Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
 }  // namespace
 
 Result<std::string> file_info(const std::string& path, const RecordingConfig& config) {
-  return info_of(path, config).map([](const Json& info) {
-    return info.dump(2, ' ', false, Json::error_handler_t::replace);  // names of topics are any bytes
-  });
+  return info_of(path, config).map([](const Json& info) { return json_text(info, 2); });
 }
 
 }  // namespace adit

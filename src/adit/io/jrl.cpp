@@ -21,6 +21,8 @@ namespace {
 constexpr double kMaxAsymmetry = 1e-6;
 // Two robots' copies of one measurement differ by rounding at most: metres and radians.
 constexpr double kSamePose = 1e-12;
+// Of an information matrix, reciprocal: below it the inverse in double precision has no correct digit.
+constexpr double kLeastCondition = 1e-15;
 
 // Their row of each of ours: GTSAM has rotation before translation in space, and the same order in the plane.
 template <class P>
@@ -239,6 +241,12 @@ Result<JrlFile> file_of(JrlRecords records) {
   return GraphMaker<Pose>(std::move(records)).make();
 }
 
+// Of the robot that a key names; 'a' where it names none.
+char letter_of(std::uint64_t key) {
+  const auto byte = static_cast<char>(key >> 56U);
+  return byte == '\0' ? 'a' : byte;
+}
+
 // The other way: from a graph to records.
 template <class P>
 class RecordsMaker {
@@ -315,14 +323,6 @@ class RecordsMaker {
 }  // namespace
 }  // namespace jrl
 
-namespace {
-// Of a robot; 'a' where the key has none.
-char letter_of(std::uint64_t key) {
-  const auto byte = static_cast<char>(key >> 56U);
-  return byte == '\0' ? 'a' : byte;
-}
-}  // namespace
-
 Result<JrlFile> jrl_of(std::string name, const std::variant<PoseGraph, PoseGraph2>& graph) {
   return std::visit(
       [&]<class P>(const BasicPoseGraph<P>& given) -> Result<JrlFile> {
@@ -333,7 +333,7 @@ Result<JrlFile> jrl_of(std::string name, const std::variant<PoseGraph, PoseGraph
                         std::vector<JrlLabel>(given.edges.size(), JrlLabel::unlabelled)};
         std::map<char, std::size_t> robots;
         for (const auto& node : given.nodes) {
-          const char letter = letter_of(node.key);
+          const char letter = jrl::letter_of(node.key);
           if (letter < '!' || letter > '~') {
             return fail(
                 format("the top byte of key {} is no letter of a robot; number nodes from 0, or as GTSAM's "
@@ -347,7 +347,7 @@ Result<JrlFile> jrl_of(std::string name, const std::variant<PoseGraph, PoseGraph
           number = file.robots.size();
           file.robots.emplace_back(1, letter);
         }
-        for (const auto& node : given.nodes) log.robot_of_node.push_back(robots.at(letter_of(node.key)));
+        for (const auto& node : given.nodes) log.robot_of_node.push_back(robots.at(jrl::letter_of(node.key)));
         file.content = std::move(log);
         return file;
       },
@@ -360,7 +360,8 @@ Result<std::string> jrl_text(const JrlFile& file) {
         if (log.graph.edges.empty()) return fail("there are no edges, of which a JSON Robot Log is made");
         for (const auto& edge : log.graph.edges) {
           const Eigen::LLT<typename P::Jacobian> factorization(edge.information);
-          if (factorization.info() == Eigen::Success && factorization.rcond() > 1e-15) continue;
+          if (factorization.info() == Eigen::Success && factorization.rcond() > jrl::kLeastCondition)
+            continue;
           return fail(format(
               "the edge from {} to {} leaves a direction open and has no covariance, which a JSON Robot Log "
               "states; give it a little information there",

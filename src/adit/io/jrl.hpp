@@ -57,7 +57,8 @@ struct JrlFile {
 [[nodiscard]] Result<JrlFile> parse_jrl(const std::string& bytes, const std::string& name);
 
 /// The graph of one or several robots as such a log: loops are the potential outliers. The robot of a node is
-/// the letter in the top byte of its key, 'a' where there is none. Fails on a byte that cannot be printed.
+/// the letter in the top byte of its key, 'a' where there is none. Fails where that byte is no printable
+/// character.
 [[nodiscard]] Result<JrlFile> jrl_of(std::string name, const std::variant<PoseGraph, PoseGraph2>& graph);
 
 /// As JSON. A measurement is that of the robot of its second node; an entry has those of one node, and its

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 #include "adit/io/jrl_records.hpp"
+#include "adit/core/json_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -138,8 +139,7 @@ Result<std::vector<std::string>> robots_of(const Json& file) {
     } else if (robot.is_string() && robot.get<std::string>().size() == 1) {
       robots.push_back(robot.get<std::string>());
     } else {
-      return fail(format("robots: {} is not one letter or its code",
-                         robot.dump(-1, ' ', false, Json::error_handler_t::replace)));
+      return fail(format("robots: {} is not one letter or its code", json_text(robot)));
     }
     if (std::ranges::count(robots, robots.back()) > 1)
       return fail(format("robots: '{}' comes twice", robots.back()));
@@ -355,7 +355,7 @@ std::string jrl_text(const JrlRecords& records) {
   if (!records.truth.empty()) file["groundtruth"] = jrl::json_of(records.truth, records.robots);
   if (records.potential) file["potential_outlier_factors"] = jrl::json_of(*records.potential);
   if (records.outliers) file["outlier_factors"] = jrl::json_of(*records.outliers);
-  return file.dump(-1, ' ', false, jrl::Json::error_handler_t::replace) + "\n";
+  return json_text(file) + "\n";
 }
 
 Result<JrlRecords> parse_jrl_records(const std::string& bytes) {

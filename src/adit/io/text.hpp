@@ -43,4 +43,7 @@ class LineReader {
 /// ASCII letters in lower case.
 [[nodiscard]] std::string lower_case(std::string_view text);
 
+/// As a POSIX shell takes it for one word; in single quotes only where it has to be.
+[[nodiscard]] std::string shell_quoted(const std::string& text);
+
 }  // namespace adit

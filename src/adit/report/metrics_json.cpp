@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 #include "adit/report/metrics_json.hpp"
+#include "adit/core/json_text.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -103,7 +104,7 @@ std::string metrics_json(const StudyResult& study) {
                         {"pairs", pairs},
                         {"joint", study.joint ? joint_json(*study.joint) : Json(nullptr)}};
   // Names may hold any bytes; those that are not UTF-8 are replaced instead of throwing.
-  return metrics.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(metrics, 2) + "\n";
 }
 
 }  // namespace adit

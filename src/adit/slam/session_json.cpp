@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "adit/core/format.hpp"
+#include "adit/core/json_text.hpp"
 #include "adit/core/version.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/loops_csv.hpp"
@@ -137,12 +138,10 @@ std::string session_metrics(const SlamRun& run) {
                          {{"largest_difference_m", run.online.largest_m},
                           {"loops_judged_otherwise", run.online.num_judged_otherwise}}},
                         {"failed", failed}};
-  return metrics.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(metrics, 2) + "\n";
 }
 
-std::string json_of(const SessionEvaluation& evaluation) {
-  return evaluation_json(evaluation).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string json_of(const SessionEvaluation& evaluation) { return json_text(evaluation_json(evaluation)); }
 
 Result<> save_evaluation(const std::filesystem::path& session, const SessionEvaluation& evaluation) {
   const std::filesystem::path loops = session / "loops.csv";
@@ -158,7 +157,7 @@ Result<> save_evaluation(const std::filesystem::path& session, const SessionEval
   Json metrics = text ? Json::parse(*text, nullptr, false) : Json{{"version", 1}};
   if (!metrics.is_object()) return fail(file.string() + ": not JSON; remove the file and evaluate again");
   metrics["evaluation"] = evaluation_json(evaluation);
-  return write_bytes(file, metrics.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  return write_bytes(file, json_text(metrics, 2) + "\n");
 }
 
 std::string foxglove_layout(const PlacedSession& session) {
@@ -207,7 +206,7 @@ std::string foxglove_layout(const PlacedSession& session) {
                        {"userNodes", Json::object()},
                        {"playbackConfig", {{"speed", 5}}},
                        {"layout", "3D!adit"}};
-  return layout.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(layout, 2) + "\n";
 }
 
 }  // namespace adit
