@@ -189,5 +189,46 @@ TEST(MotionFilterWithImu, FindsBiasesAndGravityOnTheMove) {
   EXPECT_LT(std::acos(filter.up()->dot(up)), 0.5 * kDegree);
 }
 
+// A drive of a minute, in which scans say where the robot is and little of what they say counts (as in
+// plane_icp), with wheels that drive one degree askew. Returns by how much gravity is off then, degrees.
+double tilt_after_a_minute(const WheelNoise& noise, const Vector3& gyroscope_bias) {
+  constexpr double kShare = 0.05;
+  constexpr double kAskew = 1.0 * kDegree;
+  constexpr int kScans = 600;
+  const Matrix6 counted = Matrix6::Identity() * 1e4;
+  MotionFilter filter({}, noise, {});
+  for (int i = 0; i < kScans; ++i) {
+    const double begin = kPeriod * i;
+    const double end = begin + kPeriod;
+    const Pose T_true = pose_at_time(begin).inverse() * pose_at_time(end);
+    SensedMotion motion = sensed(begin, end, Pose());
+    for (ImuSample& sample : motion.imu) sample.angular_velocity += gyroscope_bias;
+    const Pose T_forward = Pose::planar(0, 0, -kAskew);
+    motion.wheel = {.duration = from_seconds(kPeriod),
+                    .T_base0_base1 = {T_true.rotation(), T_forward * T_true.translation()}};
+    filter.predict(Stamp() + from_seconds(begin), Stamp() + from_seconds(end), motion);
+    filter.measure(*motion.wheel);
+    const MotionPrior prior = filter.prior();
+    const Matrix6 before = inverse(prior.covariance);
+    const Matrix6 weighed = counted / kShare;
+    const Vector6 off = (prior.T_ref_now.inverse() * T_true).log();
+    const Vector6 step = inverse(Matrix6(before + weighed)) * weighed * off;
+    filter.registered(prior.T_ref_now * Pose::exp(step), inverse(Matrix6(before + counted)),
+                      Matrix6::Identity(), kShare);
+  }
+  const Vector3 up = pose_at_time(kPeriod * kScans).rotation().inverse() * Vector3::UnitZ();
+  return std::acos(std::min(1.0, filter.up()->dot(up))) / kDegree;
+}
+
+TEST(MotionFilterWithImu, WheelsThatDriveAskewTiltNothing) {
+  EXPECT_LT(tilt_after_a_minute({}, Vector3::Zero()), 0.3);
+  EXPECT_GT(tilt_after_a_minute({.yaw_deg = 0.0}, Vector3::Zero()),
+            2.0 * tilt_after_a_minute({}, Vector3::Zero()));
+}
+
+TEST(MotionFilterWithImu, GravityTurnsAsFarAsScansSay) {
+  EXPECT_LT(tilt_after_a_minute({}, Vector3(0.02, -0.02, 0.02)), 0.5);
+}
+
 }  // namespace
 }  // namespace adit

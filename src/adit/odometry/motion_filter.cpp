@@ -34,8 +34,6 @@ void make_symmetric(Matrix& m) {
   m = (0.5 * (m + m.transpose())).eval();
 }
 
-Pose scaled(const Pose& T, double factor) { return {T.rotation(), factor * T.translation()}; }
-
 }  // namespace
 
 Fields fields_of(MotionNoise& c) {
@@ -51,6 +49,8 @@ Fields fields_of(WheelNoise& c) {
           {"heading_deg", &c.heading_deg, "deg/m", 1e-3, 360.0, "heading, per metre"},
           {"turn", &c.turn, "", 1e-4, 1.0, "heading again, share of the angle turned"},
           {"scale", &c.scale, "", 0.0, 1.0, "error of the wheels' radius, the same over the whole drive"},
+          {"yaw_deg", &c.yaw_deg, "deg", 0.0, 10.0,
+           "of the direction in which they drive against the base, the same over the whole drive"},
           {"slip_that_lasts", &c.slip_that_lasts, "", 0.0, 1.0, "forward again, fading within slip_time"},
           {"slip_time", &c.slip_time, "s", 0.01, 100.0, "how long slip lasts"}};
 }
@@ -70,6 +70,7 @@ MotionFilter::MotionFilter(const MotionNoise& motion, const WheelNoise& wheels, 
   covariance_.setZero();
   covariance_.block<6, 6>(kTwist, kTwist).diagonal().setConstant(kUnknownTwist * kUnknownTwist);
   covariance_(kScale, kScale) = wheels.scale * wheels.scale;
+  covariance_(kYaw, kYaw) = std::pow(wheels.yaw_deg * kDegree, 2);
 }
 
 void MotionFilter::predict(Stamp begin, Stamp end, const SensedMotion& motion) {
@@ -183,18 +184,20 @@ void MotionFilter::predict_by_twist(double dt) {
 }
 
 void MotionFilter::measure(const WheelDelta& wheel) {
-  const Pose T_wheels = scaled(wheel.T_base0_base1, 1.0 + scale_ + slip_);
+  const Vector3& counted = wheel.T_base0_base1.translation();
+  const Vector3 sideways = Vector3::UnitZ().cross(counted);
+  const Pose T_wheels(wheel.T_base0_base1.rotation(), (1.0 + scale_ + slip_) * counted + yaw_ * sideways);
   const Vector6 residual = (T_wheels.inverse() * T_last_now_).log();
   Rows6 H = Rows6::Zero();
   H.middleCols<6>(kMotion) = Pose::right_jacobian_inverse(residual);
-  H.col(kScale).head<3>() = -(T_wheels.rotation().inverse() * wheel.T_base0_base1.translation());
+  H.col(kScale).head<3>() = -(T_wheels.rotation().inverse() * counted);
   H.col(kSlip) = H.col(kScale);
+  H.col(kYaw).head<3>() = -(T_wheels.rotation().inverse() * sideways);
   Matrix6 innovation = H * covariance_ * H.transpose() + wheel_covariance(wheels_, wheel.T_base0_base1);
   const double sigmas = std::abs(residual[0]) / std::sqrt(innovation(0, 0));
   if (sigmas > kHuber) innovation(0, 0) *= sigmas / kHuber;
   const Columns6 cross = covariance_ * H.transpose();
   Columns6 gain = innovation.ldlt().solve(cross.transpose()).transpose();
-  gain.middleRows<9>(kGravityAt).setZero();  // and both biases
   correct(-gain * residual,
           gain * cross.transpose() + cross * gain.transpose() - gain * innovation * gain.transpose());
 }
@@ -217,6 +220,7 @@ void MotionFilter::correct(const State& error, const Covariance& known) {
   twist_ += error.segment<6>(kTwist);
   scale_ += error[kScale];
   slip_ += error[kSlip];
+  yaw_ += error[kYaw];
   felt_.gravity += error.segment<3>(kGravityAt);
   felt_.gyroscope_bias += error.segment<3>(kGyro);
   felt_.accelerometer_bias += error.segment<3>(kAccel);
@@ -239,6 +243,8 @@ void MotionFilter::registered(const Pose& T_ref_now, const Matrix6& covariance, 
   const Vector6 moved = (before.T_ref_now.inverse() * T_ref_now).log();
   const Vector6 counted = moved - (1.0 - share_counted) * of_prior * moved;
   correct(gain * counted, gain * (before.covariance - covariance) * gain.transpose());
+  // The whole move turns the body, and with it the frame that gravity is held in.
+  felt_.gravity = (prior().T_ref_now.inverse() * T_ref_now).rotation().inverse() * felt_.gravity;
   missed();
   extend_path(T_ref_now, onto_fixed);
   T_ref_last_ = Pose();

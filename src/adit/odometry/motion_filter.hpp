@@ -30,6 +30,8 @@ struct WheelNoise {
   double heading_deg = 0.5;      ///< Degrees per metre.
   double turn = 0.05;            ///< Heading again, share of the angle turned.
   double scale = 0.02;           ///< Of their radius, the same over the whole drive: share of the distance.
+  double yaw_deg = 1.0;          ///< Of the direction in which they drive against the base: a LiDAR is
+                                 ///< mounted to within a degree or two. The same over the whole drive.
   double slip_that_lasts = 0.1;  ///< Forward again, fading within `slip_time`: metres per metre.
   double slip_time = 1.0;        ///< Seconds.
 };
@@ -46,12 +48,13 @@ struct MotionPrior {
 };
 
 /// Error-state Kalman filter of a robot's motion since the last scan whose pose was measured, its reference.
-/// It holds the pose at the last scan, the motion since then, the twist, the wheels' scale and slip (a
-/// first-order Gauss-Markov process), gravity and the biases of the IMU, with their joint covariance; poses
-/// are relative to the reference, so that what is asked of it is what a scan must add (robocentric, as in C.
-/// Qin et al., "LINS: A Lidar-Inertial State Estimator for Robust and Efficient Navigation", ICRA 2020). Each
-/// interval between two scans is predicted by the IMU where it measured, else with a constant twist; then the
-/// wheels correct it where they measured. Over scans that could not be measured the uncertainty grows.
+/// It holds the pose at the last scan, the motion since then, the twist, the wheels' scale, the direction in
+/// which they drive and their slip (a first-order Gauss-Markov process), gravity and the biases of the IMU,
+/// with their joint covariance; poses are relative to the reference, so that what is asked of it is what a
+/// scan must add (robocentric, as in C. Qin et al., "LINS: A Lidar-Inertial State Estimator for Robust and
+/// Efficient Navigation", ICRA 2020). Each interval between two scans is predicted by the IMU where it
+/// measured, else with a constant twist; then the wheels correct it where they measured. Over scans that
+/// could not be measured the uncertainty grows.
 class MotionFilter {
  public:
   MotionFilter(const MotionNoise& motion, const WheelNoise& wheels, const ImuNoise& imu);
@@ -60,10 +63,7 @@ class MotionFilter {
   /// what is said of the first scan is ignored. Of `motion`, what was measured in between, the IMU.
   void predict(Stamp begin, Stamp end, const SensedMotion& motion);
   /// What the wheels say about the interval predicted last. The farther off ahead, the less they weigh: they
-  /// may slip. They say nothing of gravity and of the IMU's biases (a Schmidt-Kalman update), which scans do:
-  /// the bias that a slip would teach would mislead until a scan measures the way ahead. Source: Huber,
-  /// "Robust Estimation of a Location Parameter" (1964); Schmidt, "Application of State-Space Methods to
-  /// Navigation Problems" (1966).
+  /// may slip. Source: Huber, "Robust Estimation of a Location Parameter" (1964).
   void measure(const WheelDelta& wheel);
 
   /// The motion in the interval predicted last.
@@ -98,9 +98,9 @@ class MotionFilter {
 
  private:
   // Where the errors of each part lie: pose of the last scan, motion since, twist, scale, gravity, biases of
-  // gyroscope and accelerometer, slip, and of the path up to the reference along directions that scans left
-  // open. That one is past and no longer corrected: it is held for what it has in common with the others (a
-  // "consider" state, S. F. Schmidt, 1966).
+  // gyroscope and accelerometer, slip and direction of the wheels, and of the path up to the reference along
+  // directions that scans left open. That one is past and no longer corrected: it is held for what it has in
+  // common with the others (a "consider" state, S. F. Schmidt, 1966).
   static constexpr Eigen::Index kLast = 0;
   static constexpr Eigen::Index kMotion = 6;
   static constexpr Eigen::Index kTwist = 12;
@@ -109,8 +109,9 @@ class MotionFilter {
   static constexpr Eigen::Index kGyro = 22;
   static constexpr Eigen::Index kAccel = 25;
   static constexpr Eigen::Index kSlip = 28;
-  static constexpr Eigen::Index kPath = 29;
-  static constexpr int kSize = 35;
+  static constexpr Eigen::Index kYaw = 29;
+  static constexpr Eigen::Index kPath = 30;
+  static constexpr int kSize = 36;
   using State = Eigen::Matrix<double, kSize, 1>;
   using Covariance = Eigen::Matrix<double, kSize, kSize>;
   using Rows6 = Eigen::Matrix<double, 6, kSize>;
@@ -143,6 +144,7 @@ class MotionFilter {
   Vector6 twist_ = Vector6::Zero();  ///< Of the body, per second.
   double scale_ = 0.0;
   double slip_ = 0.0;  ///< As scale_, for now.
+  double yaw_ = 0.0;   ///< Of the wheels, radians.
   ImuStart felt_;      ///< Gravity in the body frame, and the biases; its velocity is that of `twist_`.
   Covariance covariance_;
   Matrix6 open_drift_ = Matrix6::Zero();

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "adit/core/angles.hpp"
 #include "adit/core/decompositions.hpp"
 #include "adit/core/rng.hpp"
 
@@ -65,6 +66,7 @@ class Walk {
         motion_(motion),
         wheels_(wheels),
         scale_(wheels.scale * rng_.normal()),
+        yaw_(wheels.yaw_deg * kDegree * rng_.normal()),
         slip_(wheels.slip_that_lasts * rng_.normal()) {
     twist_ << 1.5, 0.0, 0.0, 0.0, 0.0, 0.2;
   }
@@ -82,11 +84,13 @@ class Walk {
     return T;
   }
   WheelDelta wheels_of(const Pose& T_moved) {
-    // T_moved = scaled(wheels) exp(noise), so the wheels saw what is left without noise, scale and slip.
+    // T_moved = turned(scaled(wheels)) exp(noise): the wheels saw what is left without all of it.
     const Pose T_scaled = T_moved * Pose::exp(-normal(rng_, wheel_covariance(wheels_, T_moved)));
     const double kept = std::exp(-to_seconds(kScanPeriod) / wheels_.slip_time);
     slip_ = kept * slip_ + wheels_.slip_that_lasts * std::sqrt(1.0 - kept * kept) * rng_.normal();
-    return wheels({T_scaled.rotation(), T_scaled.translation() / (1.0 + scale_ + slip_)});
+    Matrix3 turned_and_scaled =
+        Matrix3::Identity() * (1.0 + scale_ + slip_) + yaw_ * so3::hat(Vector3::UnitZ());
+    return wheels({T_scaled.rotation(), turned_and_scaled.inverse() * T_scaled.translation()});
   }
   Pose measured(const Pose& T, const Matrix6& covariance) { return T * Pose::exp(normal(rng_, covariance)); }
   bool chance(double p) { return rng_.uniform() < p; }
@@ -98,6 +102,7 @@ class Walk {
   MotionNoise motion_;
   WheelNoise wheels_;
   double scale_;
+  double yaw_;
   double slip_;
   Vector6 twist_;
 };
@@ -106,7 +111,7 @@ class Walk {
 double mean_nees(bool with_wheels, double missing) {
   const MotionNoise motion{0.3, 0.3};
   const WheelNoise wheel_noise{
-      .slip = 0.02, .climb = 0.05, .tilt_deg = 3.0, .scale = 0.03, .slip_that_lasts = 0.05};
+      .slip = 0.02, .climb = 0.05, .tilt_deg = 3.0, .scale = 0.03, .yaw_deg = 2.0, .slip_that_lasts = 0.05};
   Matrix6 of_a_scan = Matrix6::Identity() * 1e-4;
   of_a_scan.bottomRightCorner<3, 3>() *= 0.04;
   double sum = 0.0;
@@ -172,6 +177,23 @@ TEST(MotionFilter, FindsTheScaleOfTheWheels) {
   }
   EXPECT_NEAR(filter.wheel_scale(), 0.05, 0.005);
   EXPECT_LT(filter.wheel_scale_sigma(), 0.1 * before);
+}
+
+// Wheels that drive two degrees askew are followed there where scans have gone missing.
+TEST(MotionFilter, FindsWhereTheWheelsDrive) {
+  Filter filter({}, {.yaw_deg = 2.0});
+  const Pose T_wheels = Pose::translation_of(0.15, 0, 0);
+  const Pose T_true = Pose::planar(0, 0, 2.0 * kDegree) * T_wheels * Pose::planar(0, 0, -2.0 * kDegree);
+  for (int i = 0; i < 200; ++i) {
+    filter.predict(kScanPeriod, sensed(wheels(T_wheels)));
+    filter.registered(T_true, Matrix6::Identity() * 1e-5);
+  }
+  for (int i = 0; i < 50; ++i) {
+    filter.predict(kScanPeriod, sensed(wheels(T_wheels)));
+    filter.missed();
+  }
+  filter.predict(kScanPeriod, sensed(wheels(T_wheels)));
+  EXPECT_NEAR(filter.prior().T_ref_now.translation().y(), 51 * T_true.translation().y(), 0.02);
 }
 
 // Registration weighs each residual of a scan, though one in twenty is independent. A filter that is told so
