@@ -19,7 +19,7 @@ struct MergeOptions {
 Result<> merge_command(const MergeOptions& options, const Common& common) {
   refuse_configuration(common);
   if (options.sessions.size() < 2) usage_error("give two sessions or more");
-  const Result<Control> control = read_control(*control);
+  const Result<Control> control = read_control(options.control);
   if (!control) return tl::unexpected(control.error());
   Result<SavedSessions> saved = open_sessions(options.sessions);
   if (!saved) return tl::unexpected(saved.error());
@@ -31,7 +31,7 @@ Result<> merge_command(const MergeOptions& options, const Common& common) {
   if (!run) return tl::unexpected(run.error());
   print_notes("merge", run->notes);
   return finish_session(std::move(*run), std::move(saved->job), *out, options.out, common.json,
-                        options.control);
+                        *control);
 }
 
 }  // namespace
