@@ -126,7 +126,7 @@ TEST(Georeferences, DamageIsAnError) {
   const test::TemporaryFolder folder;
   ASSERT_TRUE(write_georeferences(folder.path(), {some_georeference()}));
   const std::string whole = test::get_file(folder / "georeference.toml");
-  for (const std::string word : {"5700321.987654", "rotation_xyzw", "maps", "\"used\"", "robots"}) {
+  for (const std::string word : {"5700321", "rotation_xyzw", "maps", "'used'", "robots"}) {
     std::string damaged = whole;
     damaged.replace(damaged.find(word), word.size(), "oops");
     test::put_file(folder / "georeference.toml", damaged);
