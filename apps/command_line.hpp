@@ -116,6 +116,7 @@ void add_odometry(Program& program);
 void add_slam(Program& program);
 void add_merge(Program& program);
 void add_localize(Program& program);
+void add_georeference(Program& program);
 void add_study(Program& program);
 void add_merge_study(Program& program);
 void add_merge_calibration(Program& program);

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <variant>
 
+#include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/bag_recording.hpp"
 #include "adit/io/cloud_files.hpp"
@@ -102,6 +103,7 @@ struct ConvertOptions {
   std::string in;
   std::string out;
   std::string clouds = "pcd";
+  std::string frame;
   RecordingConfig recording;
 };
 
@@ -117,35 +119,68 @@ Result<> convert_recording(const ConvertOptions& options, const RecordingConfig&
   });
 }
 
+/// What poses and clouds of that robot's map are written in: the target frame, where it has one and nothing
+/// else is asked for.
+Result<OutputFrame> frame_for(const PlacedSession& session, const std::string& robot,
+                              const std::string& asked_for) {
+  const Georeference* map = georeference_of(session.saved.georeferences, robot);
+  if (map != nullptr && asked_for != "map") return target_frame(*map);
+  if (asked_for == "target")
+    return fail(robot + ": its map has no target frame; adit georeference sets one by control points");
+  return OutputFrame{};
+}
+
+Trajectory seen_from(const Pose& T_frame_map, Trajectory trajectory) {
+  for (StampedPose& pose : trajectory) pose.T_world_body = T_frame_map * pose.T_world_body;
+  return trajectory;
+}
+
 /// Every robot's poses at every scan, in OUT with the robot's name before the extension.
-Result<> convert_poses(const PlacedSession& session, const fs::path& out) {
+Result<> convert_poses(const PlacedSession& session, const fs::path& out, const std::string& asked_for) {
   for (const PlacedRobot& robot : session.robots) {
+    const Result<OutputFrame> frame = frame_for(session, robot.map->name, asked_for);
+    if (!frame) return tl::unexpected(frame.error());
     if (robot.shared_map != 0)
-      print_notes("convert",
-                  {robot.map->name + " is in another map: its poses are in the frame of that one"});
+      print_notes("convert", {format("{} is in another map: its poses are in {}", robot.map->name,
+                                     frame->name.empty() ? "the frame of that one" : frame->name)});
     fs::path path = out;
     path.replace_filename(out.stem().string() + "_" + robot.map->name + out.extension().string());
-    if (Result<> done = write_trajectory(path, at_every_scan(*robot.map, robot.T_world_keyframe)); !done)
-      return done;
+    const Trajectory poses = at_every_scan(*robot.map, robot.T_world_keyframe);
+    if (Result<> done = write_trajectory(path, seen_from(frame->T_frame_map, poses)); !done) return done;
   }
   return {};
 }
 
-Result<> convert_map(const PlacedSession& session, const fs::path& out, const MapsConfig& config) {
+Result<> convert_map(const PlacedSession& session, const fs::path& out, const MapsConfig& config,
+                     const std::string& asked_for) {
   const JointMap map = joint_map_of(session);
+  OutputFrame frame;
+  if (!map.maps.empty() && !is_for_robots(out)) {
+    const Result<OutputFrame> found = frame_for(session, map.maps.front()->name, asked_for);
+    if (!found) return tl::unexpected(found.error());
+    frame = *found;
+  }
   std::vector<std::string> notes;
+  const Vector3 offset = float_offset(frame);
+  if (kind_of(out.string()) == Kind::cloud && !offset.isZero())
+    notes.push_back(format("{} holds coordinates of {} less {:.0f} {:.0f} {:.0f}, as its numbers are short",
+                           out.string(), frame.name, offset.x(), offset.y(), offset.z()));
   for (const std::string& robot : map.left_out) notes.push_back(robot + " is in another map and left out");
   print_notes("convert", notes);
-  return write_joint_map(out, map, config);
+  return write_joint_map(out, map, config, frame);
 }
 
 Result<> convert_session(const ConvertOptions& options, const MapsConfig& config) {
+  const bool keeps_frame = kind_of(options.out) == Kind::graph || extension_of(options.out) == ".mcap" ||
+                           is_for_robots(options.out);
+  if (keeps_frame && options.frame == "target")
+    usage_error("graphs and what robots and viewers load (.mcap, .pgm, .bt) are in the map's own frame");
   if (kind_of(options.out) == Kind::graph)
     return convert_graph(fs::path(options.in) / "graph_initial.g2o", fs::path(options.in).filename().string(),
                          options.out);
   return read_placed_session(options.in).and_then([&](const PlacedSession& session) {
-    if (kind_of(options.out) == Kind::trajectory) return convert_poses(session, options.out);
-    if (extension_of(options.out) != ".mcap") return convert_map(session, options.out, config);
+    if (kind_of(options.out) == Kind::trajectory) return convert_poses(session, options.out, options.frame);
+    if (extension_of(options.out) != ".mcap") return convert_map(session, options.out, config, options.frame);
     return write_session_mcap(options.out, session, config.voxel_m, config.start_together);
   });
 }
@@ -185,6 +220,10 @@ void add_convert(Program& program) {
   command.add_option("--clouds", options->clouds, "Format of the clouds in a folder: pcd, ply or bin (KITTI)")
       .one_of({"pcd", "ply", "bin"})
       .default_shown();
+  command
+      .add_option("--frame", options->frame,
+                  "Of clouds and poses of a session: map, or target (the default once it is georeferenced)")
+      .one_of({"map", "target"});
   add_recording_options(command, options->recording);
   add_truth_topic(command, options->recording);
   command.footer(

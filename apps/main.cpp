@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   add_slam(program);
   add_merge(program);
   add_localize(program);
+  add_georeference(program);
   add_world(program);
   add_simulate(program);
   add_odometry(program);

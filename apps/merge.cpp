@@ -13,11 +13,14 @@ struct MergeOptions {
   std::vector<std::string> sessions;
   std::string out;
   RulingOptions rulings;
+  ControlOptions control;
 };
 
 Result<> merge_command(const MergeOptions& options, const Common& common) {
   refuse_configuration(common);
   if (options.sessions.size() < 2) usage_error("give two sessions or more");
+  const Result<Control> control = read_control(options.control);
+  if (!control) return tl::unexpected(control.error());
   Result<SavedSessions> saved = open_sessions(options.sessions);
   if (!saved) return tl::unexpected(saved.error());
   Result<OutputDir> out = OutputDir::create(options.out, "session");
@@ -27,7 +30,7 @@ Result<> merge_command(const MergeOptions& options, const Common& common) {
       slam_on(std::move(saved->fleets), {}, saved->job.config.slam, rulings_of(options.rulings));
   if (!run) return tl::unexpected(run.error());
   print_notes("merge", run->notes);
-  return finish_session(std::move(*run), std::move(saved->job), *out, options.out, common.json);
+  return finish_session(std::move(*run), std::move(saved->job), *out, options.out, common.json, *control);
 }
 
 }  // namespace
@@ -40,6 +43,7 @@ void add_merge(Program& program) {
   command.add_option("sessions", options->sessions, "Session directories").required();
   command.add_option("--out", options->out, "Session directory to write").required();
   add_ruling_options(command, options->rulings);
+  add_control_options(command, options->control);
   command.footer(
       "Robots of one session do not meet again. Of robots that are called alike the later ones get a "
       "number.");

@@ -10,6 +10,10 @@
 #include "adit/core/format.hpp"
 #include "adit/fleet/joint/merge_accuracy.hpp"
 #include "adit/io/config_toml.hpp"
+#include "adit/io/crs.hpp"
+#include "adit/io/text.hpp"
+#include "adit/io/tum.hpp"
+#include "adit/slam/georeference.hpp"
 #include "adit/slam/session_pages.hpp"
 
 namespace adit::app {
@@ -48,6 +52,34 @@ void print_pairs(const Session& session) {
                                   .c_str()
                             : ("not merged: " + pair.refused_reason).c_str());
   }
+}
+
+/// The points that earlier sessions kept.
+Control kept_control(const std::vector<Georeference>& earlier) {
+  Control kept;
+  for (const Georeference& map : earlier) {
+    if (map.crs != earlier.front().crs) {
+      print_notes("slam",
+                  {format("the sessions are in two coordinate systems, '{}' and '{}', so that the new "
+                          "one is in none; adit georeference sets one",
+                          earlier.front().crs, map.crs)});
+      return {};
+    }
+    kept.crs = map.crs;
+    for (const JudgedControl& judged : map.points) kept.points.push_back(judged.point);
+  }
+  return kept;
+}
+
+Result<> georeference_written(const std::string& path, const Control& control, bool json) {
+  if (control.points.empty()) return {};
+  const Result<std::vector<Georeference>> maps = georeference_session(path, control, "slam");
+  if (!maps)
+    return fail(
+        format("{} was written, without a georeference: {}; adit georeference {} --control FILE sets one",
+               path, maps.error().message, shell_quoted(path)));
+  if (!json) print_georeferences(*maps);
+  return {};
 }
 
 Result<> without_failures(const SlamRun& run, const std::string& out) {
@@ -126,7 +158,58 @@ std::vector<Ruling> rulings_of(const RulingOptions& options) {
   return rulings;
 }
 
-Result<> finish_session(SlamRun run, Job job, OutputDir& out, const std::string& path, bool json) {
+Option add_control_options(const Command& command, ControlOptions& options) {
+  command.add_option("--crs", options.crs,
+                     "Coordinate system of the control points: a code such as EPSG:25833, or the name of a "
+                     "grid of your own");
+  return command.add_option("--control", options.file,
+                            "Control points (CSV: name, x, y, z, sigma, and where each was seen)");
+}
+
+Result<Control> read_control(const ControlOptions& options) {
+  if (options.file.empty()) {
+    if (!options.crs.empty()) usage_error("--crs is the coordinate system of --control FILE; give both");
+    return Control{};
+  }
+  if (const Result<std::string> known = crs_wkt(options.crs); !known) return tl::unexpected(known.error());
+  return read_control_points(options.file).map([&](std::vector<ControlPoint> points) {
+    return Control{std::move(points), options.crs};
+  });
+}
+
+Result<std::vector<Georeference>> georeference_session(const std::string& path, const Control& control,
+                                                       const std::string& command) {
+  Result<Georeferencing> found = georeference(path, control.points, control.crs);
+  if (!found) return tl::unexpected(found.error());
+  print_notes(command, found->notes);
+  return write_georeferences(path, found->maps).map([&] { return std::move(found->maps); });
+}
+
+void print_georeferences(const std::vector<Georeference>& maps) {
+  for (const Georeference& map : maps) {
+    std::printf(
+        "%s: in %s by %td of %zu points; chi2 %.1f, expected %d; scale %+.0f ppm (standard deviation %.0f), "
+        "not applied\n",
+        format("{}", fmt::join(map.robots, ", ")).c_str(),
+        map.crs.empty() ? "the target frame" : map.crs.c_str(),
+        std::ranges::count(map.points, ControlUse::used, &JudgedControl::use), map.points.size(), map.chi2,
+        map.redundancy, map.scale_ppm, map.scale_sigma_ppm);
+    const Vector3& t = map.T_target_map.translation();
+    std::printf(
+        "  origin of the map %.3f %.3f %.3f m; the place known worst, %s at %s s, to %.3f m horizontally and "
+        "%.3f m vertically\n",
+        t.x(), t.y(), t.z(), map.far_end.robot.c_str(), stamp_text(map.far_end.stamp).c_str(),
+        map.far_end.sigma_xy, map.far_end.sigma_z);
+    for (const JudgedControl& point : map.points)
+      std::printf("  %-12s %-12s residual %+.3f %+.3f %+.3f m, misfit %s\n", point.point.name.c_str(),
+                  std::string(to_string(point.use)).c_str(), point.residual.x(), point.residual.y(),
+                  point.residual.z(),
+                  point.misfit ? format("{:.1f}", *point.misfit).c_str() : "cannot be judged");
+  }
+}
+
+Result<> finish_session(SlamRun run, Job job, OutputDir& out, const std::string& path, bool json,
+                        const Control& control) {
   job.provenance.configuration = to_toml(fields_of(job.config));
   job.provenance.robots = run.session.provenance.robots;
   run.session.provenance = std::move(job.provenance);
@@ -139,7 +222,11 @@ Result<> finish_session(SlamRun run, Job job, OutputDir& out, const std::string&
     print_robots(run);
     print_pairs(run.session);
   }
-  return without_failures(run, path);
+  const Control given = control.points.empty() ? kept_control(run.georeferences) : control;
+  const Result<> georeferenced = georeference_written(path, given, json);
+  const Result<> complete = without_failures(run, path);
+  if (complete || georeferenced) return complete ? georeferenced : complete;
+  return fail(complete.error().message + "; " + georeferenced.error().message);
 }
 
 }  // namespace adit::app

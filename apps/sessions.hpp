@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adit/io/atomic_file.hpp"
+#include "adit/io/georeference.hpp"
 #include "adit/slam/slam.hpp"
 #include "command_line.hpp"
 
@@ -38,8 +39,32 @@ void add_ruling_options(const Command& command, RulingOptions& options);
 /// Wrong usage where a pair is not two names.
 [[nodiscard]] std::vector<Ruling> rulings_of(const RulingOptions& options);
 
-/// Writes the session and prints what was found. Robots that could not be mapped are an error all the same,
+struct ControlOptions {
+  std::string file;
+  std::string crs;
+};
+/// --control and --crs.
+Option add_control_options(const Command& command, ControlOptions& options);
+
+/// Control points in one coordinate system.
+struct Control {
+  std::vector<ControlPoint> points;
+  std::string crs;
+};
+/// Of the file, none where none is given. To be called first, so that what is wrong with it shows before the
+/// work.
+Result<Control> read_control(const ControlOptions& options);
+
+/// Georeferences the session by these points and keeps the result in it. Notes go to stderr.
+Result<std::vector<Georeference>> georeference_session(const std::string& path, const Control& control,
+                                                       const std::string& command);
+/// What became of each point and how well each map is placed, as text.
+void print_georeferences(const std::vector<Georeference>& maps);
+
+/// Writes the session and prints what was found. It is georeferenced by `control`, or by the points that
+/// earlier sessions kept. That this failed, or that robots could not be mapped, is an error all the same,
 /// printed last.
-Result<> finish_session(SlamRun run, Job job, OutputDir& out, const std::string& path, bool json);
+Result<> finish_session(SlamRun run, Job job, OutputDir& out, const std::string& path, bool json,
+                        const Control& control);
 
 }  // namespace adit::app

@@ -26,6 +26,7 @@ struct SlamOptions {
   std::string rerun;
   std::string session;
   RulingOptions rulings;
+  ControlOptions control;
 };
 
 Result<Job> job_of(const SlamOptions& options, const Common& common) {
@@ -88,6 +89,8 @@ Result<Job> job_again(const SlamOptions& options, const Common& common) {
 Result<> run_job(Job job, const RunConfig& reading, const std::vector<std::string>& paths,
                  std::vector<SavedFleet> saved, const SlamOptions& options, bool json) {
   const std::string& to = options.out.empty() ? options.session : options.out;
+  const Result<Control> control = read_control(options.control);
+  if (!control) return tl::unexpected(control.error());
   Result<Inputs> inputs = open_inputs(paths, reading);
   if (!inputs) return tl::unexpected(inputs.error());
   Result<OutputDir> out = OutputDir::create(to, "session");
@@ -97,7 +100,7 @@ Result<> run_job(Job job, const RunConfig& reading, const std::vector<std::strin
       slam_on(std::move(saved), std::move(inputs->recordings), job.config.slam, rulings_of(options.rulings));
   if (!run) return tl::unexpected(run.error());
   print_notes("slam", run->notes);
-  return finish_session(std::move(*run), std::move(job), *out, to, json);
+  return finish_session(std::move(*run), std::move(job), *out, to, json, *control);
 }
 
 Result<> go_on(const SlamOptions& options, const Common& common) {
@@ -151,6 +154,7 @@ void add_slam(Program& program) {
   command.add_option("--rerun", options->rerun,
                      "session.toml of a session to reproduce byte for byte from the same inputs");
   add_ruling_options(command, options->rulings);
+  add_control_options(command, options->control);
   add_recording_options(command, options->recording);
   add_truth_topic(command, options->recording);
   command.add_flag(

@@ -32,12 +32,13 @@ Result<CloudFile> parse(CloudFormat format, std::string_view bytes, std::optiona
   return read_kitti(bytes);
 }
 
-std::string bytes_of(CloudFormat format, const PointCloud& cloud, const Pose& viewpoint) {
+std::string bytes_of(CloudFormat format, const PointCloud& cloud, const Pose& viewpoint,
+                     const std::string& comment) {
   switch (format) {
     case CloudFormat::pcd:
-      return write_pcd(cloud, PcdData::binary, viewpoint);
+      return write_pcd(cloud, PcdData::binary, viewpoint, comment);
     case CloudFormat::ply:
-      return write_ply(cloud);
+      return write_ply(cloud, PlyData::binary_little_endian, comment);
     case CloudFormat::kitti:
       break;
   }
@@ -101,10 +102,11 @@ Result<PointCloud> read_cloud(const std::filesystem::path& path) {
   return read_cloud_file(path).map([](CloudFile file) { return std::move(file.cloud); });
 }
 
-Result<> write_cloud(const std::filesystem::path& path, const PointCloud& cloud, const Pose& viewpoint) {
+Result<> write_cloud(const std::filesystem::path& path, const PointCloud& cloud, const Pose& viewpoint,
+                     const std::string& comment) {
   if (cloud.empty()) return fail(path.string() + ": the cloud has no points; nothing is written");
   return format_of(path).and_then(
-      [&](CloudFormat format) { return write_bytes(path, bytes_of(format, cloud, viewpoint)); });
+      [&](CloudFormat format) { return write_bytes(path, bytes_of(format, cloud, viewpoint, comment)); });
 }
 
 }  // namespace adit

@@ -51,7 +51,8 @@ Result<PointCloud> read_cloud(const std::filesystem::path& path);
 
 /// Writes binary PCD, binary little-endian PLY or KITTI .bin by extension. The file appears whole or not at
 /// all. Intensities and times are kept (KITTI: intensities only), and `viewpoint` in PCD. An empty cloud is
-/// an error: no reader would accept it.
-Result<> write_cloud(const std::filesystem::path& path, const PointCloud& cloud, const Pose& viewpoint = {});
+/// an error: no reader would accept it. PCD and PLY keep `comment`, a line for people, in their header.
+Result<> write_cloud(const std::filesystem::path& path, const PointCloud& cloud, const Pose& viewpoint = {},
+                     const std::string& comment = "");
 
 }  // namespace adit

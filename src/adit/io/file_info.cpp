@@ -4,6 +4,7 @@
 #include "adit/core/json_text.hpp"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <variant>
 
@@ -326,6 +327,23 @@ Result<Json> with_recording(Result<Json> topics, const fs::path& path, const Rec
   });
 }
 
+Json georeference_json(const Georeference& map) {
+  const Pose& T = map.T_target_map;
+  std::map<ControlUse, std::size_t> num;
+  for (const JudgedControl& point : map.points) ++num[point.use];
+  const Eigen::Vector4d& q = T.rotation().coeffs();
+  return {{"robots", map.robots},
+          {"crs", map.crs},
+          {"translation", {T.translation().x(), T.translation().y(), T.translation().z()}},
+          {"rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}},
+          {"used", num[ControlUse::used]},
+          {"rejected", num[ControlUse::rejected]},
+          {"checks", num[ControlUse::check]},
+          {"failed_checks", num[ControlUse::failed_check]},
+          {"sigma_xy_m", map.far_end.sigma_xy},
+          {"sigma_z_m", map.far_end.sigma_z}};
+}
+
 Result<Json> session_info(const fs::path& path) {
   return read_session(path).map([](const SavedSession& session) {
     Json robots = Json::array();
@@ -334,8 +352,11 @@ Result<Json> session_info(const fs::path& path) {
       if (!session.optimized[i].empty()) robot.update(trajectory_json(session.optimized[i]));
       robots.push_back(robot);
     }
-    return Json{{"kind", "session"}, {"version", session.version},       {"seed", session.provenance.seed},
-                {"robots", robots},  {"components", session.components}, {"loops", session.loops.size()}};
+    Json info{{"kind", "session"}, {"version", session.version},       {"seed", session.provenance.seed},
+              {"robots", robots},  {"components", session.components}, {"loops", session.loops.size()}};
+    for (const Georeference& map : session.georeferences)
+      info["georeferences"].push_back(georeference_json(map));
+    return info;
   });
 }
 

@@ -278,14 +278,15 @@ std::string viewpoint_text(const Pose& viewpoint) {
   return format("VIEWPOINT {} {} {} {} {} {} {}\n", t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z());
 }
 
-std::string header_text(const PointCloud& cloud, const Pose& viewpoint, std::string_view data) {
+std::string header_text(const PointCloud& cloud, const Pose& viewpoint, std::string_view data,
+                        const std::string& comment) {
   const bool has_intensity = !cloud.intensities.empty();
   const auto line = [&](std::string_view key, std::string_view xyz, std::string_view intensity,
                         std::string_view t) {
     return format("{} {}{}{}\n", key, xyz, has_intensity ? intensity : "", cloud.has_times() ? t : "");
   };
-  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n" +
-         line("FIELDS", "x y z", " intensity", " t") + line("SIZE", "4 4 4", " 4", " 4") +
+  return "# .PCD v0.7 - Point Cloud Data file format\n" + (comment.empty() ? "" : "# " + comment + "\n") +
+         "VERSION 0.7\n" + line("FIELDS", "x y z", " intensity", " t") + line("SIZE", "4 4 4", " 4", " 4") +
          line("TYPE", "F F F", " F", " I") + line("COUNT", "1 1 1", " 1", " 1") +
          format("WIDTH {}\nHEIGHT 1\n", cloud.size()) + viewpoint_text(viewpoint) +
          format("POINTS {}\nDATA {}\n", cloud.size(), data);
@@ -315,19 +316,20 @@ std::string columns_of(const PointCloud& cloud) {
 
 }  // namespace
 
-std::string write_pcd(const PointCloud& cloud, PcdData data, const Pose& viewpoint) {
+std::string write_pcd(const PointCloud& cloud, PcdData data, const Pose& viewpoint,
+                      const std::string& comment) {
   cloud.check();
   switch (data) {
     case PcdData::ascii:
-      return header_text(cloud, viewpoint, "ascii") + rows_text(cloud);
+      return header_text(cloud, viewpoint, "ascii", comment) + rows_text(cloud);
     case PcdData::binary:
-      return header_text(cloud, viewpoint, "binary") + packed_rows(cloud);
+      return header_text(cloud, viewpoint, "binary", comment) + packed_rows(cloud);
     case PcdData::binary_compressed:
       break;
   }
   const std::string columns = columns_of(cloud);
   const std::string stream = compress_lzf(columns);
-  std::string bytes = header_text(cloud, viewpoint, "binary_compressed");
+  std::string bytes = header_text(cloud, viewpoint, "binary_compressed", comment);
   append_little_endian(bytes, static_cast<std::uint32_t>(stream.size()));
   append_little_endian(bytes, static_cast<std::uint32_t>(columns.size()));
   return bytes + stream;

@@ -25,8 +25,9 @@ Result<CloudFile> read_pcd(std::string_view bytes, std::optional<TimeUnit> time_
 enum class PcdData { ascii, binary, binary_compressed };
 
 /// The bytes of a PCD 0.7 file with fields x y z F4, and where the cloud has them intensity F4 and t I4
-/// (nanoseconds). `viewpoint` is the pose of the sensor: p_world = viewpoint * p.
+/// (nanoseconds). `viewpoint` is the pose of the sensor: p_world = viewpoint * p. `comment`: one line for the
+/// header.
 [[nodiscard]] std::string write_pcd(const PointCloud& cloud, PcdData data = PcdData::binary,
-                                    const Pose& viewpoint = {});
+                                    const Pose& viewpoint = {}, const std::string& comment = "");
 
 }  // namespace adit

@@ -313,11 +313,12 @@ std::string_view name_of(PlyData data) {
   return "binary_big_endian";
 }
 
-std::string header_text(const PointCloud& cloud, PlyData data) {
+std::string header_text(const PointCloud& cloud, PlyData data, const std::string& comment) {
   return format(
-             "ply\nformat {} 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float "
+             "ply\nformat {} 1.0\n{}element vertex {}\nproperty float x\nproperty float y\nproperty float "
              "z\n{}{}",
-             name_of(data), cloud.size(), cloud.intensities.empty() ? "" : "property float intensity\n",
+             name_of(data), comment.empty() ? "" : "comment " + comment + "\n", cloud.size(),
+             cloud.intensities.empty() ? "" : "property float intensity\n",
              cloud.has_times() ? "property int t\n" : "") +
          "end_header\n";
 }
@@ -354,15 +355,15 @@ bool ply_has_faces(std::string_view bytes) {
          });
 }
 
-std::string write_ply(const PointCloud& cloud, PlyData data) {
+std::string write_ply(const PointCloud& cloud, PlyData data, const std::string& comment) {
   cloud.check();
-  if (data == PlyData::ascii) return header_text(cloud, data) + ascii_rows(cloud);
+  if (data == PlyData::ascii) return header_text(cloud, data, comment) + ascii_rows(cloud);
   std::string rows = packed_rows(cloud);
   if (data == PlyData::binary_big_endian) {
     // Every property is four bytes wide.
     for (auto word = rows.begin(); word != rows.end(); word += 4) std::reverse(word, word + 4);
   }
-  return header_text(cloud, data) + rows;
+  return header_text(cloud, data, comment) + rows;
 }
 
 std::string write_ply(const TriangleMesh& mesh) {

@@ -30,8 +30,9 @@ Result<TriangleMesh> read_ply_mesh(std::string_view bytes);
 enum class PlyData { ascii, binary_little_endian, binary_big_endian };
 
 /// The bytes of a PLY file with float x, y, z, and where the cloud has them float intensity and int t
-/// (nanoseconds).
-[[nodiscard]] std::string write_ply(const PointCloud& cloud, PlyData data = PlyData::binary_little_endian);
+/// (nanoseconds). `comment`: one line for the header.
+[[nodiscard]] std::string write_ply(const PointCloud& cloud, PlyData data = PlyData::binary_little_endian,
+                                    const std::string& comment = "");
 
 /// The bytes of a binary little-endian PLY file with float vertices and triangles as `vertex_indices` lists.
 [[nodiscard]] std::string write_ply(const TriangleMesh& mesh);

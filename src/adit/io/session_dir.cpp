@@ -122,6 +122,9 @@ Result<SavedSession> read_session(const std::filesystem::path& dir) {
   Result<std::vector<SavedLoop>> loops = parse_loops_csv(*csv);
   if (!loops) return fail((dir / "loops.csv").string(), loops.error());
   session.loops = std::move(*loops);
+  Result<std::vector<Georeference>> georeferences = read_georeferences(dir);
+  if (!georeferences) return tl::unexpected(georeferences.error());
+  session.georeferences = std::move(*georeferences);
   return session;
 }
 

@@ -14,6 +14,7 @@
 
 #include "adit/evaluation/loop_stats.hpp"
 #include "adit/fleet/joint/fleet_solution.hpp"
+#include "adit/io/georeference.hpp"
 #include "adit/robot/robot_map.hpp"
 
 namespace adit {
@@ -85,6 +86,7 @@ struct SavedSession {
   std::vector<Trajectory> optimized;                 ///< One a robot.
   std::vector<Trajectory> odometry;
   std::vector<SavedLoop> loops;
+  std::vector<Georeference> georeferences;  ///< Of the maps that have one.
 };
 Result<SavedSession> read_session(const std::filesystem::path& dir);
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "adit/posegraph/marginals.hpp"
 
+#include <algorithm>
+
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
 #include "adit/posegraph/factors.hpp"
@@ -16,23 +18,28 @@ struct Marginals<P>::Impl {
   std::vector<P> poses;
   BlockCholesky cholesky;
 
-  // Rows of `nodes` in the columns of H^-1 that belong to `nodes`; zero where a node is an anchor.
-  [[nodiscard]] Eigen::MatrixXd inverse_block(const std::vector<std::size_t>& nodes) const {
+  static Eigen::Index at(std::size_t i) { return static_cast<Eigen::Index>(i) * P::kDof; }
+
+  // Rows of `rows` in the columns of H^-1 that belong to `nodes`; zero where a node is an anchor.
+  [[nodiscard]] Eigen::MatrixXd inverse_rows(const std::vector<std::size_t>& rows,
+                                             const std::vector<std::size_t>& nodes) const {
     constexpr int D = P::kDof;
-    const auto at = [](std::size_t i) { return static_cast<Eigen::Index>(i) * D; };
-    const auto size = at(nodes.size());
-    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(at(structure.node_of_variable.size()), size);
+    Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(at(structure.node_of_variable.size()), at(nodes.size()));
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       const std::size_t v = structure.variable_of_node[nodes[k]];
       if (v != GraphStructure::kFixed) unit.block(at(v), at(k), D, D).setIdentity();
     }
     const Eigen::MatrixXd columns = cholesky.solve(unit);
-    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(size, size);
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      const std::size_t v = structure.variable_of_node[nodes[k]];
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(at(rows.size()), at(nodes.size()));
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const std::size_t v = structure.variable_of_node[rows[k]];
       if (v != GraphStructure::kFixed) out.middleRows(at(k), D) = columns.middleRows(at(v), D);
     }
-    return 0.5 * (out + out.transpose());
+    return out;
+  }
+  [[nodiscard]] Eigen::MatrixXd inverse_block(const std::vector<std::size_t>& nodes) const {
+    const Eigen::MatrixXd block = inverse_rows(nodes, nodes);
+    return 0.5 * (block + block.transpose());
   }
 };
 
@@ -67,6 +74,15 @@ template <class P>
 typename Marginals<P>::JointCovariance Marginals<P>::joint(std::size_t a, std::size_t b) const {
   ADIT_CHECK(a < impl_->poses.size() && b < impl_->poses.size(), "two nodes of the graph");
   return impl_->inverse_block({a, b});
+}
+
+template <class P>
+Eigen::MatrixXd Marginals<P>::cross(const std::vector<std::size_t>& rows,
+                                    const std::vector<std::size_t>& columns) const {
+  const auto is_node = [&](std::size_t node) { return node < impl_->poses.size(); };
+  ADIT_CHECK(std::ranges::all_of(rows, is_node) && std::ranges::all_of(columns, is_node),
+             "nodes of the graph");
+  return impl_->inverse_rows(rows, columns);
 }
 
 template <class P>

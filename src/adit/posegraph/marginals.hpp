@@ -30,6 +30,9 @@ class Marginals {
   [[nodiscard]] Covariance covariance(std::size_t node) const;
   /// Of two nodes together: [a; b].
   [[nodiscard]] JointCovariance joint(std::size_t a, std::size_t b) const;
+  /// Of the nodes `rows` with the nodes `columns`: kDof rows and columns for each, zero for an anchor.
+  [[nodiscard]] Eigen::MatrixXd cross(const std::vector<std::size_t>& rows,
+                                      const std::vector<std::size_t>& columns) const;
   /// Of T_a_b, right perturbation. Only meaningful for two nodes of one component.
   [[nodiscard]] Covariance relative(std::size_t a, std::size_t b) const;
 

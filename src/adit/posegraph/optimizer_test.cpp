@@ -215,6 +215,9 @@ void expect_dense_marginals() {
   EXPECT_LT(
       (marginals->joint(4, 9).template topRightCorner<D, D>() - covariance.block(3 * D, 8 * D, D, D)).norm(),
       1e-9 * expected.norm());
+  const Eigen::MatrixXd cross = marginals->cross({0, 9}, {4});
+  EXPECT_EQ(cross.topRows(D).norm(), 0.0);
+  EXPECT_LT((cross.bottomRows(D) - covariance.block(8 * D, 3 * D, D, D)).norm(), 1e-9 * expected.norm());
   // Relative to the anchor a node's covariance is its own.
   EXPECT_LT((marginals->relative(0, 4) - expected).norm(), 1e-9 * expected.norm());
 }

@@ -3,10 +3,12 @@
 #include "adit/slam/joint_map.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
+#include "adit/core/format.hpp"
 #include "adit/io/cloud_files.hpp"
-#include "adit/io/las.hpp"
+#include "adit/io/crs.hpp"
 #include "adit/io/occupancy_map.hpp"
 #include "adit/io/text.hpp"
 #include "adit/slam/saved_fleet.hpp"
@@ -14,14 +16,26 @@
 namespace adit {
 namespace {
 
-std::vector<LasPoint> las_points(const JointMap& map, double voxel_m) {
+std::vector<LasPoint> las_points(const JointMap& map, double voxel_m, const Pose& T_frame_map) {
   std::vector<LasPoint> points;
   for (std::size_t i = 0; i < map.maps.size(); ++i) {
     const PointCloud cloud = merged_cloud(*map.maps[i], map.T_world_keyframe[i], voxel_m);
     for (const Eigen::Vector3f& point : cloud.points)
-      points.push_back({point.cast<double>(), 0, static_cast<std::uint16_t>(map.maps[i]->id.value + 1)});
+      points.push_back(
+          {T_frame_map * point.cast<double>(), 0, static_cast<std::uint16_t>(map.maps[i]->id.value + 1)});
   }
   return points;
+}
+
+Result<> write_joint_cloud(const std::filesystem::path& path, const JointMap& map, double voxel_m,
+                           const OutputFrame& frame) {
+  PointCloud cloud = merged_cloud(map.maps, map.T_world_keyframe, voxel_m);
+  if (frame.name.empty()) return write_cloud(path, cloud);
+  const Vector3 offset = float_offset(frame);
+  const Pose T_shifted_map = Pose::translation_of(-offset.x(), -offset.y(), -offset.z()) * frame.T_frame_map;
+  cloud = transformed(T_shifted_map, std::move(cloud));
+  return write_cloud(path, cloud, {},
+                     format("{}; add the offset {} {} {}", frame.name, offset.x(), offset.y(), offset.z()));
 }
 
 std::vector<PlacedScan> scans_of(const JointMap& map) {
@@ -93,16 +107,35 @@ JointMap joint_map_of(const PlacedSession& session) {
   return map;
 }
 
-Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config) {
+Result<OutputFrame> target_frame(const Georeference& map) {
+  return crs_wkt(map.crs).map([&](const std::string& wkt) {
+    return OutputFrame{map.T_target_map, map.crs.empty() ? "the target frame" : map.crs, wkt};
+  });
+}
+
+Vector3 float_offset(const OutputFrame& frame) {
+  constexpr double kFar = 4000.0;  // metres; there float32 has steps of 0.2 to 0.5 mm
+  return frame.T_frame_map.translation().unaryExpr([](double coordinate) {
+    return std::abs(coordinate) < kFar ? 0.0 : 1000.0 * std::round(coordinate / 1000.0);
+  });
+}
+
+bool is_for_robots(const std::filesystem::path& path) {
   const std::string extension = lower_case(path.extension().string());
-  if (extension == ".las") return write_las(path, las_points(map, config.voxel_m));
+  return extension == ".pgm" || extension == ".bt";
+}
+
+Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config,
+                         const OutputFrame& frame) {
+  const std::string extension = lower_case(path.extension().string());
+  if (extension == ".las")
+    return write_las(path, las_points(map, config.voxel_m, frame.T_frame_map), frame.crs_wkt);
   if (extension == ".pgm")
     return occupancy_of(scans_of(map), config.grid).and_then([&](const OccupancyGrid& grid) {
       return write_occupancy_map(path, grid);
     });
   if (extension == ".bt") return write_octomap(path, scans_of(map), config.octomap);
-  if (extension == ".pcd" || extension == ".ply")
-    return write_cloud(path, merged_cloud(map.maps, map.T_world_keyframe, config.voxel_m));
+  if (extension == ".pcd" || extension == ".ply") return write_joint_cloud(path, map, config.voxel_m, frame);
   return fail(path.string() +
               ": a session becomes .las, .pcd, .ply, .pgm (with .yaml), .bt, .mcap (with a layout), .tum, "
               ".kitti, .csv, .jrl or .g2o");

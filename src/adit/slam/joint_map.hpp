@@ -10,6 +10,8 @@
 
 #include "adit/core/config.hpp"
 #include "adit/geometry/occupancy_grid.hpp"
+#include "adit/io/georeference.hpp"
+#include "adit/io/las.hpp"
 #include "adit/io/octomap_file.hpp"
 #include "adit/io/session_dir.hpp"
 #include "adit/robot/robot_map.hpp"
@@ -37,6 +39,16 @@ struct PlacedSession {
 /// Fails as read_fleet does, and where a robot's trajectory and map do not belong together.
 [[nodiscard]] Result<PlacedSession> read_placed_session(const std::filesystem::path& session);
 
+/// The frame that clouds and poses are written in.
+struct OutputFrame {
+  Pose T_frame_map;
+  std::string name;  ///< For people; "" for the map's own.
+  std::string crs_wkt = kLocalCrs;
+};
+/// The target frame of a map: "EPSG:25833", or "the target frame" where no system was named. Fails as crs_wkt
+/// does.
+[[nodiscard]] Result<OutputFrame> target_frame(const Georeference& map);
+
 /// Robots that share a frame, with their keyframes in it.
 struct JointMap {
   std::vector<std::shared_ptr<const RobotMap>> maps;
@@ -46,8 +58,17 @@ struct JointMap {
 /// The map of the most robots, the first of several.
 [[nodiscard]] JointMap joint_map_of(const PlacedSession& session);
 
-/// Writes .las (local coordinates; the source ID is the number of the robot), .pcd or .ply (one point a
-/// voxel), .bt (write_octomap) or .pgm with its .yaml (occupancy_of). Fails on other endings.
-Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config);
+/// What is subtracted from coordinates in that frame before they are stored as float32: thousands of metres
+/// where the map is further than 4 km from zero along an axis, so that millimetres stay.
+[[nodiscard]] Vector3 float_offset(const OutputFrame& frame);
+
+/// Whether maps of that ending are for robots, which know the map by its own frame: .pgm and .bt.
+[[nodiscard]] bool is_for_robots(const std::filesystem::path& path);
+
+/// Writes .las (the source ID is the number of the robot), .pcd or .ply (one point a voxel; less
+/// `float_offset`, which their header states), .bt (write_octomap) or .pgm with its .yaml (occupancy_of). The
+/// last two are always in the map's own frame. Fails on other endings.
+Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config,
+                         const OutputFrame& frame = {});
 
 }  // namespace adit

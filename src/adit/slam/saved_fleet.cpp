@@ -235,6 +235,7 @@ Result<SavedFleet> read_fleet(const std::filesystem::path& dir) {
   if (!session) return tl::unexpected(session.error());
   SavedFleet fleet;
   fleet.provenance = std::move(session->provenance);
+  fleet.georeferences = std::move(session->georeferences);
   const Result<SavedFindings> saved = read_bytes(dir / kFindingsFile).and_then([](const std::string& bytes) {
     return parse_findings(bytes);
   });

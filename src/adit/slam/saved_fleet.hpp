@@ -21,6 +21,7 @@ struct SavedFleet {
   Provenance provenance;                        ///< Of the session that it was read from.
   std::vector<std::shared_ptr<RobotMap>> maps;  ///< In id order.
   std::vector<MessageBody> findings;            ///< Loops and merge checks of these robots (Agent::findings).
+  std::vector<Georeference> georeferences;      ///< Of the maps that have one.
   std::vector<std::string> notes;               ///< What could not be taken over, one line each.
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <map>
 #include <utility>
 #include <variant>
@@ -64,6 +65,18 @@ void rename_in(std::vector<MessageBody>& findings, const std::map<std::string, s
       for (MergeCheck& check : part->checks) check.reason = with_names(check.reason, new_names);
 }
 
+/// Georeferences name robots.
+void rename_in(std::vector<Georeference>& maps, const std::map<std::string, std::string>& new_names) {
+  const auto rename = [&](std::string& name) {
+    if (const auto found = new_names.find(name); found != new_names.end()) name = found->second;
+  };
+  for (Georeference& map : maps) {
+    std::ranges::for_each(map.robots, rename);
+    for (JudgedControl& judged : map.points) rename(judged.point.mark.robot);
+    rename(map.far_end.robot);
+  }
+}
+
 /// Distinct names for all, those of the sessions first.
 std::vector<std::string> name_all(std::vector<SavedFleet>& saved, std::vector<Recording>& recordings) {
   std::vector<std::string> notes;
@@ -94,6 +107,7 @@ std::vector<std::string> name_all(std::vector<SavedFleet>& saved, std::vector<Re
       if (of_map != fleet.provenance.robots.end()) of_map->name = map->name;
     }
     rename_in(fleet.findings, new_names);
+    rename_in(fleet.georeferences, new_names);
   }
   for (Recording& recording : recordings) rename(recording.name);
   return notes;
@@ -206,6 +220,7 @@ Result<SlamRun> slam_on(std::vector<SavedFleet> saved, std::vector<Recording> re
   std::vector<MetBefore> met_before;
   for (SavedFleet& fleet : saved) {
     append(run.notes, fleet.notes);
+    std::ranges::move(fleet.georeferences, std::back_inserter(run.georeferences));
     maps.insert(maps.end(), fleet.maps.begin(), fleet.maps.end());
     if (fleet.findings.empty()) continue;  // its pairs are tested anew
     met_before.push_back({{}, std::move(fleet.findings)});

@@ -28,6 +28,9 @@ struct SlamRun {
   std::vector<FailedRobot> failed;  ///< Recordings that could not be mapped; the others went on.
   std::vector<std::string> notes;   ///< Fallbacks, changed names, messages left out, one line each.
   std::vector<MessageBody> findings;  ///< All loops and merge checks, for a later session.
+  /// Of the maps of earlier sessions, with their robots' names in this one. Those maps may have moved: the
+  /// control points have to be fitted anew (georeference.hpp).
+  std::vector<Georeference> georeferences;
 };
 
 /// What a person says of two robots, by name, against the test.

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// Where the maps of a session lie in the frame of surveyors, and the control points that say so.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "adit/core/pose.hpp"
+#include "adit/core/result.hpp"
+#include "adit/core/time.hpp"
+
+namespace adit {
+
+/// Where a control point was seen.
+struct ControlMark {
+  std::string robot;  ///< "": in the map of the most robots.
+  std::optional<Stamp>
+      stamp;  ///< With one `position` is in the base frame of the robot then, else in its map.
+  Vector3 position = Vector3::Zero();  ///< Metres.
+  double sigma = 0.05;                 ///< Of picking it, along each axis, metres.
+};
+
+struct ControlPoint {
+  std::string name;
+  Vector3 target = Vector3::Zero();  ///< Surveyed: metres in the target frame, z up.
+  double sigma_xy = 0.0;             ///< Standard deviations, metres: along x and along y,
+  double sigma_z = 0.0;              ///< and along z.
+  bool is_check = false;             ///< Judged, without a say in the transform.
+  ControlMark mark;
+};
+
+/// Control points as comma-separated values (docs/commands.md, "Control points"). Fails with line and remedy
+/// on a column that is missing or unknown, a cell that is no number, a standard deviation that is not
+/// positive, a mark that nothing says the place of, and a name that occurs twice.
+[[nodiscard]] Result<std::vector<ControlPoint>> parse_control_points(std::string_view csv);
+[[nodiscard]] Result<std::vector<ControlPoint>> read_control_points(const std::filesystem::path& path);
+
+enum class ControlUse {
+  used,
+  rejected,      ///< Contradicts the others.
+  check,         ///< A check point that agrees, or that nothing can be said of.
+  failed_check,  ///< A check point that contradicts those in use.
+};
+[[nodiscard]] std::string_view to_string(ControlUse use);
+
+struct JudgedControl {
+  ControlPoint point;  ///< Its mark is in the base frame of a keyframe, so that it moves with the map.
+  ControlUse use = ControlUse::used;
+  Vector3 residual = Vector3::Zero();  ///< Surveyed less mapped, along the axes of the target frame, metres.
+  std::optional<double> misfit = {};   ///< ControlFit::misfits.
+};
+
+/// How well the place is known where it is known worst, one standard deviation each, metres.
+struct FarEnd {
+  std::string robot;
+  Stamp stamp;  ///< Of the keyframe.
+  double sigma_xy = 0.0;
+  double sigma_z = 0.0;
+};
+
+/// Of one map.
+struct Georeference {
+  std::vector<std::string> robots;  ///< Whose map it is.
+  std::string crs;                  ///< As given: "EPSG:25833", the name of a mine's own grid, ""...
+  Pose T_target_map;
+  Matrix6 covariance = Matrix6::Zero();  ///< Of T_target_map, right perturbation, [translation; rotation].
+  std::vector<JudgedControl> points;
+  double chi2 = 0.0;  ///< Of the points in use.
+  int redundancy = 0;
+  double scale_ppm = 0.0;  ///< By how much the target frame is larger than the map; not applied.
+  double scale_sigma_ppm = 0.0;
+  FarEnd far_end;
+};
+
+/// georeference.toml in a session directory. Reading one that is not there gives none; a damaged one fails.
+Result<> write_georeferences(const std::filesystem::path& session, const std::vector<Georeference>& maps);
+[[nodiscard]] Result<std::vector<Georeference>> read_georeferences(const std::filesystem::path& session);
+
+/// Of the map of that robot; null where it is in the odometry frame of a robot still.
+[[nodiscard]] const Georeference* georeference_of(const std::vector<Georeference>& maps,
+                                                  const std::string& robot);
+
+}  // namespace adit

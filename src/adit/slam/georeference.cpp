@@ -1,0 +1,329 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/slam/georeference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <variant>
+
+#include "adit/core/decompositions.hpp"
+#include "adit/core/format.hpp"
+#include "adit/io/crs.hpp"
+#include "adit/io/g2o.hpp"
+#include "adit/io/tum.hpp"
+#include "adit/posegraph/marginals.hpp"
+#include "adit/registration/control_fit.hpp"
+#include "adit/robot/full_rate.hpp"
+#include "adit/slam/joint_map.hpp"
+
+namespace adit {
+namespace {
+
+using Matrix36 = Eigen::Matrix<double, 3, 6>;
+using Eigen::Index;
+
+/// A keyframe of a session.
+struct Place {
+  std::size_t robot = 0;  // in PlacedSession::robots
+  std::size_t keyframe = 0;
+
+  [[nodiscard]] const Pose& T_map_keyframe(const PlacedSession& session) const {
+    return session.robots[robot].T_world_keyframe[keyframe];
+  }
+  bool operator==(const Place&) const = default;
+};
+
+/// A control point with its mark bound to a keyframe.
+struct BoundControl {
+  ControlPoint point;
+  Place place;
+
+  [[nodiscard]] std::size_t shared_map(const PlacedSession& session) const {
+    return session.robots[place.robot].shared_map;
+  }
+  [[nodiscard]] Vector3 in_map(const PlacedSession& session) const {
+    return place.T_map_keyframe(session) * point.mark.position;
+  }
+};
+
+Result<std::size_t> robot_called(const PlacedSession& session, const std::string& name) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < session.robots.size(); ++i) {
+    if (session.robots[i].map->name == name) return i;
+    names.push_back(session.robots[i].map->name);
+  }
+  return fail(format("no robot is called '{}'; there are {}", name, fmt::join(names, ", ")));
+}
+
+BoundControl bound_to(const PlacedSession& session, ControlPoint point, const Place& place,
+                      const Vector3& in_keyframe) {
+  const RobotMap& map = *session.robots[place.robot].map;
+  point.mark.robot = map.name;
+  point.mark.stamp = map.keyframes[place.keyframe].stamp;
+  point.mark.position = in_keyframe;
+  return {std::move(point), place};
+}
+
+/// A mark in the base frame of a robot: bound to the keyframe nearest in time.
+Result<BoundControl> bind_in_scan(const PlacedSession& session, const ControlPoint& point,
+                                  std::size_t robot) {
+  const PlacedRobot& placed = session.robots[robot];
+  const Result<Pose> T_map_base =
+      pose_at(at_every_scan(*placed.map, placed.T_world_keyframe), *point.mark.stamp);
+  if (!T_map_base) return fail(placed.map->name, T_map_base.error());
+  const auto nearest = std::ranges::min_element(placed.map->keyframes, {}, [&](const Keyframe& keyframe) {
+    return std::chrono::abs(keyframe.stamp - *point.mark.stamp);
+  });
+  const Place place{robot, static_cast<std::size_t>(nearest - placed.map->keyframes.begin())};
+  return bound_to(session, point, place,
+                  place.T_map_keyframe(session).inverse() * (*T_map_base * point.mark.position));
+}
+
+/// A mark picked in a map: bound to the keyframe nearest to it.
+Result<BoundControl> bind_in_map(const PlacedSession& session, const ControlPoint& point,
+                                 std::size_t shared_map) {
+  constexpr double kFarthest = 300.0;  // metres
+  Place nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t r = 0; r < session.robots.size(); ++r) {
+    if (session.robots[r].shared_map != shared_map) continue;
+    for (std::size_t k = 0; k < session.robots[r].T_world_keyframe.size(); ++k) {
+      const double distance =
+          (session.robots[r].T_world_keyframe[k].translation() - point.mark.position).norm();
+      if (distance >= least) continue;
+      least = distance;
+      nearest = {r, k};
+    }
+  }
+  if (!(least < kFarthest))
+    return fail(format(
+        "its mark is {:.0f} m from where any robot was; mark_x, mark_y and mark_z are picked in map.ply of "
+        "the session, before any transform",
+        least));
+  return bound_to(session, point, nearest, nearest.T_map_keyframe(session).inverse() * point.mark.position);
+}
+
+Result<BoundControl> bind(const PlacedSession& session, const ControlPoint& point) {
+  if (point.mark.robot.empty()) return bind_in_map(session, point, 0);
+  const Result<std::size_t> robot = robot_called(session, point.mark.robot);
+  if (!robot) return tl::unexpected(robot.error());
+  return point.mark.stamp ? bind_in_scan(session, point, *robot)
+                          : bind_in_map(session, point, session.robots[*robot].shared_map);
+}
+
+/// How the places of a map vary together: the pose graph's covariance, and each keyframe's own noise.
+class MapCovariance {
+ public:
+  static Result<MapCovariance> of(const PlacedSession& session, const std::filesystem::path& graph_file) {
+    const Result<G2oFile> file = read_g2o(graph_file);
+    if (!file) return tl::unexpected(file.error());
+    const auto* graph = std::get_if<PoseGraph>(&file->graph);
+    if (graph == nullptr) return fail(graph_file.string() + ": not the graph of a session");
+    Result<Marginals<Pose>> marginals = Marginals<Pose>::compute(*graph);
+    if (!marginals) return fail(graph_file.string(), marginals.error());
+    MapCovariance out(session, std::move(*marginals));
+    for (std::size_t i = 0; i < graph->nodes.size(); ++i) out.nodes_[graph->nodes[i].key] = i;
+    for (const PlacedRobot& robot : session.robots)
+      for (const Keyframe& keyframe : robot.map->keyframes)
+        if (!out.nodes_.contains(graph_key(keyframe.id)))
+          return fail(format("{}: keyframe {} of {} is missing; make the session again", graph_file.string(),
+                             keyframe.id.index, robot.map->name));
+    return out;
+  }
+
+  /// Right perturbation: six rows for each of `rows`, six columns for each of `columns`.
+  [[nodiscard]] Eigen::MatrixXd cross(const std::vector<Place>& rows,
+                                      const std::vector<Place>& columns) const {
+    Eigen::MatrixXd out = marginals_.cross(nodes_of(rows), nodes_of(columns));
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        if (rows[r] == columns[c])
+          out.block<6, 6>(6 * static_cast<Index>(r), 6 * static_cast<Index>(c)) +=
+              session_.robots[rows[r].robot].map->pose_noise[rows[r].keyframe];
+    return out;
+  }
+
+ private:
+  MapCovariance(const PlacedSession& session, Marginals<Pose> marginals)
+      : session_(session), marginals_(std::move(marginals)) {}
+
+  [[nodiscard]] std::vector<std::size_t> nodes_of(const std::vector<Place>& places) const {
+    std::vector<std::size_t> out;
+    for (const Place& place : places)
+      out.push_back(nodes_.at(graph_key(session_.robots[place.robot].map->keyframes[place.keyframe].id)));
+    return out;
+  }
+
+  const PlacedSession& session_;
+  Marginals<Pose> marginals_;
+  std::map<std::uint64_t, std::size_t> nodes_;
+};
+
+/// The derivative of a point of a keyframe, in the map, by that keyframe's pose.
+Matrix36 point_jacobian(const Pose& T_map_keyframe, const Vector3& in_keyframe) {
+  Matrix36 J;
+  J.leftCols<3>() = T_map_keyframe.rotation_matrix();
+  J.rightCols<3>() = -J.leftCols<3>() * so3::hat(in_keyframe);
+  return J;
+}
+
+/// The derivatives of all marks by their keyframes, one block each.
+Eigen::MatrixXd mark_jacobian(const PlacedSession& session, const std::vector<BoundControl>& points) {
+  const auto num = static_cast<Index>(points.size());
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3 * num, 6 * num);
+  for (Index i = 0; i < num; ++i) {
+    const BoundControl& bound = points[static_cast<std::size_t>(i)];
+    J.block<3, 6>(3 * i, 6 * i) =
+        point_jacobian(bound.place.T_map_keyframe(session), bound.point.mark.position);
+  }
+  return J;
+}
+
+std::vector<Place> places_of(const std::vector<BoundControl>& points) {
+  std::vector<Place> places;
+  for (const BoundControl& bound : points) places.push_back(bound.place);
+  return places;
+}
+
+ControlPairs pairs_of(const PlacedSession& session, const std::vector<BoundControl>& points,
+                      const MapCovariance& covariance) {
+  ControlPairs pairs;
+  const Eigen::MatrixXd J = mark_jacobian(session, points);
+  const std::vector<Place> places = places_of(points);
+  const Eigen::MatrixXd of_marks = J * covariance.cross(places, places) * J.transpose();
+  pairs.source_covariance = 0.5 * (of_marks + of_marks.transpose());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const ControlPoint& point = points[i].point;
+    pairs.names.push_back(point.name);
+    pairs.target.push_back(point.target);
+    pairs.target_sigma.emplace_back(point.sigma_xy, point.sigma_xy, point.sigma_z);
+    pairs.source.push_back(points[i].in_map(session));
+    pairs.is_check.push_back(point.is_check);
+    pairs.source_covariance.diagonal().segment<3>(3 * static_cast<Index>(i)).array() +=
+        point.mark.sigma * point.mark.sigma;
+  }
+  return pairs;
+}
+
+/// Some keyframes of each robot of a map, evenly, the last one among them.
+std::vector<Place> sample_of(const PlacedSession& session, std::size_t shared_map) {
+  constexpr std::size_t kOfARobot = 32;
+  std::vector<Place> places;
+  for (std::size_t r = 0; r < session.robots.size(); ++r) {
+    const std::size_t num = session.robots[r].T_world_keyframe.size();
+    if (session.robots[r].shared_map != shared_map) continue;
+    const std::size_t taken = std::min(num, kOfARobot);
+    for (std::size_t i = 0; i < taken; ++i)
+      places.push_back({r, taken == 1 ? 0 : i * (num - 1) / (taken - 1)});
+  }
+  return places;
+}
+
+/// Where the place is known worst once the map is in the target frame: errors of the map there, and those of
+/// the transform, which depend on them.
+FarEnd far_end_of(const PlacedSession& session, const std::vector<BoundControl>& points,
+                  const MapCovariance& covariance, const ControlFit& fit) {
+  const std::vector<Place> sample = sample_of(session, points.front().shared_map(session));
+  const Matrix3 R = fit.T_target_source.rotation_matrix();
+  // The transform's error by that of the marks: a mark that is too far is target - T * mark that is too
+  // short.
+  Eigen::MatrixXd by_marks = fit.gain;
+  for (Index i = 0; i < by_marks.cols(); i += 3)
+    by_marks.middleCols<3>(i) = (-by_marks.middleCols<3>(i) * R).eval();
+  const Eigen::MatrixXd with_marks =
+      covariance.cross(sample, places_of(points)) * mark_jacobian(session, points).transpose();
+  FarEnd worst;
+  for (std::size_t s = 0; s < sample.size(); ++s) {
+    const Pose& T_map_keyframe = sample[s].T_map_keyframe(session);
+    const Matrix36 by_keyframe = R * point_jacobian(T_map_keyframe, Vector3::Zero());
+    Matrix36 by_transform;
+    by_transform << R, -R * so3::hat(T_map_keyframe.translation());
+    const Matrix3 both = by_keyframe * with_marks.middleRows<6>(6 * static_cast<Index>(s)) *
+                         by_marks.transpose() * by_transform.transpose();
+    const Matrix3 all = by_keyframe * covariance.cross({sample[s]}, {sample[s]}) * by_keyframe.transpose() +
+                        by_transform * fit.covariance * by_transform.transpose() + both + both.transpose();
+    const double xy = 0.5 * (all(0, 0) + all(1, 1)) + std::hypot(0.5 * (all(0, 0) - all(1, 1)), all(0, 1));
+    const FarEnd here{session.robots[sample[s].robot].map->name,
+                      session.robots[sample[s].robot].map->keyframes[sample[s].keyframe].stamp,
+                      std::sqrt(std::max(0.0, xy)), std::sqrt(std::max(0.0, all(2, 2)))};
+    if (worst.robot.empty() ||
+        std::max(here.sigma_xy, here.sigma_z) > std::max(worst.sigma_xy, worst.sigma_z))
+      worst = here;
+  }
+  return worst;
+}
+
+ControlUse use_of(bool is_check, bool is_used, const std::optional<double>& misfit) {
+  const bool agrees = !misfit || *misfit <= kControlBound;
+  if (is_check) return agrees ? ControlUse::check : ControlUse::failed_check;
+  return is_used ? ControlUse::used : ControlUse::rejected;
+}
+
+Georeference georeference_by(const PlacedSession& session, const std::vector<BoundControl>& points,
+                             const ControlFit& fit, const FarEnd& far_end) {
+  Georeference out;
+  for (const PlacedRobot& robot : session.robots)
+    if (robot.shared_map == points.front().shared_map(session)) out.robots.push_back(robot.map->name);
+  out.T_target_map = fit.T_target_source;
+  out.covariance = fit.covariance;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    out.points.push_back({points[i].point, use_of(points[i].point.is_check, fit.used[i], fit.misfits[i]),
+                          fit.residuals[i], fit.misfits[i]});
+  out.chi2 = fit.chi2;
+  out.redundancy = fit.redundancy;
+  out.scale_ppm = 1e6 * (fit.scale - 1.0);
+  out.scale_sigma_ppm = 1e6 * fit.scale_sigma;
+  out.far_end = far_end;
+  return out;
+}
+
+std::vector<std::string> notes_of(const Georeference& map) {
+  std::vector<std::string> notes;
+  const auto num_used = std::ranges::count(map.points, ControlUse::used, &JudgedControl::use);
+  if (num_used == 3)
+    notes.push_back(
+        "three control points leave a blunder among them unseen where it keeps their distances; measure a "
+        "fourth");
+  if (std::abs(map.scale_ppm) > 3.0 * map.scale_sigma_ppm)
+    notes.push_back(format(
+        "the control points are {:+.0f} ppm larger than the map (standard deviation {:.0f}); is the grid "
+        "to scale (UTM is up to 400 ppm smaller), and are all coordinates in metres?",
+        map.scale_ppm, map.scale_sigma_ppm));
+  return notes;
+}
+
+}  // namespace
+
+Result<Georeferencing> georeference(const std::filesystem::path& session_path,
+                                    const std::vector<ControlPoint>& points, const std::string& crs) {
+  if (const Result<std::string> wkt = crs_wkt(crs); !wkt) return tl::unexpected(wkt.error());
+  const Result<PlacedSession> session = read_placed_session(session_path);
+  if (!session) return tl::unexpected(session.error());
+  std::map<std::size_t, std::vector<BoundControl>> by_map;
+  for (const ControlPoint& point : points) {
+    Result<BoundControl> bound = bind(*session, point);
+    if (!bound) return fail(format("control point '{}'", point.name), bound.error());
+    by_map[bound->shared_map(*session)].push_back(std::move(*bound));
+  }
+  const Result<MapCovariance> covariance = MapCovariance::of(*session, session_path / "graph_optimized.g2o");
+  if (!covariance) return tl::unexpected(covariance.error());
+  Georeferencing out;
+  for (const auto& [shared_map, of_map] : by_map) {
+    const Result<ControlFit> fit = fit_control(pairs_of(*session, of_map, *covariance));
+    if (!fit)
+      return by_map.size() == 1 ? tl::unexpected(fit.error())
+                                : fail("the map of " + of_map.front().point.mark.robot, fit.error());
+    out.maps.push_back(
+        georeference_by(*session, of_map, *fit, far_end_of(*session, of_map, *covariance, *fit)));
+    out.maps.back().crs = crs;
+    for (std::string& note : notes_of(out.maps.back())) out.notes.push_back(std::move(note));
+  }
+  for (const PlacedRobot& robot : session->robots)
+    if (!by_map.contains(robot.shared_map))
+      out.notes.push_back(robot.map->name + " is in a map without control points, which stays where it is");
+  return out;
+}
+
+}  // namespace adit
