@@ -249,14 +249,15 @@ std::optional<double> sweep_after_stamp(const Scan& scan) {
 
 /// Whether sweeps were recorded before they could have ended, did their times count from the stamp; looked at
 /// in the first, the middle and the last scan. Clocks that differ are no such thing: the time of recording
-/// has to lie within the sweep.
+/// has to lie within the sweep, and behind the stamp, which
+/// programs that convert recordings write as the time of recording.
 Result<bool> is_stamped_at_end(const Bag& bag, const Tracks& tracks, std::optional<TimeUnit> time_unit) {
   for (const std::size_t i : {std::size_t{0}, tracks.scans.size() / 2, tracks.scans.size() - 1}) {
     const Result<ros::CloudMessage> message = read_cloud_message(bag, tracks.scans[i], time_unit);
     if (!message) return fail(format("scan {}", i), message.error());
     const std::optional<double> sweep = sweep_after_stamp(message->scan);
     const double recorded_after = to_seconds(tracks.scans[i].log_time - message->scan.stamp);
-    if (!sweep || recorded_after < 0.0 || recorded_after > 0.5 * *sweep) return false;
+    if (!sweep || recorded_after <= 0.0 || recorded_after > 0.5 * *sweep) return false;
   }
   return true;
 }
