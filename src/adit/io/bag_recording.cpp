@@ -240,7 +240,7 @@ void note_point_times(Recording& recording, const ros::CloudMessage& first) {
 
 /// The latest time of a point, seconds after the stamp; none where times do not count from the stamp.
 std::optional<double> sweep_after_stamp(const Scan& scan) {
-  constexpr double kShortest = 0.01;  // seconds; a twentieth of a usual sweep and more is jitter of clocks
+  constexpr double kShortest = 0.01;  // seconds; less is within the jitter of clocks
   if (!scan.cloud.has_times()) return std::nullopt;
   const auto [earliest, latest] = std::ranges::minmax(scan.cloud.time_offsets_ns);
   const double sweep = to_seconds(Duration(latest));
@@ -248,13 +248,12 @@ std::optional<double> sweep_after_stamp(const Scan& scan) {
 }
 
 /// Whether sweeps were recorded before they could have ended, did their times count from the stamp; looked at
-/// in the first, the middle and the last scan. Clocks that differ are no such thing: the time of recording
-/// has to lie within the sweep, and behind the stamp, which
-/// programs that convert recordings write as the time of recording.
-Result<bool> is_stamped_at_end(const Bag& bag, const Tracks& tracks, std::optional<TimeUnit> time_unit) {
+/// in the first, the middle and the last scan. The time of recording has to lie within the sweep, as clocks
+/// may differ, and behind the stamp, which programs that convert recordings write as the time of recording.
+bool is_stamped_at_end(const Bag& bag, const Tracks& tracks, std::optional<TimeUnit> time_unit) {
   for (const std::size_t i : {std::size_t{0}, tracks.scans.size() / 2, tracks.scans.size() - 1}) {
     const Result<ros::CloudMessage> message = read_cloud_message(bag, tracks.scans[i], time_unit);
-    if (!message) return fail(format("scan {}", i), message.error());
+    if (!message) return false;
     const std::optional<double> sweep = sweep_after_stamp(message->scan);
     const double recorded_after = to_seconds(tracks.scans[i].log_time - message->scan.stamp);
     if (!sweep || recorded_after <= 0.0 || recorded_after > 0.5 * *sweep) return false;
@@ -263,17 +262,15 @@ Result<bool> is_stamped_at_end(const Bag& bag, const Tracks& tracks, std::option
 }
 
 /// What the configuration says or, without a word, the recording shows.
-Result<bool> stamp_at_end(Recording& recording, const Bag& bag, const Tracks& tracks,
-                          std::optional<TimeUnit> time_unit, const RecordingConfig& config) {
-  if (config.stamp_at != "auto" || bag.own || tracks.scans.empty()) return config.stamp_at == "end";
-  return is_stamped_at_end(bag, tracks, time_unit).map([&](bool at_end) {
-    if (at_end)
-      recording.assumptions.emplace_back(
-          "point times: they count from the start of the sweep and the stamp is of its end, as scans were "
-          "recorded before they could have ended otherwise; if that is wrong, --set "
-          "recording.stamp_at=start");
-    return at_end;
-  });
+bool stamp_at_end(Recording& recording, const Bag& bag, const Tracks& tracks,
+                  std::optional<TimeUnit> time_unit, const RecordingConfig& config) {
+  if (config.stamp_at != "auto" || bag.own) return config.stamp_at == "end";
+  const bool at_end = is_stamped_at_end(bag, tracks, time_unit);
+  if (at_end)
+    recording.assumptions.emplace_back(
+        "point times: they count from the start of the sweep and the stamp is of its end, as scans were "
+        "recorded before they could have ended otherwise; if that is wrong, --set recording.stamp_at=start");
+  return at_end;
 }
 
 /// What nobody has asked for and may be wheels.
@@ -414,9 +411,8 @@ Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, RecordingC
   recording.scan_stamps = tracks->stamps;
   if (Result<> checked = check_fits_mcap(recording); !checked) return tl::unexpected(checked.error());
   // What the first scan has shown of the times holds for all.
-  const Result<bool> at_end = stamp_at_end(recording, *bag, *tracks, first->time_unit, config);
-  if (!at_end) return tl::unexpected(at_end.error());
-  recording.read_scan = scan_reader({bag, first->time_unit, *at_end, *moving, recording.T_base_lidar},
+  const bool at_end = stamp_at_end(recording, *bag, *tracks, first->time_unit, config);
+  recording.read_scan = scan_reader({bag, first->time_unit, at_end, *moving, recording.T_base_lidar},
                                     std::move(tracks->scans), std::move(tracks->stamps));
   return recording;
 }

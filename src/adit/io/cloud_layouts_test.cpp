@@ -305,15 +305,19 @@ TEST(CloudLayouts, MissingTimesAreSaidOnce) {
   EXPECT_NE(recording->assumptions[0].find("point times: none"), std::string::npos);
 }
 
-TEST(CloudLayouts, TheBeginningOfABagKeepsItsStaticLinks) {
+TEST(CloudLayouts, TheBeginningOfABagHasSomethingOfEachTopic) {
   test::ForeignFile file;
   file.clouds("/points").links({test::link("base_link", "os_lidar", Pose())});
+  std::vector<ros::JointStateMessage> joints;
+  for (int i = 0; i < 20; ++i)
+    joints.push_back({test::make_scan(0, 0).stamp + Duration(10'000'000LL * i), {}, {}, {}});
+  file.joints("/joint_states", joints);
   Bag bag = open_mcap_bag(memory_source(file.bytes())).value();
   EXPECT_EQ(bag.num_bytes, file.bytes().size());
   for (BagMessage& message : bag.messages)
-    if (bag.topics[message.topic].name == "/tf_static") message.log_time.ns += 3'600'000'000'000;
-  const Bag beginning = beginning_of(bag, 0.15);
-  EXPECT_EQ(beginning.messages.size(), 3U);  // two scans of three, and the links
+    if (!bag.topics[message.topic].name.starts_with("/joint")) message.log_time.ns += 3'600'000'000'000;
+  const Bag beginning = beginning_of(bag, 0.0501);
+  EXPECT_EQ(beginning.messages.size(), 3U + 1U + 6U + 3U);  // scans, links, joints until then and three more
   EXPECT_TRUE(read_recording(beginning));
 }
 
