@@ -184,7 +184,7 @@ void add_first_scan(Json& info, const Scan& scan) {
   info["points_first_scan"] = scan.cloud.size();
   if (!scan.cloud.has_times()) return;
   const auto [earliest, latest] = std::ranges::minmax(scan.cloud.time_offsets_ns);
-  info["point_times_s"] = {to_seconds(Duration(earliest)), to_seconds(Duration(latest))};
+  info["point_times_s"] = {seconds_between({0}, {earliest}), seconds_between({0}, {latest})};
 }
 
 Json recording_json(const Recording& recording) {
