@@ -74,8 +74,8 @@ template <class Decode>
 /// Whether `folder` is a bag folder: it has the metadata.yaml of rosbag2, or no files of clouds but of bags.
 [[nodiscard]] bool is_bag_folder(const std::filesystem::path& folder);
 
-/// The messages of the first so many seconds, the first three of each topic, and all of topics whose name ends
-/// in "_static".
+/// The messages of the first so many seconds, the first three of each topic, and all of topics whose name
+/// ends in "_static".
 [[nodiscard]] Bag beginning_of(Bag bag, double seconds);
 
 /// Several files of one recording as one bag; messages of all are put in order. `parts`: at least one.
