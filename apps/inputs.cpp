@@ -76,10 +76,14 @@ void add_recording_options(const Command& command, RecordingConfig& config) {
   command.add_option("--points", config.points, "Topic of the clouds, for recordings with several");
   command.add_option(
       "--wheel", config.wheel,
-      "Topic of the wheel odometry, for recordings with several or with a TwistStamped; none: without");
+      "Topic of the wheel odometry, for recordings with several or with a TwistStamped or JointState; none: "
+      "without");
   command.add_option("--imu", config.imu, "Topic of the IMU, for recordings with several; none: without");
   command.add_option("--imu-mount", config.imu_mount, "Pose of the IMU on the robot, as --mount")
       .check(mount_fault);
+  command.add_option(
+      "--tf", config.tf,
+      "Topics of the links between frames, apart by commas (default: all called tf or tf_static)");
   command.add_option("--point-times", config.point_times,
                      "Unit of the times of points, s, ms, us or ns (default: as found)");
 }
@@ -102,6 +106,7 @@ RecordingConfig recording_config(RecordingConfig config, const RecordingConfig& 
   if (!options.wheel.empty()) config.wheel = options.wheel;
   if (!options.imu.empty()) config.imu = options.imu;
   if (!options.imu_mount.empty()) config.imu_mount = options.imu_mount;
+  if (!options.tf.empty()) config.tf = options.tf;
   if (!options.truth.empty()) config.truth = options.truth;
   if (!options.point_times.empty()) config.point_times = options.point_times;
   config.namespaces |= options.namespaces;

@@ -15,7 +15,7 @@
 
 namespace adit::app {
 
-/// The options --mount, --points, --wheel, --imu, --imu-mount and --point-times of a command that opens
+/// The options --mount, --points, --wheel, --imu, --imu-mount, --tf and --point-times of a command that opens
 /// recordings.
 void add_recording_options(const Command& command, RecordingConfig& config);
 /// --truth TOPIC, where --truth is no file.

@@ -74,6 +74,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   if (extension() == "mcap" || extension() == "bag" || extension() == "db3") {
     read_as_recording(path, {});
     read_as_recording(path, {.mount = "0,0,1", .wheel = "/twist"});
+    const adit::JointDriveConfig drive{
+        .left = "left_wheel", .right = "right_wheel", .wheel_radius = 0.1, .track_width = 0.5};
+    read_as_recording(path, {.wheel = "/joint_states", .drive = drive});
   }
   if (extension() == "csv" || extension() == "tum") static_cast<void>(adit::read_trajectory(path));
   return 0;

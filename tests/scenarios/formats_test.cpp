@@ -165,6 +165,27 @@ TEST(Info, SaysWhereTheLidarSitsAndHowThatIsKnown) {
             std::string::npos);
 }
 
+// tests/fuzz/make_seeds.py: wheels of radius 0.1 m that turn by 3.0 and 3.6 radians.
+TEST(Info, OfWheelsThatAreRecordedAsJoints) {
+  for (const std::string ending : {"mcap", "db3", "bag"}) {
+    const std::string bag = std::string(ADIT_CONFORMANCE) + "/../fuzz/seeds/joints." + ending;
+    const std::string drive =
+        " --wheel /joint_states --set recording.drive.left=left_wheel --set recording.drive.right=right_wheel"
+        " --set recording.drive.wheel_radius=0.1 --set recording.drive.track_width=0.5";
+    EXPECT_NE(info_of(bag).find("\"joints\":[\"left_wheel\",\"right_wheel\"]"), std::string::npos) << ending;
+    const std::string info = info_of(bag + drive);
+    EXPECT_NE(info.find("\"path_length_m\":0.3299"), std::string::npos) << info;
+    EXPECT_NE(info.find("mount_from: /tf: base_link -> lidar, which moves"), std::string::npos) << info;
+    EXPECT_NE(info.find("next: adit doctor "), std::string::npos) << info;
+    EXPECT_NE(info.find("joints." + ending + drive + "\n"), std::string::npos) << info;
+    const test::ProgramRun incomplete =
+        test::run_adit("odometry " + bag + " --wheel /joint_states --out x.tum");
+    EXPECT_EQ(incomplete.exit_code, 1);
+    EXPECT_NE(incomplete.err.find("its joints are left_wheel, right_wheel"), std::string::npos)
+        << incomplete.err;
+  }
+}
+
 TEST(Info, OfSharedFiles) {
   ADIT_NEED_DATA("recordings/mcap_small/wbag_0.mcap");
   const test::ProgramRun mcap =

@@ -57,6 +57,7 @@ class ForeignFile {
     schema(3, ros::kTransforms);
     schema(4, ros::kImu);
     schema(5, ros::kTwist);
+    schema(6, ros::kJointState);
   }
   /// Three clouds in the frame `frame`, recorded 5 ms after the scans' own stamps.
   ForeignFile& clouds(const std::string& topic, const std::string& frame = "os_lidar") {
@@ -98,8 +99,30 @@ class ForeignFile {
     }
     return *this;
   }
-  ForeignFile& links(const std::vector<ros::TransformMessage>& transforms) {
-    message(channel(3, "/tf_static"), make_scan(0, 0).stamp, ros::encode_transforms(transforms));
+  /// A cloud as it stands, recorded some time after its stamp.
+  ForeignFile& cloud_messages(const std::string& topic,
+                              const std::vector<std::pair<Stamp, std::string>>& clouds,
+                              Duration recorded_after) {
+    const std::uint16_t id = channel(1, topic);
+    for (const auto& [stamp, cloud] : clouds) message(id, stamp + recorded_after, cloud);
+    return *this;
+  }
+  ForeignFile& joints(const std::string& topic, const std::vector<ros::JointStateMessage>& messages) {
+    const std::uint16_t id = channel(6, topic);
+    for (const ros::JointStateMessage& joints : messages) message(id, joints.stamp, encoded(joints));
+    return *this;
+  }
+  ForeignFile& links(const std::vector<ros::TransformMessage>& transforms,
+                     const std::string& topic = "/tf_static") {
+    message(channel(3, topic), make_scan(0, 0).stamp, ros::encode_transforms(transforms));
+    return *this;
+  }
+  /// Each link in a message of its own, recorded at its stamp.
+  ForeignFile& moving_links(const std::vector<ros::TransformMessage>& transforms,
+                            const std::string& topic = "/tf") {
+    const std::uint16_t id = channel(3, topic);
+    for (const ros::TransformMessage& link : transforms)
+      message(id, link.pose.stamp, ros::encode_transforms({link}));
     return *this;
   }
   [[nodiscard]] std::string bytes() const { return plain_file(records_); }
@@ -108,6 +131,20 @@ class ForeignFile {
   }
 
  private:
+  /// As sensor_msgs/msg/JointState defines it.
+  static std::string encoded(const ros::JointStateMessage& joints) {
+    CdrWriter writer;
+    writer.number(static_cast<std::int32_t>(joints.stamp.ns / 1'000'000'000))
+        .number(static_cast<std::uint32_t>(joints.stamp.ns % 1'000'000'000))
+        .text("")
+        .number(static_cast<std::uint32_t>(joints.names.size()));
+    for (const std::string& name : joints.names) writer.text(name);
+    for (const std::vector<double>& values : {joints.positions, joints.velocities, std::vector<double>()}) {
+      writer.number(static_cast<std::uint32_t>(values.size()));
+      for (const double value : values) writer.number(value);
+    }
+    return writer.take();
+  }
   void schema(std::uint16_t id, std::string_view type) {
     records_.push_back(mcap::framed(mcap::Opcode::schema,
                                     mcap::encode(mcap::Schema{id, std::string(type), "ros2msg", "..."})));

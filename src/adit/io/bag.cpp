@@ -23,6 +23,8 @@ Bag bag_of(const std::shared_ptr<const mcap::Reader>& reader) {
   const mcap::Contents& contents = reader->contents();
   Bag bag;
   bag.storage = "mcap";
+  bag.profile = contents.header.profile;
+  bag.num_chunks = contents.chunks.size();
   bag.own = own_metadata(contents);
   if (!contents.torn.empty())
     bag.warnings.push_back(
@@ -56,9 +58,25 @@ std::size_t topic_index(std::vector<BagTopic>& topics, const BagTopic& topic) {
 }
 
 Result<Bag> open_mcap_bag(ByteSource source) {
-  return mcap::Reader::open(std::move(source)).map([](mcap::Reader reader) {
-    return bag_of(std::make_shared<const mcap::Reader>(std::move(reader)));
+  const std::uint64_t num_bytes = source.size;
+  return mcap::Reader::open(std::move(source)).map([&](mcap::Reader reader) {
+    Bag bag = bag_of(std::make_shared<const mcap::Reader>(std::move(reader)));
+    bag.num_bytes = num_bytes;
+    return bag;
   });
+}
+
+Bag beginning_of(Bag bag, double seconds) {
+  if (bag.messages.empty()) return bag;
+  constexpr std::size_t kOfEach = 3;  // a sensor may begin late
+  const Stamp first = bag.messages.front().log_time;
+  std::vector<std::size_t> num_kept(bag.topics.size());
+  std::erase_if(bag.messages, [&](const BagMessage& message) {
+    const bool is_early = to_seconds(message.log_time - first) <= seconds;
+    return !is_early && num_kept[message.topic]++ >= kOfEach &&
+           !bag.topics[message.topic].name.ends_with("_static");
+  });
+  return bag;
 }
 
 Bag joined(std::vector<Bag> parts) {
@@ -71,10 +89,13 @@ Bag joined(std::vector<Bag> parts) {
   Bag all;
   all.storage = parts.front().storage;
   all.num_files = parts.size();
+  all.profile = parts.front().profile;
   auto places = std::make_shared<std::vector<Place>>();
   auto readers = std::make_shared<std::vector<std::function<Result<std::string>(const BagMessage&)>>>();
   for (std::size_t p = 0; p < parts.size(); ++p) {
     Bag& part = parts[p];
+    all.num_bytes += part.num_bytes;
+    all.num_chunks += part.num_chunks;
     if (!all.own) all.own = std::move(part.own);
     std::ranges::move(part.warnings, std::back_inserter(all.warnings));
     readers->push_back(std::move(part.read));

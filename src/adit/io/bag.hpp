@@ -34,6 +34,9 @@ struct BagMessage {
 struct Bag {
   std::string storage;  ///< "mcap", "sqlite3" or "ros1"
   std::size_t num_files = 1;
+  std::uint64_t num_bytes = 0;       ///< Of the files.
+  std::string profile;               ///< Of MCAP: "ros2"; else "".
+  std::size_t num_chunks = 0;        ///< Of MCAP.
   std::vector<BagTopic> topics;      ///< No two of one name and type.
   std::vector<BagMessage> messages;  ///< By log time; equal times in the order of the file.
   /// What adit said of its own recording (mcap_output.hpp); nothing in files of others.
@@ -70,6 +73,10 @@ template <class Decode>
 
 /// Whether `folder` is a bag folder: it has the metadata.yaml of rosbag2, or no files of clouds but of bags.
 [[nodiscard]] bool is_bag_folder(const std::filesystem::path& folder);
+
+/// The messages of the first so many seconds, the first three of each topic, and all of topics whose name
+/// ends in "_static".
+[[nodiscard]] Bag beginning_of(Bag bag, double seconds);
 
 /// Several files of one recording as one bag; messages of all are put in order. `parts`: at least one.
 [[nodiscard]] Bag joined(std::vector<Bag> parts);

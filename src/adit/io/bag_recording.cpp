@@ -7,129 +7,41 @@
 #include <optional>
 
 #include "adit/core/format.hpp"
+#include "adit/io/bag_pass.hpp"
 #include "adit/io/bag_topics.hpp"
-#include "adit/io/frame_tree.hpp"
+#include "adit/io/frame_tracks.hpp"
 #include "adit/io/imu_topic.hpp"
+#include "adit/io/joint_odometry.hpp"
+#include "adit/io/moving_lidar.hpp"
 #include "adit/io/ros_messages.hpp"
 #include "adit/io/text.hpp"
-#include "adit/io/tum.hpp"
-#include "adit/robot/wheel_covariance.hpp"
+#include "adit/io/wheel_topic.hpp"
 
 namespace adit {
 namespace {
 
-std::vector<BagMessage> messages_of(const Bag& bag, const TopicIndices& topics) {
-  std::vector<BagMessage> messages;
-  std::ranges::copy_if(bag.messages, std::back_inserter(messages), [&](const BagMessage& message) {
+/// The first message of these topics, if there is one.
+std::optional<BagMessage> first_of(const Bag& bag, const TopicIndices& topics) {
+  const auto first = std::ranges::find_if(bag.messages, [&](const BagMessage& message) {
     return std::ranges::find(topics, message.topic) != topics.end();
   });
-  return messages;
+  return first == bag.messages.end() ? std::nullopt : std::optional(*first);
 }
 
-struct PoseTrack {
-  Trajectory poses;
-  std::string child;  ///< Frame of the body.
-  WheelCovariance covariance = {};
-  std::string warning = {};
-};
-
-/// Keeps the first covariances, or the first that cannot be.
-void take_covariance(WheelCovariance& kept, const WheelCovariance& stated, bool is_first) {
-  if (is_first ||
-      (fault_of_pose_covariance(kept.pose).empty() && !fault_of_pose_covariance(stated.pose).empty()))
-    kept.pose = stated.pose;
-  if (is_first ||
-      (fault_of_twist_covariance(kept.twist).empty() && !fault_of_twist_covariance(stated.twist).empty()))
-    kept.twist = stated.twist;
-}
-
-Result<> check_after(Stamp stamp, const Trajectory& before, const std::string& place) {
-  if (before.empty() || stamp > before.back().stamp) return {};
-  return fail(format("{}: stamp {} is not after {}, that of the one before", place, stamp_text(stamp),
-                     stamp_text(before.back().stamp)));
-}
-
-Result<PoseTrack> read_poses(const Bag& bag, const TopicIndices& topics) {
-  PoseTrack track;
-  for (const BagMessage& message : messages_of(bag, topics)) {
-    const Result<ros::OdometryMessage> pose = decoded(bag, message, ros::decode_odometry);
-    const std::string place = format("{}, message {}", names_of(bag, topics), track.poses.size());
-    if (!pose) return fail(place, pose.error());
-    if (Result<> after = check_after(pose->pose.stamp, track.poses, place); !after)
-      return tl::unexpected(after.error());
-    take_covariance(track.covariance, pose->covariance, track.poses.empty());
-    track.poses.push_back(pose->pose);
-    track.child = pose->child;
-  }
-  return track;
-}
-
-/// Adds up twists: between two of them their mean. A gap is driven through as if that held.
-Result<PoseTrack> read_twists(const Bag& bag, const TopicIndices& topics) {
-  constexpr double kLongestGap = 0.5;  // seconds
-  constexpr double kFastest = 1000.0;  // m/s, rad/s: beyond it a message is damaged
-  PoseTrack track;
-  Vector6 last = Vector6::Zero();
-  double longest = 0.0;
-  for (const BagMessage& message : messages_of(bag, topics)) {
-    const Result<ros::TwistMessage> twist = decoded(bag, message, ros::decode_twist);
-    const std::string place = format("{}, message {}", names_of(bag, topics), track.poses.size());
-    if (!twist) return fail(place, twist.error());
-    if (!(twist->twist.cwiseAbs().maxCoeff() < kFastest))
-      return fail(format("{}: no robot is faster than {} m/s or rad/s", place, kFastest));
-    if (Result<> after = check_after(twist->stamp, track.poses, place); !after)
-      return tl::unexpected(after.error());
-    Pose T_odom_body;
-    if (!track.poses.empty()) {
-      const StampedPose& before = track.poses.back();
-      const double dt = to_seconds(twist->stamp - before.stamp);
-      longest = std::max(longest, dt);
-      T_odom_body = before.T_world_body * Pose::exp(0.5 * dt * (last + twist->twist));
-    }
-    track.poses.push_back({twist->stamp, T_odom_body});
-    track.child = twist->frame;
-    last = twist->twist;
-  }
-  if (longest > kLongestGap) {
-    track.warning = format("{}: a gap of {:.1f} s was driven through at the mean of the twists around it",
-                           names_of(bag, topics), longest);
-  }
-  return track;
-}
-
-/// adit's own files are logged at the scan's stamp; others when a scan arrived, so each message must be
-/// looked into.
-Result<std::vector<Stamp>> read_stamps(const Bag& bag, const std::vector<BagMessage>& scans) {
-  std::vector<Stamp> stamps;
-  for (const BagMessage& scan : scans) {
-    const Result<Stamp> stamp = bag.own ? scan.log_time : decoded(bag, scan, ros::decode_stamp);
-    if (!stamp) return fail(format("scan {}", stamps.size()), stamp.error());
-    stamps.push_back(*stamp);
-  }
-  return stamps;
-}
-
-Result<FrameTree> read_frames(const Bag& bag, const BagTopics& topics) {
-  FrameTree tree;
-  for (const BagMessage& message : messages_of(bag, topics.transforms)) {
-    const auto transforms = decoded(bag, message, ros::decode_transforms);
-    if (!transforms) return fail(bag.topics[message.topic].name, transforms.error());
-    for (const ros::TransformMessage& link : *transforms)
-      tree.add(link.frame, link.child, link.pose.T_world_body);
-  }
-  return tree;
-}
-
-/// The robot's frame as topics of wheel odometry name it that are not used; "" where they differ.
+/// The robot's frame as the first messages of wheels name it; "" where they differ, or do not.
 Result<std::string> body_frame(const Bag& bag, const TopicIndices& topics) {
   std::string body;
   for (const std::size_t topic : topics) {
-    const std::vector<BagMessage> messages = messages_of(bag, {topic});
-    if (messages.empty()) continue;
-    const Result<ros::OdometryMessage> first = decoded(bag, messages.front(), ros::decode_odometry);
-    if (!first) return fail(format("{}, message 0", bag.topics[topic].name), first.error());
-    if (!body.empty() && FrameTree::bare(body) != FrameTree::bare(first->child)) return std::string();
-    body = first->child;
+    const std::optional<BagMessage> first = first_of(bag, {topic});
+    if (!first || bag.topics[topic].type == ros::kJointState) continue;
+    const auto frame = [&]() -> Result<std::string> {
+      if (bag.topics[topic].type == ros::kTwist)
+        return decoded(bag, *first, ros::decode_header).map([](auto&& header) { return header.frame; });
+      return decoded(bag, *first, ros::decode_odometry).map([](auto&& odometry) { return odometry.child; });
+    }();
+    if (!frame) return fail(format("{}, message 0", bag.topics[topic].name), frame.error());
+    if (!body.empty() && FrameTree::bare(body) != FrameTree::bare(*frame)) return std::string();
+    body = *frame;
   }
   return body;
 }
@@ -141,8 +53,44 @@ struct FrameNames {
   std::string imu;
 };
 
-/// The mount as /tf_static has it; unknown is an error, never the identity.
-Result<> take_linked_mount(Recording& recording, const FrameTree& tree, FrameNames names) {
+/// What is read of all messages, in one pass.
+struct Tracks {
+  std::vector<BagMessage> scans;
+  std::vector<Stamp> stamps;
+  PoseTrack wheel;
+  PoseTrack truth;
+  ImuTrack imu;
+  FrameTracks frames{"", {}};
+};
+
+/// "/tf_static: base_link -> os_lidar"
+std::string source_of(const FrameTracks& frames, const FrameTree::Chain& chain) {
+  return format("{}: {}", frames.are_static(chain.frames) ? "/tf_static" : "/tf",
+                fmt::join(chain.frames, " -> "));
+}
+
+/// Leaves the scans at whose time the pose of the LiDAR is known.
+void leave_scans_with_pose(Recording& recording, Tracks& tracks, const MovingPose& T_base_lidar) {
+  std::vector<BagMessage> scans;
+  std::vector<Stamp> stamps;
+  for (std::size_t i = 0; i < tracks.stamps.size(); ++i) {
+    if (!T_base_lidar.at(tracks.stamps[i])) continue;
+    scans.push_back(tracks.scans[i]);
+    stamps.push_back(tracks.stamps[i]);
+  }
+  const std::size_t num_lost = tracks.stamps.size() - stamps.size();
+  if (num_lost > 0)
+    recording.warnings.push_back(format(
+        "{} of {} scans are left out, as /tf does not say where the LiDAR was then ({}); --mount takes it "
+        "for fixed",
+        num_lost, tracks.stamps.size(), recording.mount_source));
+  tracks.scans = std::move(scans);
+  tracks.stamps = std::move(stamps);
+}
+
+/// The mount as the links have it, or how it moves; unknown is an error, never the identity.
+Result<std::optional<MovingPose>> take_linked_mount(Recording& recording, Tracks& tracks, FrameNames names) {
+  const FrameTree& tree = tracks.frames.tree();
   if (names.base.empty()) names.base = tree.body_of(names.lidar);
   if (names.base.empty()) {
     return fail(
@@ -151,29 +99,48 @@ Result<> take_linked_mount(Recording& recording, const FrameTree& tree, FrameNam
   }
   const Result<FrameTree::Chain> chain = tree.between(names.base, names.lidar);
   if (!chain) {
-    return fail(format("/tf_static does not say where the LiDAR sits on the robot: {}; {}",
-                       chain.error().message, kMountRemedy));
+    return fail(
+        format("/tf_static does not say where the LiDAR sits on the robot: {} (frames that it links: {}); {}",
+               chain.error().message, fmt::join(tree.frames(), ", "), kMountRemedy));
   }
   recording.T_base_lidar = chain->T_a_b;
   recording.mount_source = chain->frames.size() == 1
                                ? "the wheel odometry is of the LiDAR's own frame " + chain->frames.front()
-                               : format("/tf_static: {}", fmt::join(chain->frames, " -> "));
-  return {};
+                               : source_of(tracks.frames, *chain);
+  MovingPose T_base_lidar = tracks.frames.along(chain->frames);
+  if (!T_base_lidar.moves()) return std::optional<MovingPose>();
+  leave_scans_with_pose(recording, tracks, T_base_lidar);
+  if (tracks.stamps.empty())
+    return fail(
+        format("the LiDAR moves on the robot ({}), and /tf never says where it was at a scan's time: "
+               "look at the clocks with adit info, or {}",
+               recording.mount_source, kMountRemedy));
+  recording.T_base_lidar = *T_base_lidar.at(tracks.stamps.front());
+  recording.mount_source += ", which moves; scans are given as from the place of the first";
+  return std::optional(std::move(T_base_lidar));
 }
 
-/// The IMU's mount as /tf_static has it, from the robot or, where the user gave the LiDAR's mount, from the
+/// The IMU's mount as the links have it, from the robot or, where the user gave the LiDAR's mount, from the
 /// LiDAR. Unknown, it is taken for the LiDAR's.
-void take_linked_imu_mount(Recording& recording, const FrameTree& tree, const FrameNames& names) {
+void take_linked_imu_mount(Recording& recording, const FrameTracks& frames, const FrameNames& names) {
+  const FrameTree& tree = frames.tree();
   const std::string base = names.base.empty() ? tree.body_of(names.lidar) : names.base;
   const bool is_linked = recording.mount_source != kMountGiven && !base.empty();
   const std::string& from = is_linked || FrameTree::bare(names.imu) == base ? base : names.lidar;
   const Result<FrameTree::Chain> chain = tree.between(from, names.imu);
   recording.T_base_imu = recording.T_base_lidar;
+  if (chain && frames.along(chain->frames).moves()) {
+    recording.imu.clear();
+    recording.assumptions.push_back(
+        format("imu: it is left out, as it moves on the robot ({}); if it does not, give --imu-mount",
+               source_of(frames, *chain)));
+    return;
+  }
   if (chain) {
     recording.T_base_imu = from == base ? chain->T_a_b : recording.T_base_lidar * chain->T_a_b;
     recording.imu_mount_source = chain->frames.size() == 1
                                      ? "the IMU is in the frame " + chain->frames.front()
-                                     : format("/tf_static: {}", fmt::join(chain->frames, " -> "));
+                                     : source_of(frames, *chain);
     return;
   }
   recording.imu_mount_source = "assumed";
@@ -182,25 +149,26 @@ void take_linked_imu_mount(Recording& recording, const FrameTree& tree, const Fr
              kImuMountAssumption, from, FrameTree::bare(names.imu), kImuMountRemedy));
 }
 
-/// The mounts of the LiDAR and of the IMU, if there is one.
-Result<> take_mounts(Recording& recording, const FrameTree& tree, const FrameNames& names,
-                     const RecordingConfig& config) {
+/// The mounts of the LiDAR and of the IMU, if there is one. Returns how the LiDAR moves, if it does.
+Result<std::optional<MovingPose>> take_mounts(Recording& recording, Tracks& tracks, const FrameNames& names,
+                                              const RecordingConfig& config) {
   const Result<std::optional<Pose>> lidar = mount_of(config);
   if (!lidar) return tl::unexpected(lidar.error());
   const Result<std::optional<Pose>> imu = imu_mount_of(config);
   if (!imu) return tl::unexpected(imu.error());
+  Result<std::optional<MovingPose>> moving = std::optional<MovingPose>();
   if (*lidar) {
     set_mount(recording, **lidar);
-  } else if (Result<> linked = take_linked_mount(recording, tree, names); !linked) {
-    return linked;
+  } else {
+    moving = take_linked_mount(recording, tracks, names);
   }
-  if (recording.imu.empty()) return {};
+  if (!moving || recording.imu.empty()) return moving;
   if (*imu) {
     set_imu_mount(recording, **imu);
   } else {
-    take_linked_imu_mount(recording, tree, names);
+    take_linked_imu_mount(recording, tracks.frames, names);
   }
-  return {};
+  return moving;
 }
 
 Result<ros::CloudMessage> read_cloud_message(const Bag& bag, const BagMessage& message,
@@ -235,16 +203,29 @@ void take_metadata(Recording& recording, const Bag& bag, const std::string& topi
   recording.assumptions = lines_of(assumed);
 }
 
-std::function<Result<Scan>(std::size_t)> scan_reader(std::shared_ptr<const Bag> bag,
-                                                     std::vector<BagMessage> scans, std::vector<Stamp> stamps,
-                                                     std::optional<TimeUnit> time_unit) {
-  return [bag = std::move(bag), scans = std::move(scans), stamps = std::move(stamps),
-          time_unit](std::size_t i) -> Result<Scan> {
+/// How the messages of clouds become scans.
+struct ScanReading {
+  std::shared_ptr<const Bag> bag;
+  std::optional<TimeUnit> time_unit;
+  bool stamp_at_end = false;
+  std::optional<MovingPose> T_base_moving;  ///< Of a LiDAR that moves on the robot.
+  Pose T_base_lidar;
+};
+
+std::function<Result<Scan>(std::size_t)> scan_reader(ScanReading reading, std::vector<BagMessage> scans,
+                                                     std::vector<Stamp> stamps) {
+  return [reading = std::move(reading), scans = std::move(scans),
+          stamps = std::move(stamps)](std::size_t i) -> Result<Scan> {
     ADIT_CHECK(i < scans.size(), "no scan of that index");
-    Result<ros::CloudMessage> message = read_cloud_message(*bag, scans[i], time_unit);
+    Result<ros::CloudMessage> message = read_cloud_message(*reading.bag, scans[i], reading.time_unit);
     if (!message) return fail(format("scan {}", i), message.error());
-    if (message->scan.stamp != stamps[i]) return fail(format("scan {}: its stamp differs from the index", i));
-    return std::move(message->scan);
+    Scan& scan = message->scan;
+    if (scan.stamp != stamps[i]) return fail(format("scan {}: its stamp differs from the index", i));
+    if (reading.stamp_at_end) {
+      if (Result<> moved = put_stamp_at_end(scan); !moved) return fail(format("scan {}", i), moved.error());
+    }
+    if (reading.T_base_moving) hold_still(scan, *reading.T_base_moving, reading.T_base_lidar);
+    return std::move(scan);
   };
 }
 
@@ -257,79 +238,182 @@ void note_point_times(Recording& recording, const ros::CloudMessage& first) {
     recording.assumptions.push_back(point_times_note(*first.time_unit));
 }
 
-/// What nobody has asked for and may be wheels.
-void note_twists(Recording& recording, const Bag& bag, const BagTopics& topics,
-                 const RecordingConfig& config) {
-  if (!topics.wheel.empty() || topics.twists.empty() || config.wheel == kNoWheel) return;
-  recording.warnings.push_back(
-      format("wheels: none; if the wheels have measured {} (TwistStamped), and it is no command, give "
-             "--wheel {}",
-             names_of(bag, topics.twists), bag.topics[topics.twists.front()].name));
+/// The latest time of a point, seconds after the stamp; none where times do not count from the stamp.
+std::optional<double> sweep_after_stamp(const Scan& scan) {
+  constexpr double kShortest = 0.01;  // seconds; less is within the jitter of clocks
+  if (!scan.cloud.has_times()) return std::nullopt;
+  const auto [earliest, latest] = std::ranges::minmax(scan.cloud.time_offsets_ns);
+  const double sweep = to_seconds(Duration(latest));
+  return earliest >= 0 && sweep >= kShortest ? std::optional(sweep) : std::nullopt;
 }
 
-/// Stamps, wheels, ground truth and IMU.
-struct Tracks {
-  std::vector<Stamp> scans;
-  PoseTrack wheel;
-  PoseTrack truth;
-  ImuTrack imu;
-};
-
-/// Without wheels (`kNoWheel`) only the frame that they are of.
-Result<PoseTrack> read_wheels(const Bag& bag, const BagTopics& topics, const RecordingConfig& config) {
-  if (config.wheel != kNoWheel) {
-    const bool is_twist = !topics.wheel.empty() && bag.topics[topics.wheel.front()].type == ros::kTwist;
-    return is_twist ? read_twists(bag, topics.wheel) : read_poses(bag, topics.wheel);
+/// Whether sweeps were recorded before they could have ended, did their times count from the stamp; looked at
+/// in the first, the middle and the last scan. The time of recording has to lie within the sweep, as clocks
+/// may differ, and behind the stamp, which programs that convert recordings write as the time of recording.
+bool is_stamped_at_end(const Bag& bag, const Tracks& tracks, std::optional<TimeUnit> time_unit) {
+  for (const std::size_t i : {std::size_t{0}, tracks.scans.size() / 2, tracks.scans.size() - 1}) {
+    const Result<ros::CloudMessage> message = read_cloud_message(bag, tracks.scans[i], time_unit);
+    if (!message) return false;
+    const std::optional<double> sweep = sweep_after_stamp(message->scan);
+    const double recorded_after = to_seconds(tracks.scans[i].log_time - message->scan.stamp);
+    if (!sweep || recorded_after <= 0.0 || recorded_after > 0.5 * *sweep) return false;
   }
-  return body_frame(bag, topics.wheel).map([](std::string&& child) {
-    return PoseTrack{{}, std::move(child)};
+  return true;
+}
+
+/// What the configuration says or, without a word, the recording shows.
+bool stamp_at_end(Recording& recording, const Bag& bag, const Tracks& tracks,
+                  std::optional<TimeUnit> time_unit, const RecordingConfig& config) {
+  if (config.stamp_at != "auto" || bag.own) return config.stamp_at == "end";
+  const bool at_end = is_stamped_at_end(bag, tracks, time_unit);
+  if (at_end)
+    recording.assumptions.emplace_back(
+        "point times: they count from the start of the sweep and the stamp is of its end, as scans were "
+        "recorded before they could have ended otherwise; if that is wrong, --set recording.stamp_at=start");
+  return at_end;
+}
+
+/// What nobody has asked for and may be wheels.
+void note_other_wheels(Recording& recording, const Bag& bag, const BagTopics& topics,
+                       const RecordingConfig& config) {
+  if (!topics.wheel.empty() || config.wheel == kNoWheel) return;
+  if (!topics.twists.empty())
+    recording.warnings.push_back(
+        format("wheels: none; if the wheels have measured {} (TwistStamped), and it is no command, give "
+               "--wheel {}",
+               names_of(bag, topics.twists), bag.topics[topics.twists.front()].name));
+  for (const std::size_t topic : topics.joints) {
+    const std::vector<std::string> joints = first_joints(bag, topic);
+    recording.warnings.push_back(
+        format("wheels: none; if {} has the wheels' joints (there are: {}), give --wheel {} {}",
+               bag.topics[topic].name, joints_text(joints), bag.topics[topic].name, drive_options(joints)));
+  }
+}
+
+Result<FrameNames> frame_names(const Bag& bag, const BagTopics& topics, const std::string& lidar) {
+  FrameNames names{{}, lidar, {}};
+  if (const std::optional<BagMessage> imu = first_of(bag, topics.imu)) {
+    const auto header = decoded(bag, *imu, ros::decode_header);
+    if (!header) return fail("IMU, message 0", header.error());
+    names.imu = header->frame;
+  }
+  return body_frame(bag, topics.wheel).map([&](std::string&& base) {
+    names.base = std::move(base);
+    return std::move(names);
   });
 }
 
-Result<Tracks> read_tracks(const Bag& bag, const BagTopics& topics, const RecordingConfig& config) {
-  Result<PoseTrack> wheel = read_wheels(bag, topics, config);
+/// Adds the links of some topics. Static ones go first, wherever they stand.
+BagPass::Visit into(const Bag& bag, FrameTracks& frames,
+                    void (FrameTracks::*add)(const std::vector<ros::TransformMessage>&)) {
+  return [&bag, &frames, add](const BagMessage& message) -> Result<> {
+    const auto links = decoded(bag, message, ros::decode_transforms);
+    if (!links) return fail(bag.topics[message.topic].name, links.error());
+    (frames.*add)(*links);
+    return {};
+  };
+}
+
+/// A reader of at most one topic, which takes part in the pass.
+Result<std::unique_ptr<PoseReader>> reader_in(BagPass& pass, const Bag& bag, const TopicIndices& topics,
+                                              const JointDriveConfig& drive) {
+  if (topics.empty()) return std::unique_ptr<PoseReader>();
+  Result<std::unique_ptr<PoseReader>> reader = pose_reader(bag, topics.front(), drive);
+  if (reader)
+    pass.add(topics, [reader = reader->get()](const BagMessage& message) { return reader->add(message); });
+  return reader;
+}
+
+Result<PoseTrack> finished(const std::unique_ptr<PoseReader>& reader) {
+  return reader ? reader->finish() : PoseTrack();
+}
+
+/// adit's own files are logged at the scan's stamp; others when a scan arrived, so each message must be
+/// looked into.
+BagPass::Visit stamps_into(const Bag& bag, Tracks& tracks) {
+  return [&bag, &tracks](const BagMessage& scan) -> Result<> {
+    const Result<Stamp> stamp = bag.own ? scan.log_time : decoded(bag, scan, ros::decode_stamp);
+    if (!stamp) return fail(format("scan {}", tracks.stamps.size()), stamp.error());
+    tracks.scans.push_back(scan);
+    tracks.stamps.push_back(*stamp);
+    return {};
+  };
+}
+
+Result<Tracks> read_tracks(const Bag& bag, const BagTopics& topics, const RecordingConfig& config,
+                           const FrameNames& names) {
+  Tracks tracks;
+  tracks.frames = FrameTracks(names.base, {names.lidar, names.imu});
+  BagPass first_pass(bag);
+  first_pass.add(topics.static_transforms, into(bag, tracks.frames, &FrameTracks::add_static));
+  if (Result<> read = first_pass.run(bag); !read) return tl::unexpected(read.error());
+  BagPass pass(bag);
+  if (config.mount.empty() || config.imu_mount.empty())
+    pass.add(topics.transforms, into(bag, tracks.frames, &FrameTracks::add));
+  pass.add(topics.points, stamps_into(bag, tracks));
+  ImuReader imu(bag);
+  pass.add(topics.imu, [&](const BagMessage& message) { return imu.add(message); });
+  const bool has_wheels = config.wheel != kNoWheel;
+  const auto wheel = reader_in(pass, bag, has_wheels ? topics.wheel : TopicIndices(), config.drive);
   if (!wheel) return tl::unexpected(wheel.error());
-  Result<PoseTrack> truth = read_poses(bag, topics.truth);
+  const auto truth = reader_in(pass, bag, topics.truth, {});
   if (!truth) return tl::unexpected(truth.error());
-  Result<ImuTrack> imu = read_imu(bag, messages_of(bag, topics.imu));
-  if (!imu) return tl::unexpected(imu.error());
-  return read_stamps(bag, messages_of(bag, topics.points)).map([&](std::vector<Stamp> stamps) {
-    return Tracks{std::move(stamps), std::move(*wheel), std::move(*truth), std::move(*imu)};
+  if (Result<> read = pass.run(bag); !read) return tl::unexpected(read.error());
+  Result<PoseTrack> wheels = finished(*wheel);
+  if (!wheels) return tl::unexpected(wheels.error());
+  tracks.wheel = std::move(*wheels);
+  tracks.imu = imu.finish();
+  return finished(*truth).map([&](PoseTrack poses) {
+    tracks.truth = std::move(poses);
+    return std::move(tracks);
   });
+}
+
+/// All that does not need the mounts.
+Recording recording_of(Tracks& tracks, const Bag& bag, const BagTopics& topics,
+                       const RecordingConfig& config) {
+  Recording recording;
+  take_metadata(recording, bag, names_of(bag, topics.points));
+  if (!config.topics_under.empty())
+    recording.name = config.topics_under.substr(config.topics_under.rfind('/') + 1);
+  recording.wheel = std::move(tracks.wheel.poses);
+  recording.wheel_covariance = tracks.wheel.covariance;
+  std::ranges::copy(tracks.wheel.warnings, std::back_inserter(recording.warnings));
+  std::ranges::copy(tracks.truth.warnings, std::back_inserter(recording.warnings));
+  note_other_wheels(recording, bag, topics, config);
+  recording.truth = std::move(tracks.truth.poses);
+  recording.imu = std::move(tracks.imu.samples);
+  recording.imu_covariance = tracks.imu.covariance;
+  std::ranges::copy(tracks.imu.remarks, std::back_inserter(recording.assumptions));
+  return recording;
 }
 
 Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, RecordingConfig config) {
   while (config.topics_under.ends_with('/')) config.topics_under.pop_back();
+  if (Result<> checked = check_stamp_at(config); !checked) return tl::unexpected(checked.error());
   const Result<BagTopics> topics = choose_topics(*bag, config);
   if (!topics) return tl::unexpected(topics.error());
   const Result<std::optional<TimeUnit>> time_unit = time_unit_of(*bag, config);
   if (!time_unit) return tl::unexpected(time_unit.error());
-  Result<Tracks> tracks = read_tracks(*bag, *topics, config);
+  const std::optional<BagMessage> first_scan = first_of(*bag, topics->points);
+  if (!first_scan)
+    return fail(format("{}: no message; there are no scans to read", names_of(*bag, topics->points)));
+  const Result<ros::CloudMessage> first = read_cloud_message(*bag, *first_scan, *time_unit);
+  if (!first) return fail("scan 0", first.error());
+  const Result<FrameNames> names = frame_names(*bag, *topics, first->frame);
+  if (!names) return tl::unexpected(names.error());
+  Result<Tracks> tracks = read_tracks(*bag, *topics, config, *names);
   if (!tracks) return tl::unexpected(tracks.error());
-  Recording recording;
-  take_metadata(recording, *bag, names_of(*bag, topics->points));
-  if (!config.topics_under.empty())
-    recording.name = config.topics_under.substr(config.topics_under.rfind('/') + 1);
-  recording.scan_stamps = std::move(tracks->scans);
-  recording.wheel = std::move(tracks->wheel.poses);
-  recording.wheel_covariance = tracks->wheel.covariance;
-  if (!tracks->wheel.warning.empty()) recording.warnings.push_back(tracks->wheel.warning);
-  note_twists(recording, *bag, *topics, config);
-  recording.truth = std::move(tracks->truth.poses);
-  recording.imu = std::move(tracks->imu.samples);
-  recording.imu_covariance = tracks->imu.covariance;
-  std::ranges::copy(tracks->imu.remarks, std::back_inserter(recording.assumptions));
-  if (Result<> checked = check_fits_mcap(recording); !checked) return tl::unexpected(checked.error());
-  const std::vector<BagMessage> scans = messages_of(*bag, topics->points);
-  const Result<ros::CloudMessage> first = read_cloud_message(*bag, scans.front(), *time_unit);
-  if (!first) return tl::unexpected(first.error());
+  Recording recording = recording_of(*tracks, *bag, *topics, config);
   if (!bag->own) note_point_times(recording, *first);
-  // What the first scan has shown holds for all.
-  recording.read_scan = scan_reader(bag, scans, recording.scan_stamps, first->time_unit);
-  const Result<> mounted = read_frames(*bag, *topics).and_then([&](const FrameTree& tree) {
-    return take_mounts(recording, tree, {tracks->wheel.child, first->frame, tracks->imu.frame}, config);
-  });
-  if (!mounted) return tl::unexpected(mounted.error());
+  const Result<std::optional<MovingPose>> moving = take_mounts(recording, *tracks, *names, config);
+  if (!moving) return tl::unexpected(moving.error());
+  recording.scan_stamps = tracks->stamps;
+  if (Result<> checked = check_fits_mcap(recording); !checked) return tl::unexpected(checked.error());
+  // What the first scan has shown of the times holds for all.
+  const bool at_end = stamp_at_end(recording, *bag, *tracks, first->time_unit, config);
+  recording.read_scan = scan_reader({bag, first->time_unit, at_end, *moving, recording.T_base_lidar},
+                                    std::move(tracks->scans), std::move(tracks->stamps));
   return recording;
 }
 

@@ -31,16 +31,24 @@ bool is_under(const std::string& topic, const std::string& name) {
   return name.empty() || topic.starts_with(name + "/");
 }
 
+/// Whether that is the last part of the topic's name.
+bool is_called(const std::string& topic, std::string_view part) {
+  return std::string_view(topic).substr(topic.rfind('/') + 1) == part;  // npos + 1 = 0: the whole name
+}
+
 /// Those of the robot.
 BagTopics find_topics(const Bag& bag, const std::string& under) {
   BagTopics topics;
   for (std::size_t i = 0; i < bag.topics.size(); ++i) {
     const auto& [name, type, encoding] = bag.topics[i];
     if (encoding != "cdr" && encoding != "ros1") continue;
-    if (type == ros::kTransforms &&
-        (name == "/tf_static" || (name.ends_with("tf_static") && is_under(name, under))))
-      topics.transforms.push_back(i);
+    if (type == ros::kTransforms && (is_called(name, "tf") || is_called(name, "tf_static"))) {
+      const bool is_shared = name == "/tf" || name == "/tf_static";
+      if (is_shared || is_under(name, under))
+        (is_called(name, "tf") ? topics.transforms : topics.static_transforms).push_back(i);
+    }
     if (!is_under(name, under)) continue;
+    if (type == ros::kJointState) topics.joints.push_back(i);
     if (ros::is_cloud(type)) topics.points.push_back(i);
     if (type == ros::kTwist) topics.twists.push_back(i);
     if (type == ros::kImu) topics.imu.push_back(i);
@@ -120,12 +128,42 @@ void take_truth(const Bag& bag, BagTopics& topics, const RecordingConfig& config
   std::erase_if(topics.wheel, is_chosen);
 }
 
-/// A twist may be measured or a command, so that it counts as wheels only where people say so.
-void take_twist(const Bag& bag, BagTopics& topics, const RecordingConfig& config) {
+/// Twists may be measured or commands, and joints those of an arm, so that they count as wheels only where
+/// people say so.
+void take_wheels(const Bag& bag, BagTopics& topics, const RecordingConfig& config) {
   const std::string chosen = whole_name(config.wheel, config.topics_under);
   const auto is_chosen = [&](std::size_t topic) { return bag.topics[topic].name == chosen; };
-  std::ranges::copy_if(topics.twists, std::back_inserter(topics.wheel), is_chosen);
-  std::erase_if(topics.twists, is_chosen);
+  for (TopicIndices* others : {&topics.twists, &topics.joints}) {
+    std::ranges::copy_if(*others, std::back_inserter(topics.wheel), is_chosen);
+    std::erase_if(*others, is_chosen);
+  }
+}
+
+/// The topics of links that `config.tf` names; with a /tf goes the /tf_static beside it.
+Result<> take_transforms(const Bag& bag, BagTopics& topics, const RecordingConfig& config) {
+  if (config.tf.empty()) return {};
+  TopicIndices known;
+  for (std::size_t i = 0; i < bag.topics.size(); ++i)
+    if (bag.topics[i].type == ros::kTransforms) known.push_back(i);
+  topics.transforms.clear();
+  topics.static_transforms.clear();
+  std::string blanks = config.tf;
+  std::ranges::replace(blanks, ',', ' ');
+  for (const std::string_view word : split_words(blanks)) {
+    const std::string name = whole_name(std::string(word), config.topics_under);
+    const auto is_named = [&](std::size_t topic) { return bag.topics[topic].name == name; };
+    if (std::ranges::none_of(known, is_named))
+      return fail(format("no topic of links between frames (TFMessage) '{}'; there {}", name,
+                         known.empty() ? "is none" : "are: " + names_of(bag, known)));
+    for (const std::size_t topic : known) {
+      const std::string& other = bag.topics[topic].name;
+      if (other.ends_with("_static") && (is_named(topic) || other == name + "_static"))
+        topics.static_transforms.push_back(topic);
+      else if (is_named(topic))
+        topics.transforms.push_back(topic);
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -146,7 +184,8 @@ Result<BagTopics> choose_topics(const Bag& bag, const RecordingConfig& given) {
         config.topics_under.empty() ? "" : " under " + config.topics_under));
   if (config.imu == kNoImu) topics.imu.clear();
   take_truth(bag, topics, config);
-  take_twist(bag, topics, config);
+  take_wheels(bag, topics, config);
+  if (Result<> taken = take_transforms(bag, topics, config); !taken) return tl::unexpected(taken.error());
   const std::string imu = config.imu == kNoImu ? "" : config.imu;
   const bool has_wheels = config.wheel != kNoWheel;
   return choose_one(bag, topics.points, {"clouds", "--points", config.points, config.topics_under})
@@ -155,8 +194,10 @@ Result<BagTopics> choose_topics(const Bag& bag, const RecordingConfig& given) {
       })
       .and_then([&]() -> Result<> {
         if (!has_wheels) return {};
+        TopicIndices further = topics.twists;
+        std::ranges::copy(topics.joints, std::back_inserter(further));
         return choose_one(bag, topics.wheel,
-                          {"wheel odometry", "--wheel", config.wheel, config.topics_under, topics.twists});
+                          {"wheel odometry", "--wheel", config.wheel, config.topics_under, further});
       })
       .and_then([&] {
         return choose_one(

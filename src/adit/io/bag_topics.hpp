@@ -18,19 +18,21 @@ using TopicIndices = std::vector<std::size_t>;
 
 struct BagTopics {
   TopicIndices points;
-  TopicIndices wheel;  ///< nav_msgs/Odometry; or geometry_msgs/TwistStamped, where it was asked for by name.
+  TopicIndices wheel;  ///< nav_msgs/Odometry; or another one of wheels, where it was asked for by name.
   TopicIndices truth;
   TopicIndices imu;
-  TopicIndices transforms;
-  TopicIndices twists;  ///< TwistStamped that is not used: measured, or only commanded.
+  TopicIndices transforms;         ///< Links that may move, /tf.
+  TopicIndices static_transforms;  ///< /tf_static
+  TopicIndices twists;             ///< TwistStamped that is not used: measured, or only commanded.
+  TopicIndices joints;             ///< JointState that is not used.
 };
 
 /// Their names, apart by commas.
 [[nodiscard]] std::string names_of(const Bag& bag, const TopicIndices& topics);
 
-/// One topic of clouds, and at most one of each other kind but transforms, as bag_recording.hpp says. Fails
-/// where several fit, with the options to type, the likeliest first, and where there are no clouds or not the
-/// topic asked for.
+/// One topic of clouds, and at most one of each other kind but transforms, twists and joints, as
+/// bag_recording.hpp says. Fails where several fit, with the options to type, the likeliest first, and where
+/// there are no clouds or not the topic asked for.
 [[nodiscard]] Result<BagTopics> choose_topics(const Bag& bag, const RecordingConfig& config);
 
 /// The namespaces that have clouds, "/husky1", in alphabetical order: the first part of the topics' names in

@@ -56,10 +56,14 @@ Result<ByteSource> open_source(const std::filesystem::path& path) {
 }
 
 ByteSource memory_source(std::string bytes) {
-  const auto shared = std::make_shared<const std::string>(std::move(bytes));
+  return memory_source(std::make_shared<const std::string>(std::move(bytes)));
+}
+
+ByteSource memory_source(std::shared_ptr<const std::string> bytes) {
+  const std::uint64_t size = bytes->size();
   return {
-      shared->size(), [shared](std::uint64_t offset, std::uint64_t count) -> Result<std::string> {
-        return check_bounds(offset, count, shared->size()).map([&] { return shared->substr(offset, count); });
+      size, [bytes = std::move(bytes)](std::uint64_t offset, std::uint64_t count) -> Result<std::string> {
+        return check_bounds(offset, count, bytes->size()).map([&] { return bytes->substr(offset, count); });
       }};
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "adit/core/result.hpp"
@@ -22,5 +23,6 @@ struct ByteSource {
 /// Keeps the file open as long as a copy of the source lives.
 Result<ByteSource> open_source(const std::filesystem::path& path);
 [[nodiscard]] ByteSource memory_source(std::string bytes);
+[[nodiscard]] ByteSource memory_source(std::shared_ptr<const std::string> bytes);
 
 }  // namespace adit

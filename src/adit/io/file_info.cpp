@@ -10,13 +10,15 @@
 
 #include "adit/core/format.hpp"
 #include "adit/io/bag.hpp"
+#include "adit/io/bag_recording.hpp"
 #include "adit/io/bag_topics.hpp"
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/g2o.hpp"
+#include "adit/io/joint_odometry.hpp"
 #include "adit/io/jrl.hpp"
-#include "adit/io/mcap_reader.hpp"
 #include "adit/io/mesh_files.hpp"
 #include "adit/io/mount.hpp"
+#include "adit/io/recording_files.hpp"
 #include "adit/io/robot_map_file.hpp"
 #include "adit/io/ros_messages.hpp"
 #include "adit/io/routes_yaml.hpp"
@@ -178,6 +180,14 @@ Json findings_json(Recording recording) {
   return sentences;
 }
 
+/// `point_times_s`: from where to where the times of its points lie, about the stamp.
+void add_first_scan(Json& info, const Scan& scan) {
+  info["points_first_scan"] = scan.cloud.size();
+  if (!scan.cloud.has_times()) return;
+  const auto [earliest, latest] = std::ranges::minmax(scan.cloud.time_offsets_ns);
+  info["point_times_s"] = {seconds_between({0}, {earliest}), seconds_between({0}, {latest})};
+}
+
 Json recording_json(const Recording& recording) {
   Json info{{"kind", "recording"},
             {"name", recording.name},
@@ -189,7 +199,7 @@ Json recording_json(const Recording& recording) {
             {"scans", recording.num_scans()},
             {"first_stamp_s", stamp_text(recording.scan_stamps.front())},
             {"last_stamp_s", stamp_text(recording.scan_stamps.back())}};
-  if (const Result<Scan> scan = recording.read_scan(0)) info["points_first_scan"] = scan->cloud.size();
+  if (const Result<Scan> scan = recording.read_scan(0)) add_first_scan(info, *scan);
   if (!recording.wheel.empty()) info["wheel_odometry"] = trajectory_json(recording.wheel);
   if (!recording.imu.empty()) info["imu"] = imu_json(recording);
   info["findings"] = findings_json(recording);
@@ -218,6 +228,7 @@ std::vector<TopicTimes> times_of(const Bag& bag) {
 /// recording, or another distance from it at the end, tells of clocks that differ or were set.
 void add_contents(Json& topic, const Bag& bag, std::size_t index) {
   const std::string& type = bag.topics[index].type;
+  if (type == ros::kJointState) topic["joints"] = first_joints(bag, index);
   if (!ros::is_cloud(type) && type != ros::kOdometry && type != ros::kImu) return;
   const auto is_of_topic = [index](const BagMessage& message) { return message.topic == index; };
   const auto first = std::ranges::find_if(bag.messages, is_of_topic);
@@ -246,6 +257,7 @@ std::vector<std::string> uses_of(const Bag& bag, const RecordingConfig& config) 
   mark(chosen->truth, "truth");
   mark(chosen->imu, "imu");
   mark(chosen->transforms, "mounts");
+  mark(chosen->static_transforms, "mounts");
   return uses;
 }
 
@@ -270,29 +282,16 @@ Json topics_json(const Bag& bag, const RecordingConfig& config) {
 }
 
 /// What a bag holds, whether or not it is a recording that adit can use.
-Result<Json> bag_info(const fs::path& path, const RecordingConfig& config) {
-  return open_bag(path).map([&](const Bag& bag) {
-    return Json{{"kind", "bag"},
-                {"storage", bag.storage},
-                {"files", bag.num_files},
-                {"messages", bag.messages.size()},
-                {"topics", topics_json(bag, config)}};
-  });
-}
-
-/// Of a single MCAP file also how it is built.
-Result<Json> mcap_info(const fs::path& path, const RecordingConfig& config) {
-  const Result<ByteSource> source = open_source(path);
-  if (!source) return tl::unexpected(source.error());
-  const Result<mcap::Reader> reader = mcap::Reader::open(*source);
-  if (!reader) return fail(path.string(), reader.error());
-  return bag_info(path, config).map([&](const Json& bag) {
-    return Json{{"kind", "mcap"},
-                {"profile", reader->contents().header.profile},
-                {"chunks", reader->contents().chunks.size()},
-                {"messages", bag["messages"]},
-                {"topics", bag["topics"]}};
-  });
+Json bag_json(const Bag& bag, bool is_mcap_file, const RecordingConfig& config) {
+  Json info;
+  if (is_mcap_file) {
+    info = {{"kind", "mcap"}, {"profile", bag.profile}, {"chunks", bag.num_chunks}};
+  } else {
+    info = {{"kind", "bag"}, {"storage", bag.storage}, {"files", bag.num_files}};
+  }
+  info["messages"] = bag.messages.size();
+  info["topics"] = topics_json(bag, config);
+  return info;
 }
 
 /// What to type next, with the options that were given.
@@ -307,24 +306,49 @@ std::string next_command(const fs::path& path, const RecordingConfig& config) {
   add(" --imu ", config.imu);
   add(" --imu-mount ", config.imu_mount);
   add(" --point-times ", config.point_times);
+  add(" --tf ", config.tf);
+  JointDriveConfig drive = config.drive;
+  JointDriveConfig none;
+  const Fields defaults = fields_of(none);
+  for (std::size_t i = 0; const Field& field : fields_of(drive))
+    if (value_text(field) != value_text(defaults[i++]))
+      add(" --set recording.drive." + field.key + "=", value_text(field));
   add(" --set recording.truth=", config.truth);
   add(" --set recording.topics_under=", config.topics_under);
   if (config.stamp_at != RecordingConfig().stamp_at) add(" --set recording.stamp_at=", config.stamp_at);
   return command;
 }
 
-/// With what adit makes of it, or why it cannot use it.
-Result<Json> with_recording(Result<Json> topics, const fs::path& path, const RecordingConfig& config) {
-  return std::move(topics).map([&](Json info) {
-    const Result<Recording> recording = open_recording(path.string(), config);
-    if (recording) {
-      info.update(recording_json(*recording));
-      info["next"] = next_command(path, config);
-    } else {
-      info["not_a_recording"] = recording.error().message;
-    }
-    return info;
-  });
+/// Seconds from the first message to the last.
+double span_of(const Bag& bag) {
+  if (bag.messages.empty()) return 0.0;
+  return seconds_between(bag.messages.front().log_time, bag.messages.back().log_time);
+}
+
+/// Of a large bag the beginning, since wheels and scans lie among all the rest of it; `looked_at` then says
+/// so.
+Bag quickly_read(Bag bag, Json& info) {
+  constexpr double kQuick = 100e6;  // bytes
+  const double span = span_of(bag);
+  const double share = kQuick / static_cast<double>(std::max<std::uint64_t>(bag.num_bytes, 1));
+  if (share >= 1.0 || bag.own) return bag;
+  info["looked_at"] = format("the first {:.1f} s of {:.1f} s; adit doctor looks at all", share * span, span);
+  return beginning_of(std::move(bag), share * span);
+}
+
+/// A bag, with what adit makes of it, or why it cannot use it.
+Result<Json> bag_info(const fs::path& path, const RecordingConfig& config) {
+  Result<Bag> bag = open_bag(path);
+  if (!bag) return tl::unexpected(bag.error());
+  Json info = bag_json(*bag, lower_case(path.extension().string()) == ".mcap", config);
+  const Result<Recording> recording = read_recording(quickly_read(std::move(*bag), info), config);
+  if (recording) {
+    info.update(recording_json(*recording));
+    info["next"] = next_command(path, config);
+  } else {
+    info["not_a_recording"] = format("{}: {}", path.string(), recording.error().message);
+  }
+  return info;
 }
 
 Json georeference_json(const Georeference& map) {
@@ -362,15 +386,14 @@ Result<Json> session_info(const fs::path& path) {
 
 Result<Json> folder_info(const fs::path& path, const RecordingConfig& config) {
   if (fs::exists(path / "session.toml")) return session_info(path);
-  if (is_bag_folder(path)) return with_recording(bag_info(path, config), path, config);
+  if (is_bag_folder(path)) return bag_info(path, config);
   return open_recording(path.string(), config).map(recording_json);
 }
 
 Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
   if (fs::is_directory(path)) return folder_info(path, config);
   const std::string extension = lower_case(path.extension().string());
-  if (extension == ".mcap") return with_recording(mcap_info(path, config), path, config);
-  if (is_bag_file(path)) return with_recording(bag_info(path, config), path, config);
+  if (is_bag_file(path)) return bag_info(path, config);
   if (extension == ".pcd" || extension == ".bin") return cloud_info(path);
   if (extension == ".ply") return ply_info(path);
   if (extension == ".obj" || extension == ".stl" || extension == ".dae" || extension == ".glb")

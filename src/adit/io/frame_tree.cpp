@@ -20,7 +20,6 @@ void FrameTree::add(std::string_view frame, std::string_view child, const Pose& 
   if (bare(frame) != bare(child)) links_.insert_or_assign(bare(child), Link{bare(frame), T_frame_child});
 }
 
-/// From a frame to the last one that has no parent, or to the first that comes again.
 std::vector<std::string> FrameTree::up_to_root(const std::string& frame) const {
   std::vector<std::string> path = {frame};
   for (auto link = links_.find(frame); link != links_.end(); link = links_.find(path.back())) {

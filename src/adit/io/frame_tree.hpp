@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// The frames that /tf_static links, as a tree: the mount of a LiDAR is often several links away from the
-/// robot's body (base_link, os_sensor, os_lidar).
+/// The frames that /tf_static and /tf link, as a tree: the mount of a LiDAR is often several links away from
+/// the robot's body (base_link, os_sensor, os_lidar).
 #pragma once
 
 #include <map>
@@ -36,6 +36,9 @@ class FrameTree {
   /// else the root; "" when `frame` is in no link.
   [[nodiscard]] std::string body_of(std::string_view frame) const;
 
+  /// From a frame (bare) to the last one that has no parent, or to the first that comes again.
+  [[nodiscard]] std::vector<std::string> up_to_root(const std::string& frame) const;
+
   /// All frames in alphabetical order.
   [[nodiscard]] std::vector<std::string> frames() const;
 
@@ -44,8 +47,6 @@ class FrameTree {
     std::string parent;
     Pose T_parent_child;
   };
-  [[nodiscard]] std::vector<std::string> up_to_root(const std::string& frame) const;
-
   std::map<std::string, Link> links_;  ///< By child.
 };
 

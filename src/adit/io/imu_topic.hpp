@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "adit/core/records.hpp"
@@ -19,9 +20,31 @@ struct ImuTrack {
   std::vector<std::string> remarks;  ///< What was left out and why, a sentence each with its remedy.
 };
 
-/// Reads the messages in the order given. Samples whose stamps do not ascend or whose numbers are not finite
-/// are left out, as is an IMU that measures only rates or only accelerations; `remarks` says so. Fails when a
-/// message is damaged.
-Result<ImuTrack> read_imu(const Bag& bag, const std::vector<BagMessage>& messages);
+/// Takes the messages in their order. Samples whose stamps do not ascend or whose numbers are not finite are
+/// left out, as is an IMU that measures only rates or only accelerations; `remarks` says so.
+class ImuReader {
+ public:
+  /// `bag` must outlive it.
+  explicit ImuReader(const Bag& bag) : bag_(bag) {}
+  /// Fails when the message is damaged.
+  Result<> add(const BagMessage& message);
+  /// Once, after all messages.
+  [[nodiscard]] ImuTrack finish();
+
+ private:
+  /// Samples left out for one reason.
+  struct LeftOut {
+    std::size_t count = 0;
+    Stamp first;
+    void add(Stamp stamp);
+  };
+  void report(const LeftOut& left_out, std::string_view what);
+
+  const Bag& bag_;
+  ImuTrack track_;
+  std::size_t num_messages_ = 0;
+  LeftOut backward_;
+  LeftOut not_finite_;
+};
 
 }  // namespace adit

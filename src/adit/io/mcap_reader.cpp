@@ -3,7 +3,6 @@
 #include "adit/io/mcap_reader.hpp"
 
 #include <algorithm>
-#include <mutex>
 #include <utility>
 
 #include "adit/core/format.hpp"
@@ -290,12 +289,6 @@ Result<Contents> read_contents(const ByteSource& source, const Footer& footer) {
 
 }  // namespace
 
-struct Reader::Cache {
-  std::mutex mutex;
-  std::size_t chunk = 0;
-  std::shared_ptr<const std::string> records;
-};
-
 Result<Reader> Reader::open(ByteSource source) {
   if (Result<> start = check_start(source); !start) return tl::unexpected(start.error());
   const Result<std::optional<Footer>> footer = read_footer(source);
@@ -307,39 +300,22 @@ Result<Reader> Reader::open(ByteSource source) {
   });
 }
 
-Reader::Reader(ByteSource source, Contents contents)
-    : source_(std::move(source)), contents_(std::move(contents)), cache_(std::make_shared<Cache>()) {}
-
 Result<Message> Reader::read(const MessageRef& ref) const {
   if (!ref.chunk) {
     return read_record(source_, ref.offset).and_then([&](const FileRecord& record) {
       return decode_at<Message>(ref.offset, record.content, "message");
     });
   }
-  const auto records = chunk_records(*ref.chunk);
+  const std::uint64_t chunk_start = contents_.chunks[*ref.chunk].chunk_start;
+  const auto records = recent_->get(*ref.chunk, [&] { return read_chunk(source_, chunk_start); });
   if (!records) return tl::unexpected(records.error());
   const std::string_view bytes = **records;
   RecordCursor cursor(bytes.substr(std::min<std::uint64_t>(ref.offset, bytes.size())));
   const std::optional<RecordView> record = cursor.next();
-  const std::uint64_t chunk_start = contents_.chunks[*ref.chunk].chunk_start;
   if (!record || record->opcode != Opcode::message) {
     return fail(format("chunk at byte {}: no message at its offset {}", chunk_start, ref.offset));
   }
   return decode_at<Message>(chunk_start, record->content, "message");
-}
-
-Result<std::shared_ptr<const std::string>> Reader::chunk_records(std::size_t chunk) const {
-  {
-    const std::scoped_lock lock(cache_->mutex);
-    if (cache_->records && cache_->chunk == chunk) return cache_->records;
-  }
-  return read_chunk(source_, contents_.chunks[chunk].chunk_start).map([&](std::string records) {
-    auto shared = std::make_shared<const std::string>(std::move(records));
-    const std::scoped_lock lock(cache_->mutex);
-    cache_->chunk = chunk;
-    cache_->records = shared;
-    return shared;
-  });
 }
 
 }  // namespace adit::mcap

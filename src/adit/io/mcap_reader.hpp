@@ -7,11 +7,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "adit/core/result.hpp"
 #include "adit/io/byte_source.hpp"
 #include "adit/io/mcap_records.hpp"
+#include "adit/io/recent_chunks.hpp"
 
 namespace adit::mcap {
 
@@ -42,17 +44,16 @@ class Reader {
   static Result<Reader> open(ByteSource source);
 
   [[nodiscard]] const Contents& contents() const { return contents_; }
-  /// May be called from any thread. The chunk read last is kept, so reading in order expands each chunk once.
+  /// May be called from any thread. The chunks read last are kept, so reading in order expands each chunk
+  /// once.
   [[nodiscard]] Result<Message> read(const MessageRef& ref) const;
 
  private:
-  struct Cache;
-  Reader(ByteSource source, Contents contents);
-  [[nodiscard]] Result<std::shared_ptr<const std::string>> chunk_records(std::size_t chunk) const;
+  Reader(ByteSource source, Contents contents) : source_(std::move(source)), contents_(std::move(contents)) {}
 
   ByteSource source_;
   Contents contents_;
-  std::shared_ptr<Cache> cache_;
+  std::shared_ptr<RecentChunks> recent_ = std::make_shared<RecentChunks>();
 };
 
 }  // namespace adit::mcap

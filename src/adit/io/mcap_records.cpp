@@ -146,7 +146,7 @@ std::string encode(const Chunk& chunk) {
   Encoder encoder;
   encoder(chunk.start, chunk.end, chunk.uncompressed_size, chunk.uncompressed_crc, chunk.compression,
           std::uint64_t{chunk.records.size()});
-  return encoder.take() + chunk.records;
+  return encoder.take().append(chunk.records);
 }
 
 std::string framed(Opcode opcode, std::string_view content) {

@@ -77,7 +77,7 @@ struct Chunk {
   std::uint64_t uncompressed_size = 0;
   std::uint32_t uncompressed_crc = 0;  ///< 0: not stated.
   std::string compression;
-  std::string records;  ///< Compressed: schemas, channels and messages.
+  std::string_view records;  ///< Compressed: schemas, channels and messages. Bytes of somebody else.
 };
 
 /// Where the messages of one channel lie in the uncompressed records of the chunk before.

@@ -277,12 +277,13 @@ TEST(Mcap, AnUnknownMountIsAnErrorWithARemedy) {
   ASSERT_TRUE(given) << given.error().message;
   EXPECT_EQ(given->T_base_lidar.translation(), Vector3(0.1, 0, 0.5));
   EXPECT_EQ(given->mount_source, "given by the user");
-  EXPECT_ERROR(ForeignFile()
-                   .clouds("/os/points")
-                   .odometry("/odom", "base_link")
-                   .links({test::link("base", "camera", Pose())})
-                   .read(),
-               "no links connect 'base_link' and 'os_lidar'; give --mount");
+  EXPECT_ERROR(
+      ForeignFile()
+          .clouds("/os/points")
+          .odometry("/odom", "base_link")
+          .links({test::link("base", "camera", Pose())})
+          .read(),
+      "no links connect 'base_link' and 'os_lidar' (frames that it links: base, camera); give --mount");
   EXPECT_ERROR(bare.read({.mount = "1 2"}), "2 numbers");
 }
 

@@ -66,8 +66,9 @@ std::uint16_t Writer::add_channel(const std::string& topic, const std::string& m
 void Writer::write_chunk(const std::vector<Message>& messages) {
   ADIT_CHECK(!messages.empty(), "a chunk holds a message or more");
   const ChunkContent content = pack(messages);
-  Chunk chunk{content.start,          content.end, content.records.size(),
-              crc32(content.records), "zstd",      compress_zstd(content.records)};
+  const std::string records = compress_zstd(content.records);
+  const Chunk chunk{content.start,          content.end, content.records.size(),
+                    crc32(content.records), "zstd",      records};
   ChunkIndex index{chunk.start,
                    chunk.end,
                    offset_,

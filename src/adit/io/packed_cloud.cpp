@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "adit/core/format.hpp"
@@ -74,51 +76,58 @@ std::int64_t nanoseconds_in(TimeUnit unit) {
   return 1;
 }
 
-/// Nanoseconds; integers stay integers, since absolute times need all 64 bits. Nothing when not finite or too
-/// large.
-std::optional<std::int64_t> load_time(const PackedField& field, const char* bytes, std::endian order,
-                                      TimeUnit unit) {
+/// Calls `use` with the numbers of points `begin` to `end` and the values of their field.
+template <class Use>
+void for_each_value(const PackedCloud& packed, const PackedField& field, std::size_t begin, std::size_t end,
+                    const Use& use) {
+  with_type(field.type, [&](auto zero) {
+    const char* bytes = packed.bytes.data() + field.offset + begin * field.stride;
+    for (std::size_t i = begin; i < end; ++i, bytes += field.stride)
+      use(i, load<decltype(zero)>(bytes, packed.order));
+  });
+}
+
+/// A time that is not finite or too large.
+constexpr std::int64_t kNoTime = std::numeric_limits<std::int64_t>::min();
+
+/// Nanoseconds; integers stay integers, since absolute times need all 64 bits.
+template <class T>
+std::int64_t nanoseconds_of(T value, std::int64_t in_unit) {
   constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max();
-  const std::int64_t in_unit = nanoseconds_in(unit);
-  if (is_float(field.type)) {
-    const double value = load_scalar(field.type, bytes, order);
-    if (!(std::abs(value) < 0.99 * static_cast<double>(kLargest) / static_cast<double>(in_unit)))
-      return std::nullopt;
+  if constexpr (std::is_floating_point_v<T>) {
+    const double time = value;
+    if (!(std::abs(time) < 0.99 * static_cast<double>(kLargest) / static_cast<double>(in_unit)))
+      return kNoTime;
     // Whole ones apart from the rest: in one product an absolute time would lose its last 100 ns.
-    const double whole = std::floor(value);
+    const double whole = std::floor(time);
     return static_cast<std::int64_t>(whole) * in_unit +
-           std::llround((value - whole) * static_cast<double>(in_unit));
+           std::llround((time - whole) * static_cast<double>(in_unit));
+  } else {
+    if (std::cmp_greater(value, kLargest / in_unit) || std::cmp_less(value, -kLargest / in_unit))
+      return kNoTime;
+    return static_cast<std::int64_t>(value) * in_unit;
   }
-  if (field.type == ScalarType::uint64 && load<std::uint64_t>(bytes, order) > kLargest) return std::nullopt;
-  const std::int64_t value = field.type == ScalarType::uint64 || field.type == ScalarType::int64
-                                 ? load<std::int64_t>(bytes, order)
-                                 : static_cast<std::int64_t>(load_scalar(field.type, bytes, order));
-  if (value > kLargest / in_unit || value < -kLargest / in_unit) return std::nullopt;
-  return value * in_unit;
 }
 
 /// What such times usually are.
 TimeUnit usual_unit(ScalarType type) { return is_float(type) ? TimeUnit::seconds : TimeUnit::nanoseconds; }
 
 /// The unit in which the sweep lasts as long as sweeps do; none where too few times are there, or none does.
-std::optional<TimeUnit> unit_of_times(const PackedCloud& packed) {
+std::optional<TimeUnit> unit_of_times(const PackedCloud& packed, const std::vector<Eigen::Vector3f>& points) {
   constexpr double kShortest = 0.002;  // seconds; LiDARs take 0.05 to 0.2
   constexpr double kLongest = 2.0;
   constexpr std::size_t kEnough = 100;  // times
-  const auto value = [&](const PackedField& field, std::size_t i) {
-    return load_scalar(field.type, packed.bytes.data() + field.offset + i * field.stride, packed.order);
-  };
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   std::size_t num = 0;
-  for (std::size_t i = 0; i < packed.num_points; ++i) {
-    const double time = value(*packed.time, i);
+  for_each_value(packed, *packed.time, 0, packed.num_points, [&](std::size_t i, auto value) {
+    const auto time = static_cast<double>(value);
     // Drivers write anything beside points that they did not see.
-    if (!std::isfinite(time + value(*packed.x, i) + value(*packed.y, i) + value(*packed.z, i))) continue;
+    if (!std::isfinite(time) || !points[i].allFinite()) return;
     low = std::min(low, time);
     high = std::max(high, time);
     ++num;
-  }
+  });
   if (num < kEnough) return {};
   using enum TimeUnit;
   // Integers are never coarser than microseconds, and signed ones, as adit writes them, are nanoseconds.
@@ -220,43 +229,95 @@ void assign_field(PackedCloud& cloud, std::string_view name, PackedField field) 
   take(cloud.y, {"y"});
   take(cloud.z, {"z"});
   take(cloud.intensity, {"intensity", "intensities", "i", "scalar_Intensity"});
+  take(cloud.reflectivity, {"reflectivity"});
   take(cloud.time, {"t", "time", "time_offset", "offset_time", "timestamp"});
 }
 
-Result<CloudFile> unpack(const PackedCloud& packed) {
+namespace {
+
+/// All points, finite or not. In blocks that stay near the processor while each field is read.
+void load_points(const PackedCloud& packed, PointCloud& cloud) {
+  constexpr std::size_t kBlock = 512;
+  const std::size_t num = packed.num_points;
+  cloud.points.resize(num);
+  if (packed.intensity) cloud.intensities.resize(num);
+  for (std::size_t begin = 0; begin < num; begin += kBlock) {
+    const std::size_t end = std::min(num, begin + kBlock);
+    const auto coordinate = [&](const PackedField& field, Eigen::Index axis) {
+      for_each_value(packed, field, begin, end,
+                     [&](std::size_t i, auto value) { cloud.points[i][axis] = static_cast<float>(value); });
+    };
+    coordinate(*packed.x, 0);
+    coordinate(*packed.y, 1);
+    coordinate(*packed.z, 2);
+    if (!packed.intensity) continue;
+    for_each_value(packed, *packed.intensity, begin, end,
+                   [&](std::size_t i, auto value) { cloud.intensities[i] = static_cast<float>(value); });
+  }
+}
+
+std::vector<std::int64_t> load_times(const PackedCloud& packed, TimeUnit unit) {
+  std::vector<std::int64_t> times(packed.num_points);
+  const std::int64_t in_unit = nanoseconds_in(unit);
+  for_each_value(packed, *packed.time, 0, packed.num_points,
+                 [&](std::size_t i, auto value) { times[i] = nanoseconds_of(value, in_unit); });
+  return times;
+}
+
+/// Leaves the points that are finite and have a time, where there are times; counts the others.
+void leave_finite(CloudFile& file, std::vector<std::int64_t>& times) {
+  PointCloud& cloud = file.cloud;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    if (!cloud.points[i].allFinite() || (!times.empty() && times[i] == kNoTime)) continue;
+    cloud.points[kept] = cloud.points[i];
+    if (!cloud.intensities.empty()) cloud.intensities[kept] = cloud.intensities[i];
+    if (!times.empty()) times[kept] = times[i];
+    ++kept;
+  }
+  file.num_skipped_nan = cloud.points.size() - kept;
+  cloud.points.resize(kept);
+  if (!cloud.intensities.empty()) cloud.intensities.resize(kept);
+  if (!times.empty()) times.resize(kept);
+}
+
+}  // namespace
+
+Result<CloudFile> unpack(PackedCloud packed) {
+  if (!packed.intensity) packed.intensity = packed.reflectivity;
   if (Result<> checked = check_layout(packed); !checked) return tl::unexpected(checked.error());
   CloudFile file;
-  PointCloud& cloud = file.cloud;
+  load_points(packed, file.cloud);
   std::vector<std::int64_t> times;
-  cloud.points.reserve(packed.num_points);
-  const auto at = [&](const PackedField& field, std::size_t i) {
-    return packed.bytes.data() + field.offset + i * field.stride;
-  };
-  if (packed.time) file.time_unit = packed.time_unit ? packed.time_unit : unit_of_times(packed);
-  const TimeUnit usual = usual_unit(packed.time ? packed.time->type : ScalarType::float32);
-  const TimeUnit unit = file.time_unit.value_or(usual);
-  file.has_usual_time_unit = unit == usual;
-  const auto coordinate = [&](const PackedField& field, std::size_t i) {
-    return static_cast<float>(load_scalar(field.type, at(field, i), packed.order));
-  };
-  for (std::size_t i = 0; i < packed.num_points; ++i) {
-    const Eigen::Vector3f point(coordinate(*packed.x, i), coordinate(*packed.y, i), coordinate(*packed.z, i));
-    std::optional<std::int64_t> time = 0;
-    if (packed.time) time = load_time(*packed.time, at(*packed.time, i), packed.order, unit);
-    if (!point.allFinite() || !time) {
-      ++file.num_skipped_nan;
-      continue;
-    }
-    cloud.points.push_back(point);
-    if (packed.intensity) cloud.intensities.push_back(coordinate(*packed.intensity, i));
-    if (packed.time) times.push_back(*time);
+  if (packed.time) {
+    file.time_unit = packed.time_unit ? packed.time_unit : unit_of_times(packed, file.cloud.points);
+    const TimeUnit usual = usual_unit(packed.time->type);
+    const TimeUnit unit = file.time_unit.value_or(usual);
+    file.has_usual_time_unit = unit == usual;
+    times = load_times(packed, unit);
   }
-  if (cloud.empty()) return fail(format("none of the {} points is finite", packed.num_points));
+  leave_finite(file, times);
+  if (file.cloud.empty()) return fail(format("none of the {} points is finite", packed.num_points));
   if (!packed.time) return file;
   return relative_times(times, packed.stamp).map([&](std::vector<std::int32_t> offsets) {
-    cloud.time_offsets_ns = std::move(offsets);
+    file.cloud.time_offsets_ns = std::move(offsets);
     return std::move(file);
   });
+}
+
+Result<> check_stamp_at(const RecordingConfig& config) {
+  if (config.stamp_at == "auto" || config.stamp_at == "start" || config.stamp_at == "end") return {};
+  return fail(format("recording.stamp_at: '{}' is not start, end or auto", config.stamp_at));
+}
+
+Result<> put_stamp_at_end(Scan& scan) {
+  std::vector<std::int32_t>& offsets = scan.cloud.time_offsets_ns;
+  if (offsets.empty()) return {};
+  const auto [earliest, latest] = std::ranges::minmax(offsets);
+  if (std::int64_t{earliest} - latest < -std::numeric_limits<std::int32_t>::max())
+    return fail("its points' times span more than 2.1 s");
+  for (std::int32_t& offset : offsets) offset = static_cast<std::int32_t>(std::int64_t{offset} - latest);
+  return {};
 }
 
 std::string packed_rows(const PointCloud& cloud) {

@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "adit/core/recording_config.hpp"
+#include "adit/core/records.hpp"
 #include "adit/core/time.hpp"
 #include "adit/io/cloud_files.hpp"
 
@@ -45,6 +47,7 @@ struct PackedCloud {
   std::optional<PackedField> y;
   std::optional<PackedField> z;
   std::optional<PackedField> intensity;
+  std::optional<PackedField> reflectivity;  ///< The intensity where there is none.
   std::optional<PackedField> time;
   std::optional<TimeUnit> time_unit = {};  ///< Of point times; none: as `unpack` finds it.
 };
@@ -57,7 +60,13 @@ void assign_field(PackedCloud& cloud, std::string_view name, PackedField field);
 /// integers are nanoseconds.
 /// Fails when x, y or z is absent, a field reaches past the bytes, no point is finite, or times span more
 /// than 2.1 s.
-Result<CloudFile> unpack(const PackedCloud& packed);
+Result<CloudFile> unpack(PackedCloud packed);
+
+/// Whether `config.stamp_at` is one of its values.
+Result<> check_stamp_at(const RecordingConfig& config);
+/// For times that count from the start of the sweep under a stamp of its end: the last point gets the stamp.
+/// Fails when times span more than 2.1 s.
+Result<> put_stamp_at_end(Scan& scan);
 
 /// x y z float32, [intensity float32], [t int32 ns], point after point, little-endian: what adit writes
 /// everywhere.

@@ -3,9 +3,7 @@
 #include "adit/io/recording_files.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <optional>
 
 #include "adit/core/format.hpp"
@@ -27,16 +25,11 @@ std::optional<ScanSelection> parse_selection(const std::string& text) {
   return ScanSelection{*first, *step};
 }
 
-/// Times count from the start of the sweep and the stamp is of its end: the last point has the stamp.
+/// For clouds of a folder; of a bag it is done where scans are read.
 Recording with_stamps_at_end(Recording recording) {
   recording.read_scan = [read = std::move(recording.read_scan)](std::size_t i) {
     return read(i).and_then([i](Scan scan) -> Result<Scan> {
-      std::vector<std::int32_t>& offsets = scan.cloud.time_offsets_ns;
-      if (offsets.empty()) return scan;
-      const auto [earliest, latest] = std::ranges::minmax(offsets);
-      if (std::int64_t{earliest} - latest < -std::numeric_limits<std::int32_t>::max())
-        return fail(format("scan {}: its points' times span more than 2.1 s", i));
-      for (std::int32_t& offset : offsets) offset = static_cast<std::int32_t>(std::int64_t{offset} - latest);
+      if (Result<> moved = put_stamp_at_end(scan); !moved) return fail(format("scan {}", i), moved.error());
       return scan;
     });
   };
@@ -63,19 +56,17 @@ Result<Recording> open_part(const std::filesystem::path& folder, const std::stri
   });
 }
 
-Result<Recording> open_as_stamped(const std::string& input, const RecordingConfig& config) {
+Result<Recording> open_folder(const std::string& input, const RecordingConfig& config) {
   const Result<std::optional<Pose>> mount = mount_of(config);
   if (!mount) return tl::unexpected(mount.error());
   const Result<std::optional<TimeUnit>> time_unit = parse_time_unit(config.point_times);
   if (!time_unit) return tl::unexpected(time_unit.error());
   const FolderReading reading{*mount, *time_unit};
   std::error_code ignored;
-  const auto choose = [&](Recording recording) { return without_left_out(std::move(recording), config); };
-  if (is_bag_file(input) || is_bag_folder(input)) return read_recording(input, config);
-  if (std::filesystem::is_directory(input, ignored)) return read_scan_folder(input, {}, reading).map(choose);
+  if (std::filesystem::is_directory(input, ignored)) return read_scan_folder(input, {}, reading);
   const std::size_t at = input.rfind('@');
   if (at != std::string::npos && std::filesystem::is_directory(input.substr(0, at), ignored))
-    return open_part(input.substr(0, at), input.substr(at + 1), reading).map(choose);
+    return open_part(input.substr(0, at), input.substr(at + 1), reading);
   if (std::filesystem::exists(input, ignored))
     return fail(input + ": is not a recording; a bag (.mcap, .db3, .bag or folder) or a folder of clouds is");
   return fail(input +
@@ -86,9 +77,10 @@ Result<Recording> open_as_stamped(const std::string& input, const RecordingConfi
 }  // namespace
 
 Result<Recording> open_recording(const std::string& input, const RecordingConfig& config) {
-  if (config.stamp_at != "start" && config.stamp_at != "end")
-    return fail(format("recording.stamp_at: '{}' is neither start nor end", config.stamp_at));
-  return open_as_stamped(input, config).map([&](Recording recording) {
+  if (is_bag_file(input) || is_bag_folder(input)) return read_recording(input, config);
+  if (Result<> checked = check_stamp_at(config); !checked) return tl::unexpected(checked.error());
+  return open_folder(input, config).map([&](Recording recording) {
+    recording = without_left_out(std::move(recording), config);
     return config.stamp_at == "end" ? with_stamps_at_end(std::move(recording)) : std::move(recording);
   });
 }

@@ -43,7 +43,7 @@ TEST(OpenRecording, StampsOfTheEndOfTheSweep) {
   EXPECT_EQ(open_recording(path, {.stamp_at = "end"})->read_scan(1)->cloud.time_offsets_ns,
             std::vector<std::int32_t>({-100'000'000, -50'000'000, 0}));
   EXPECT_ERROR(open_recording(path, {.point_times = "us"}), "span 100.000 s");
-  EXPECT_ERROR(open_recording(path, {.stamp_at = "middle"}), "'middle' is neither start nor end");
+  EXPECT_ERROR(open_recording(path, {.stamp_at = "middle"}), "'middle' is not start, end or auto");
   EXPECT_ERROR(open_recording(path, {.point_times = "min"}), "'min' is not a unit of point times");
 }
 

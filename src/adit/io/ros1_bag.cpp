@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
-#include <mutex>
 #include <utility>
 
 #include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/io/compression.hpp"
+#include "adit/io/recent_chunks.hpp"
 
 namespace adit {
 namespace ros1 {
@@ -279,7 +279,7 @@ Result<Contents> read_contents(const ByteSource& source) {
   return contents;
 }
 
-/// Reads messages, and keeps the chunk that was read last.
+/// Reads messages, and keeps the chunks that were read last.
 class Messages {
  public:
   Messages(ByteSource source, std::vector<std::uint64_t> chunks, std::vector<Place> places)
@@ -287,43 +287,39 @@ class Messages {
 
   Result<std::string> read(std::uint64_t where) {
     const Place place = places_.at(where);
-    const Result<ByteSource> from = place.chunk ? expanded(*place.chunk) : source_;
-    if (!from) return tl::unexpected(from.error());
-    const Result<Record> record = read_record(*from, place.offset);
-    if (!record) return tl::unexpected(record.error());
-    if (record->op != Op::message) return fail_at(place.offset, "no message where the index announces one");
-    return from->read(record->data, record->size);
+    if (!place.chunk) return read_message(source_, place.offset);
+    const std::size_t chunk = *place.chunk;
+    return recent_.get(chunk, [&] { return read_chunk(source_, chunks_[chunk]); })
+        .and_then([&](const RecentChunks::Records& records) {
+          return read_message(memory_source(records), place.offset);
+        });
   }
 
  private:
-  Result<ByteSource> expanded(std::size_t chunk) {
-    {
-      const std::scoped_lock lock(mutex_);
-      if (last_ && last_->first == chunk) return last_->second;
-    }
-    return read_chunk(source_, chunks_[chunk]).map([&](std::string records) {
-      const std::scoped_lock lock(mutex_);
-      last_ = {chunk, memory_source(std::move(records))};
-      return last_->second;
-    });
+  static Result<std::string> read_message(const ByteSource& from, std::uint64_t offset) {
+    const Result<Record> record = read_record(from, offset);
+    if (!record) return tl::unexpected(record.error());
+    if (record->op != Op::message) return fail_at(offset, "no message where the index announces one");
+    return from.read(record->data, record->size);
   }
 
   ByteSource source_;
   std::vector<std::uint64_t> chunks_;
   std::vector<Place> places_;
-  std::mutex mutex_;
-  std::optional<std::pair<std::size_t, ByteSource>> last_;
+  RecentChunks recent_;
 };
 
 }  // namespace
 }  // namespace ros1
 
 Result<Bag> open_ros1_bag(ByteSource source) {
+  const std::uint64_t num_bytes = source.size;
   return ros1::read_contents(source).map([&](ros1::Contents contents) {
     std::ranges::stable_sort(contents.bag.messages, {}, &BagMessage::log_time);
     const auto messages = std::make_shared<ros1::Messages>(std::move(source), std::move(contents.chunks),
                                                            std::move(contents.places));
     contents.bag.storage = "ros1";
+    contents.bag.num_bytes = num_bytes;
     contents.bag.read = [messages](const BagMessage& message) { return messages->read(message.where); };
     return std::move(contents.bag);
   });

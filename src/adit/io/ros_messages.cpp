@@ -292,6 +292,21 @@ Result<TwistMessage> decode_twist(std::string_view message, MessageEncoding enco
   return out;
 }
 
+Result<JointStateMessage> decode_joint_state(std::string_view message, MessageEncoding encoding) {
+  MessageReader reader(message, encoding);
+  JointStateMessage out;
+  out.stamp = read_stamp(reader);
+  static_cast<void>(reader.text());  // the frame, which drivers leave empty
+  const auto num_names = reader.number<std::uint32_t>();
+  for (std::uint32_t i = 0; i < num_names && reader.ok(); ++i) out.names.emplace_back(reader.text());
+  for (std::vector<double>* values : {&out.positions, &out.velocities}) {
+    const auto count = reader.number<std::uint32_t>();
+    for (std::uint32_t i = 0; i < count && reader.ok(); ++i) values->push_back(reader.number<double>());
+  }
+  if (!reader.ok()) return fail(format("byte {}: the JointState message ends early", reader.offset()));
+  return out;
+}
+
 std::string encode_path(std::string_view frame, const Trajectory& poses) {
   ADIT_CHECK(!poses.empty(), "a path has the stamp of its first pose");
   CdrWriter writer;

@@ -19,6 +19,7 @@ namespace adit::ros {
 inline constexpr std::string_view kPointCloud2 = "sensor_msgs/msg/PointCloud2";
 inline constexpr std::string_view kOdometry = "nav_msgs/msg/Odometry";
 inline constexpr std::string_view kTwist = "geometry_msgs/msg/TwistStamped";
+inline constexpr std::string_view kJointState = "sensor_msgs/msg/JointState";
 inline constexpr std::string_view kImu = "sensor_msgs/msg/Imu";
 inline constexpr std::string_view kTransforms = "tf2_msgs/msg/TFMessage";
 inline constexpr std::string_view kPath = "nav_msgs/msg/Path";
@@ -77,6 +78,18 @@ struct TwistMessage {
 };
 /// Fails when the message ends early or a number is not finite.
 Result<TwistMessage> decode_twist(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
+
+/// Angles (radians) or lengths (metres) of joints and their velocities; either may be empty, or shorter than
+/// the names.
+struct JointStateMessage {
+  Stamp stamp;
+  std::vector<std::string> names;
+  std::vector<double> positions;
+  std::vector<double> velocities;
+};
+/// Numbers are handed on as they are. Fails when the message ends early.
+Result<JointStateMessage> decode_joint_state(std::string_view message,
+                                             MessageEncoding encoding = MessageEncoding::cdr);
 
 [[nodiscard]] std::string encode_path(std::string_view frame, const Trajectory& poses);
 

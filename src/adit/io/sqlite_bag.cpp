@@ -121,6 +121,8 @@ Result<Bag> open_sqlite_bag(const std::filesystem::path& path) {
   if (!database) return fail(path.string(), database.error());
   Bag bag;
   bag.storage = "sqlite3";
+  std::error_code ignored;
+  bag.num_bytes = std::filesystem::file_size(path, ignored);
   const Result<std::map<std::int64_t, BagTopic>> topics = read_topics(database->get());
   if (!topics) return fail(path.string(), topics.error());
   std::map<std::int64_t, std::size_t> topic_of_id;

@@ -11,14 +11,13 @@ namespace {
 // Ten samples of a slow IMU. A robot that shakes turns by degrees in between, which nothing else measures.
 constexpr Duration kImuSilence = std::chrono::milliseconds(100);
 constexpr Duration kStart = std::chrono::milliseconds(500);
-constexpr Duration kSilence = std::chrono::seconds(1);  // robots speed up, stop and turn within that
 
 // Whether the wheels measured from `begin` to `end` without a silence.
 bool spans(const Trajectory& wheel, Stamp begin, Stamp end) {
   if (wheel.empty() || begin < wheel.front().stamp || end > wheel.back().stamp) return false;
   auto at = std::ranges::upper_bound(wheel, begin, {}, &StampedPose::stamp);
   for (; at != wheel.end(); ++at) {
-    if (at->stamp - (at - 1)->stamp > kSilence) return false;
+    if (at->stamp - (at - 1)->stamp > kWheelSilence) return false;
     if (at->stamp >= end) break;
   }
   return true;

@@ -9,10 +9,13 @@
 
 namespace adit {
 
+/// Wheels that are silent for longer say nothing: robots speed up, stop and turn within that.
+inline constexpr Duration kWheelSilence = std::chrono::seconds(1);
+
 /// What the other sensors measured from scan `index` - 1 to `index`; for the first
 /// scan, what the IMU felt in the half second around it. Wheels that
-/// begin later, end earlier or were silent for more than a second in between say nothing of that interval; an
-/// IMU neither, for which a silence begins after 0.1 s.
+/// begin later, end earlier or were silent for longer than kWheelSilence in between say nothing of that
+/// interval; an IMU neither, for which a silence begins after 0.1 s.
 [[nodiscard]] SensedMotion sensed_before(const Recording& recording, std::size_t index);
 
 /// Takes a scan and what was measured since the scan before (as `sensed_before`); returns false to stop.

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The expanded chunks of a bag that were used last.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "adit/core/result.hpp"
+
+namespace adit {
+
+/// Keeps a few, since the times of neighbouring chunks overlap and several threads read. May be used from any
+/// thread.
+class RecentChunks {
+ public:
+  using Records = std::shared_ptr<const std::string>;
+
+  /// Those of `chunk`, which `read` (from nothing to Result<std::string>) gives where they are not at hand.
+  template <class Read>
+  Result<Records> get(std::size_t chunk, const Read& read) {
+    if (Records known = find(chunk)) return known;
+    return read().map([&](std::string&& records) {
+      auto shared = std::make_shared<const std::string>(std::move(records));
+      keep(chunk, shared);
+      return Records(std::move(shared));
+    });
+  }
+
+ private:
+  static constexpr std::size_t kMost = 4;
+
+  Records find(std::size_t chunk) {
+    const std::scoped_lock lock(mutex_);
+    const auto known = std::ranges::find(recent_, chunk, &std::pair<std::size_t, Records>::first);
+    return known == recent_.end() ? nullptr : known->second;
+  }
+  void keep(std::size_t chunk, Records records) {
+    const std::scoped_lock lock(mutex_);
+    recent_.emplace_back(chunk, std::move(records));
+    if (recent_.size() > kMost) recent_.pop_front();
+  }
+
+  std::mutex mutex_;
+  std::deque<std::pair<std::size_t, Records>> recent_;
+};
+
+}  // namespace adit

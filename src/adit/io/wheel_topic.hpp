@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+/// The messages of wheel odometry (nav_msgs/Odometry, geometry_msgs/TwistStamped, sensor_msgs/JointState) of
+/// a bag, and of ground truth (nav_msgs/Odometry).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adit/core/recording_config.hpp"
+#include "adit/core/records.hpp"
+#include "adit/core/result.hpp"
+#include "adit/io/bag.hpp"
+
+namespace adit {
+
+struct PoseTrack {
+  Trajectory poses;   ///< T_odom_body, stamps strictly ascending.
+  std::string child;  ///< Frame of the body; "" where the messages do not name it.
+  WheelCovariance covariance = {};
+  std::vector<std::string> warnings = {};  ///< What was left out or bridged, a sentence each.
+};
+
+/// Takes the messages of one topic one by one. Messages whose stamps do not ascend are left out, which a
+/// warning counts.
+class PoseReader {
+ public:
+  virtual ~PoseReader() = default;
+  /// Fails when the message is damaged; the place is named.
+  virtual Result<> add(const BagMessage& message) = 0;
+  /// Once, after all messages.
+  virtual Result<PoseTrack> finish() = 0;
+};
+
+/// The reader for a topic of `bag`, by its type. Twists are added up, between two of them their mean; joints
+/// as joint_odometry.hpp says. Fails where joints have no complete description of the drive. `bag` must
+/// outlive it.
+Result<std::unique_ptr<PoseReader>> pose_reader(const Bag& bag, std::size_t topic,
+                                                const JointDriveConfig& drive);
+
+}  // namespace adit
