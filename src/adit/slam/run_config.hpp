@@ -11,6 +11,7 @@
 #include "adit/simulation/world.hpp"
 #include "adit/slam/joint_map.hpp"
 #include "adit/slam/slam_config.hpp"
+#include "adit/slam/true_surface.hpp"
 
 namespace adit {
 
@@ -22,6 +23,7 @@ struct RunConfig {
   WorldConfig world;
   OdometryMethod paper_odometry = OdometryMethod::kinematic_icp;
   MapsConfig maps;
+  SightConfig sight;
 };
 /// The keys of `slam` have no prefix of their own: robot.odometry.method, loops.place.max_distance, ...
 Fields fields_of(RunConfig& config);
