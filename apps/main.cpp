@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   add_merge(program);
   add_localize(program);
   add_world(program);
+  add_routes(program);
   add_simulate(program);
   add_odometry(program);
   add_register(program);

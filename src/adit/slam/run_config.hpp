@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "adit/core/recording_config.hpp"
+#include "adit/simulation/route_config.hpp"
 #include "adit/simulation/scenario.hpp"
 #include "adit/simulation/world.hpp"
 #include "adit/slam/joint_map.hpp"
@@ -24,6 +25,7 @@ struct RunConfig {
   OdometryMethod paper_odometry = OdometryMethod::kinematic_icp;
   MapsConfig maps;
   SightConfig sight;
+  RouteConfig routes;
 };
 /// The keys of `slam` have no prefix of their own: robot.odometry.method, loops.place.max_distance, ...
 Fields fields_of(RunConfig& config);
