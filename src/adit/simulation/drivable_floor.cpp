@@ -30,8 +30,6 @@ constexpr std::size_t kLookOuts = 256;  ///< Places in a part of the floor from 
 constexpr double kLeaks = 0.3;    ///< Share of these that meet nothing beyond which the part is outside.
 constexpr double kOpening = 0.1;  ///< The same of one place beyond which it is at an opening.
 
-std::string at(const Vector3& p) { return format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z()); }
-
 /// A floor sample with free space above, and how it hangs together with those beside it.
 struct Ground {
   FloorColumn column;
@@ -163,6 +161,19 @@ Eigen::Vector2d slope_at(const std::vector<Ground>& grounds, std::uint32_t i) {
   return squares.ldlt().solve(products);
 }
 
+/// Whether the floor is steeper than that over the length of a robot: as a whole, or two cells ahead.
+bool is_steep(const std::vector<Ground>& grounds, std::uint32_t i, double steepest) {
+  if (grounds[i].slope.norm() > steepest) return true;
+  for (std::size_t d = 0; d < kNeighbours.size(); ++d) {
+    const std::uint32_t next = grounds[i].links[d];
+    const std::uint32_t second = next == FloorCell::kNone ? next : grounds[next].links[d];
+    if (second == FloorCell::kNone) continue;
+    const Vector3 way = grounds[second].position - grounds[i].position;
+    if (std::abs(way.z()) > steepest * way.head<2>().norm()) return true;
+  }
+  return false;
+}
+
 using Queued = std::pair<double, std::uint32_t>;  // distance, ground
 using Queue = std::priority_queue<Queued, std::vector<Queued>, std::greater<>>;
 
@@ -196,7 +207,8 @@ void find_drivable(std::vector<Ground>& grounds, const Raycaster& raycaster, con
         Ground& ground = grounds[i];
         ground.slope = slope_at(grounds, static_cast<std::uint32_t>(i));
         ground.margin = std::min(drops[i], wall_distance(raycaster, ground.position, ground.slope, config));
-        ground.is_drivable = ground.margin >= config.half_width_m() && ground.slope.norm() <= steepest;
+        ground.is_drivable = ground.margin >= config.half_width_m() &&
+                             !is_steep(grounds, static_cast<std::uint32_t>(i), steepest);
       },
       kFloorGrain);
 }
@@ -216,7 +228,7 @@ std::vector<std::vector<std::uint32_t>> parts_of(const std::vector<Ground>& grou
 }
 
 /// What is around a part of the floor.
-struct Surroundings {
+struct Outlook {
   double escaping = 0.0;  ///< Share of rays that meet nothing,
   double facing = 0.0;    ///< and of those that meet something the share of front sides.
   std::vector<Vector3> openings;
@@ -231,7 +243,7 @@ Vector3 sphere_direction(int k) {
   return {r * std::cos(turn), r * std::sin(turn), z};
 }
 
-Surroundings look_around(const std::vector<Ground>& grounds, const std::vector<std::uint32_t>& part,
+Outlook look_around(const std::vector<Ground>& grounds, const std::vector<std::uint32_t>& part,
                          const Raycaster& raycaster, const RouteConfig& config) {
   const std::size_t num_places = std::min(part.size(), kLookOuts);
   std::vector<std::array<int, 2>> counts(num_places);  // escaped, front sides
@@ -245,7 +257,7 @@ Surroundings look_around(const std::vector<Ground>& grounds, const std::vector<s
       counts[k][1] += hit.hit() && hit.normal.dot(direction) < 0.0F ? 1 : 0;
     }
   });
-  Surroundings around;
+  Outlook around;
   int escaped = 0;
   int front = 0;
   int most = -1;
@@ -267,7 +279,7 @@ Surroundings look_around(const std::vector<Ground>& grounds, const std::vector<s
 /// A part of the floor inside of the mesh.
 struct InsidePart {
   std::vector<std::uint32_t> grounds;
-  Surroundings around;
+  Outlook around;
 };
 
 /// The floor's surface has two sides, and so has a roof: parts in the rock are left out. Rays from there escape,
@@ -276,11 +288,11 @@ Result<std::vector<InsidePart>> inside_parts(const std::vector<Ground>& grounds,
                                              std::vector<std::vector<std::uint32_t>> parts,
                                              const Raycaster& raycaster, const RouteConfig& config) {
   std::vector<InsidePart> inside;
-  std::optional<Surroundings> leaking;
+  std::optional<Outlook> leaking;
   const double cell_area = config.cell_m * config.cell_m;
   for (std::vector<std::uint32_t>& part : parts) {
     if (!inside.empty() && static_cast<double>(part.size()) * cell_area < kSmallestPart) break;
-    const Surroundings around = look_around(grounds, part, raycaster, config);
+    const Outlook around = look_around(grounds, part, raycaster, config);
     if (around.escaping <= kLeaks)
       inside.push_back({std::move(part), around});
     else if (!leaking)
@@ -289,7 +301,7 @@ Result<std::vector<InsidePart>> inside_parts(const std::vector<Ground>& grounds,
   if (inside.empty())
     return fail(format("the mesh is not closed: of the rays from its floor {:.0f} % meet nothing, most of them at "
                        "{}; it needs a roof and walls without large holes",
-                       100.0 * leaking->escaping, at(leaking->widest_open)));
+                       100.0 * leaking->escaping, place_text(leaking->widest_open)));
   const bool front_exists = std::ranges::any_of(inside, [](const auto& p) { return p.around.facing > 0.7; });
   if (front_exists) std::erase_if(inside, [](const InsidePart& p) { return p.around.facing < 0.3; });
   return inside;
@@ -305,6 +317,7 @@ DrivableFloor floor_of(const std::vector<Ground>& grounds, std::vector<InsidePar
     FloorCell& floor_cell = floor.cells.emplace_back();
     floor_cell.column = grounds[i].column;
     floor_cell.position = grounds[i].position;
+    floor_cell.slope = grounds[i].slope;
     floor_cell.margin = grounds[i].margin;
     for (std::size_t d = 0; d < kNeighbours.size(); ++d) {
       const std::uint32_t next = grounds[i].links[d];
@@ -343,7 +356,7 @@ Error no_floor(const TriangleMesh& mesh, const Grounds& grounds, const RouteConf
   if (grounds.num_open > 0)
     return {format("no roof: nothing is above the floor, for example at {}; the mesh has to be closed, so that rays "
                    "from the sensor meet something",
-                   at(*grounds.first_open))};
+                   place_text(*grounds.first_open))};
   return {format("no floor: no surface has {} m of free height above; the mesh is {:.1f} x {:.1f} x {:.1f} m: is z "
                  "upwards, and are its units metres?",
                  config.height_m, size.x(), size.y(), size.z())};
@@ -355,11 +368,13 @@ Error too_narrow(const std::vector<Ground>& grounds, const RouteConfig& config) 
                  "widest place, at {}, has {:.2f} m and a slope of {:.0f} degrees; see routes.width_m, "
                  "routes.clearance_m, routes.max_slope_deg and, for passages narrower than three cells, "
                  "routes.cell_m",
-                 config.half_width_m(), config.max_slope_deg, at(widest.position), widest.margin,
+                 config.half_width_m(), config.max_slope_deg, place_text(widest.position), widest.margin,
                  std::atan(widest.slope.norm()) / kDegree)};
 }
 
 }  // namespace
+
+std::string place_text(const Vector3& p) { return format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z()); }
 
 std::optional<std::uint32_t> DrivableFloor::cell_at(const Vector3& p) const {
   const auto column = std::ranges::equal_range(cells, column_of(p, cell_m), {}, &FloorCell::column);

@@ -19,6 +19,7 @@ struct FloorCell {
   static constexpr std::uint32_t kNone = ~0U;
   FloorColumn column;
   Vector3 position;  ///< On the floor, metres.
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< Rise of the floor along x and y, over about a metre.
   double margin = 0.0;  ///< From walls and drops, metres; more than `kFarthestMargin` is not told apart.
   std::array<std::uint32_t, 8> links;  ///< Cells beside it to which the robot can drive, as kNeighbours; or kNone.
 };
@@ -46,6 +47,9 @@ struct DrivableFloor {
 /// none wide enough, and on a mesh that does not enclose it: rays from the floor of a mine meet a wall.
 [[nodiscard]] Result<DrivableFloor> drivable_floor(const TriangleMesh& mesh, const Raycaster& raycaster,
                                                    const RouteConfig& config);
+
+/// "(1.0, 2.0, 3.0)", as messages write a position, metres.
+[[nodiscard]] std::string place_text(const Vector3& p);
 
 /// How far the nearest wall is from a robot at `p` (on the floor, which rises by `slope` along x and y),
 /// metres, at three heights from what it can climb up to its own; at most `kFarthestMargin`.

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "adit/core/angles.hpp"
 #include "adit/core/check.hpp"
@@ -79,31 +81,36 @@ double steepness(const Vector3& a, const Vector3& b) {
   return level > 1e-6 ? std::abs(b.z() - a.z()) / level : 0.0;
 }
 
-/// Walls are looked for along the floor, which rises towards a and b as the route does.
-double clearance_at(const Raycaster& raycaster, const Vector3& p, const Vector3& a, const Vector3& b,
-                    const RouteConfig& config) {
-  const Vector3 way = b - a;
-  const double level = way.head<2>().squaredNorm();
-  const Eigen::Vector2d slope =
-      level > 1e-6 ? Eigen::Vector2d(way.z() / level * way.head<2>()) : Eigen::Vector2d::Zero();
-  return wall_distance(raycaster, p, slope, config);
+/// The drivable cell nearest to `p`, of the column of p and those around it.
+std::optional<std::uint32_t> cell_near(const DrivableFloor& floor, const Vector3& p) {
+  std::optional<std::uint32_t> nearest = floor.cell_at(p);
+  if (nearest) return nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [dx, dy] : kNeighbours) {
+    const auto cell = floor.cell_at(p + floor.cell_m * Vector3(dx, dy, 0.0));
+    if (!cell || (floor.cells[*cell].position - p).norm() >= least) continue;
+    least = (floor.cells[*cell].position - p).norm();
+    nearest = cell;
+  }
+  return nearest;
 }
 
-/// The drivable cell nearest to `p` in plan, among those around it.
-Vector3 middle_of_cell(const DrivableFloor& floor, const Vector3& p) {
-  const auto cell = floor.cell_at(p);
-  return cell ? floor.cells[*cell].position : p;
+double clearance_at(const DrivableFloor& floor, const Raycaster& raycaster, const Vector3& p,
+                    const RouteConfig& config) {
+  const auto cell = cell_near(floor, p);
+  const Eigen::Vector2d slope = cell ? floor.cells[*cell].slope : Eigen::Vector2d::Zero();
+  return wall_distance(raycaster, p, slope, config);
 }
 
 /// Puts waypoints on the floor; those that came too near to a wall go back to the middle of their cell.
 std::vector<Vector3> settled(const DrivableFloor& floor, const Raycaster& raycaster, std::vector<Vector3> points,
                              const RouteConfig& config) {
-  for (Vector3& point : points) point.z() = floor_height(raycaster, point).value_or(point.z());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vector3& a = points[i == 0 ? i : i - 1];
-    const Vector3& b = points[std::min(i + 1, points.size() - 1)];
-    if (clearance_at(raycaster, points[i], a, b, config) < config.half_width_m())
-      points[i] = middle_of_cell(floor, points[i]);
+  for (Vector3& point : points) {
+    point.z() = floor_height(raycaster, point).value_or(point.z());
+    const auto cell = cell_near(floor, point);
+    const bool is_on_floor = floor.cell_at(point).has_value();
+    if (cell && (!is_on_floor || clearance_at(floor, raycaster, point, config) < config.half_width_m()))
+      point = floor.cells[*cell].position;
   }
   return points;
 }
@@ -119,11 +126,9 @@ PlannedRoute planned(const DrivableFloor& floor, const RouteNetwork& network, co
       settled(floor, raycaster, at_equal_distances(smoothed_way(floor, std::move(way))), config);
   const std::vector<Vector3>& points = out.route.waypoints;
   out.clearance_m = kFarthestMargin;
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const Vector3& before = points[i == 0 ? i : i - 1];
-    out.clearance_m =
-        std::min(out.clearance_m, clearance_at(raycaster, points[i], before, points[i + 1], config));
-    out.slope_deg = std::max(out.slope_deg, std::atan(steepness(points[i], points[i + 1])) / kDegree);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    out.clearance_m = std::min(out.clearance_m, clearance_at(floor, raycaster, points[i], config));
+    if (i > 0) out.slope_deg = std::max(out.slope_deg, std::atan(steepness(points[i - 1], points[i])) / kDegree);
   }
   return out;
 }
@@ -134,8 +139,6 @@ double longest_way(const RouteNetwork& network) {
   };
   return std::ranges::max(distances_from(network, farthest(distances_from(network, 0))));
 }
-
-std::string place_text(const Vector3& p) { return format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z()); }
 
 std::string other_parts_text(const DrivableFloor& floor) {
   if (floor.other_parts.empty()) return "";

@@ -33,7 +33,7 @@ class Eyes {
     for (const Eigen::Vector3f& eye : eyes) cells_[cell_of(eye)].push_back(eye);
   }
 
-  [[nodiscard]] bool see(const SurfaceSample& sample, const Raycaster& raycaster) const {
+  [[nodiscard]] bool see(const MeshPoint& sample, const Raycaster& raycaster) const {
     const Eigen::Vector3f target = sample.point.cast<float>();
     const Eigen::Vector3f normal = sample.normal.cast<float>();
     const auto sees = [&](const Eigen::Vector3f& eye) {
@@ -78,7 +78,7 @@ struct Seen {
 
 Result<TrueSurface> TrueSurface::build(const TriangleMesh& mesh) {
   return Raycaster::build(mesh).map([&](const Raycaster& raycaster) {
-    return TrueSurface(raycaster, surface_samples(mesh, kSampleSpacing));
+    return TrueSurface(raycaster, mesh_points(mesh, kSampleSpacing));
   });
 }
 

@@ -9,7 +9,7 @@
 #include "adit/core/config.hpp"
 #include "adit/evaluation/map_accuracy.hpp"
 #include "adit/geometry/kd_tree.hpp"
-#include "adit/geometry/surface_samples.hpp"
+#include "adit/geometry/mesh_points.hpp"
 #include "adit/robot/robot_map.hpp"
 #include "adit/simulation/raycaster.hpp"
 
@@ -47,13 +47,13 @@ class TrueSurface {
                                             const SightConfig& config) const;
 
  private:
-  TrueSurface(Raycaster raycaster, std::vector<SurfaceSample> samples)
+  TrueSurface(Raycaster raycaster, std::vector<MeshPoint> samples)
       : raycaster_(std::move(raycaster)), samples_(std::move(samples)) {}
   [[nodiscard]] std::vector<double> distances(const std::vector<Eigen::Vector3f>& map) const;
   [[nodiscard]] Result<> add_completeness(const KdTree& map, std::span<const Eigen::Vector3f> eyes,
                                           const SightConfig& config, MapAccuracy& accuracy) const;
   Raycaster raycaster_;
-  std::vector<SurfaceSample> samples_;
+  std::vector<MeshPoint> samples_;
 };
 
 /// Positions on the true drive T_world_base between two stamps, about one a metre, `viewpoint` (base frame)

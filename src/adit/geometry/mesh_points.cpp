@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-#include "adit/geometry/surface_samples.hpp"
+#include "adit/geometry/mesh_points.hpp"
 
 #include <cmath>
 
@@ -9,9 +9,9 @@
 
 namespace adit {
 
-std::vector<SurfaceSample> surface_samples(const TriangleMesh& mesh, double spacing) {
+std::vector<MeshPoint> mesh_points(const TriangleMesh& mesh, double spacing) {
   ADIT_CHECK(spacing > 0.0, "samples have a distance");
-  std::vector<SurfaceSample> samples;
+  std::vector<MeshPoint> samples;
   Rng rng(mesh.triangles.size());
   double area = 0.5;  // in units of what a sample stands for; the next one falls where it reaches a whole number
   for (const Eigen::Vector3i& t : mesh.triangles) {

@@ -10,7 +10,7 @@
 namespace adit {
 
 /// A point of a surface. It stands for the same area as every other one of its set.
-struct SurfaceSample {
+struct MeshPoint {
   Vector3 point;   ///< Metres.
   Vector3 normal;  ///< Unit; the side follows the triangle's winding.
 };
@@ -18,6 +18,6 @@ struct SurfaceSample {
 /// Points spread evenly over the mesh, one on each `spacing` x `spacing` metres of it: triangles are laid end
 /// to end by their areas, a sample falls on every so much area, and where in its triangle is drawn at random
 /// (always the same). Triangles without area have none. The mesh must pass `check_mesh`; `spacing` > 0.
-[[nodiscard]] std::vector<SurfaceSample> surface_samples(const TriangleMesh& mesh, double spacing);
+[[nodiscard]] std::vector<MeshPoint> mesh_points(const TriangleMesh& mesh, double spacing);
 
 }  // namespace adit
