@@ -84,7 +84,8 @@ Result<std::vector<Trajectory>> read_trajectories(const std::vector<std::string>
 }
 
 /// From the frame of the cloud to that of the mesh: the alignment of the trajectories with their truths.
-Result<Pose> alignment_of(const std::vector<Trajectory>& trajectories, const std::vector<Trajectory>& truths) {
+Result<Pose> alignment_of(const std::vector<Trajectory>& trajectories,
+                          const std::vector<Trajectory>& truths) {
   if (trajectories.empty()) return Pose();
   return joint_ate(trajectories, truths).map([](const std::vector<AteResult>& errors) {
     return errors.front().T_world_estimate;
@@ -109,13 +110,12 @@ Result<> evaluate_cloud(const EvaluateOptions& options, const SightConfig& confi
     eyes.insert(eyes.end(), own.begin(), own.end());
   }
   if (trajectories->empty()) print_notes("evaluate", {"the cloud is taken to be in the frame of the mesh"});
-  if (truths->empty())
-    print_notes("evaluate", {"no completeness: --truth says what could have been seen"});
+  if (truths->empty()) print_notes("evaluate", {"no completeness: --truth says what could have been seen"});
   const Result<MapAccuracy> accuracy =
       surface->compare(transformed(*T_world_map, std::move(*cloud)).points, eyes, config);
   if (!accuracy) return fail(options.input, accuracy.error());
-  std::printf("%s\n", common.json ? json_of(*accuracy).c_str()
-                                  : text_of(table_of(*accuracy, options.input)).c_str());
+  std::printf("%s\n",
+              common.json ? json_of(*accuracy).c_str() : text_of(table_of(*accuracy, options.input)).c_str());
   return {};
 }
 
@@ -138,20 +138,24 @@ Result<> evaluate_command(const EvaluateOptions& options, const Common& common) 
 void add_evaluate(Program& program) {
   const auto options = std::make_shared<EvaluateOptions>();
   const Command command = program.add_command(
-      "evaluate", "Compute ATE, RPE and loop precision of a session from the true trajectories, and its map's error",
+      "evaluate",
+      "Compute ATE, RPE and loop precision of a session from the true trajectories, and its map's error",
       [options](const Common& common) { return evaluate_command(*options, common); });
   command
-      .add_option("session", options->input, "Session directory of adit slam; with --mesh also a cloud (PLY, PCD)")
+      .add_option("session", options->input,
+                  "Session directory of adit slam; with --mesh also a cloud (PLY, PCD)")
       .required();
   command.add_option("--truth", options->truths,
                      "True trajectories (TUM) in any order, each named after its robot (robot_0.tum, "
                      "robot_0_truth.tum, robot_0/truth.tum) or given as NAME=FILE");
-  command.add_option("--mesh", options->mesh,
-                     "True surface (PLY, OBJ, STL, DAE, GLB), in the frame of the truth: the map's distance from "
-                     "it, and how much of it is mapped");
-  command.add_option("--trajectory", options->trajectories,
-                     "With a cloud: the trajectories (TUM) in its frame, in the order of --truth, which align it; "
-                     "without them it is taken to be in the frame of the mesh");
+  command.add_option(
+      "--mesh", options->mesh,
+      "True surface (PLY, OBJ, STL, DAE, GLB), in the frame of the truth: the map's distance from "
+      "it, and how much of it is mapped");
+  command.add_option(
+      "--trajectory", options->trajectories,
+      "With a cloud: the trajectories (TUM) in its frame, in the order of --truth, which align it; "
+      "without them it is taken to be in the frame of the mesh");
   command.footer(
       "Writes the class of each loop into loops.csv of the session, and the errors into its metrics.json.");
 }

@@ -37,18 +37,22 @@ Result<RouteConfig> config_of(const RoutesOptions& options, const Common& common
   return run_config->routes;
 }
 
-/// The mesh as routes.yaml names it: relative to that file where it can be.
+/// The mesh as routes.yaml names it: relative to that file where it lies beside or below it, so that both can
+/// be moved together.
 std::filesystem::path world_of(const RoutesOptions& options) {
-  const std::filesystem::path folder = std::filesystem::absolute(options.out).parent_path();
-  const std::filesystem::path relative = std::filesystem::absolute(options.mesh).lexically_relative(folder);
-  return relative.empty() ? std::filesystem::absolute(options.mesh) : relative;
+  const std::filesystem::path mesh = std::filesystem::absolute(options.mesh).lexically_normal();
+  const std::filesystem::path folder =
+      std::filesystem::absolute(options.out).lexically_normal().parent_path();
+  const std::filesystem::path relative = mesh.lexically_relative(folder);
+  return relative.empty() || *relative.begin() == ".." ? mesh : relative;
 }
 
 Trajectory path_of(const Route& route) {
   Trajectory path;
   for (std::size_t i = 0; i < route.waypoints.size(); ++i)
-    path.push_back({Stamp{static_cast<std::int64_t>(i)},
-                    Pose::translation_of(route.waypoints[i].x(), route.waypoints[i].y(), route.waypoints[i].z())});
+    path.push_back(
+        {Stamp{static_cast<std::int64_t>(i)},
+         Pose::translation_of(route.waypoints[i].x(), route.waypoints[i].y(), route.waypoints[i].z())});
   return path;
 }
 
@@ -71,8 +75,8 @@ std::vector<SharedPath> shared_paths(const RoutePlan& plan) {
 }
 
 void print_plan(const RoutePlan& plan, const std::string& mesh) {
-  std::printf("%s: %.0f m² of floor for the robot, the routes lead along %.0f %% of it\n", mesh.c_str(), plan.floor_m2,
-              100.0 * plan.covered);
+  std::printf("%s: %.0f m² of floor for the robot, the routes lead along %.0f %% of it\n", mesh.c_str(),
+              plan.floor_m2, 100.0 * plan.covered);
   for (const PlannedRoute& robot : plan.robots)
     std::printf("%s: %.1f m, %.2f m or more from walls, slope up to %.0f degrees\n", robot.route.name.c_str(),
                 length_of(robot.route), robot.clearance_m, robot.slope_deg);

@@ -140,7 +140,8 @@ TEST(Session, ItsMapIsComparedWithTheMesh) {
   expect_done("slam " + routes + " --lidar os2-32 --out " + session);
   expect_done("simulate --routes " + routes + " --lidar os2-32 --set simulation.lidar.rate_hz=1 --out " +
               recordings);
-  const std::string truths = " --truth " + recordings + "/ahead_truth.tum " + recordings + "/behind_truth.tum";
+  const std::string truths =
+      " --truth " + recordings + "/ahead_truth.tum " + recordings + "/behind_truth.tum";
   const test::ProgramRun run = run_adit("evaluate " + session + truths + mesh + " --json");
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const nlohmann::json maps = nlohmann::json::parse(run.out)["maps"];

@@ -141,7 +141,7 @@ struct JointResult {
   std::vector<MergedRobot> robots;  ///< In the order of StudyResult::robots.
   /// Of each component against the mesh of the world, none where it could not be compared; may be empty.
   std::vector<std::optional<MapAccuracy>> map_accuracy = {};
-  LoopCounts loops;                 ///< In the solution, or before GNC.
+  LoopCounts loops;  ///< In the solution, or before GNC.
   int wrong_loops_in_solution = 0;
   std::vector<std::uint64_t> bytes_sent_per_robot;
   std::vector<std::string> refusals;  ///< "robot_0 and robot_3 were not merged: ...".

@@ -312,14 +312,14 @@ Table odometry_table(const StudyResult& study) {
 Table joint_table(const StudyResult& study) {
   Table table;
   table.title = "All robots jointly";
-  table.header = {"Robot",          "Shared map",       "Max ATE (m)",  "RMSE (m)",
-                  "Max / path (%)", "Map median (m)", "Map 95 % (m)", "Map complete (%)",
-                  "Sent (MB)"};
+  table.header = {"Robot",          "Shared map",   "Max ATE (m)",      "RMSE (m)", "Max / path (%)",
+                  "Map median (m)", "Map 95 % (m)", "Map complete (%)", "Sent (MB)"};
   if (!study.joint) return table;
   const JointResult& joint = *study.joint;
   table.caption = format(
       "All robots merged at once ({}): {} loops, {} of them wrong and in use. ATE after one alignment of "
-      "each shared map. Map: distance of the shared map's points from the true surface after that alignment, and "
+      "each shared map. Map: distance of the shared map's points from the true surface after that alignment, "
+      "and "
       "how much of the surface that could have been seen lies within 10 cm of it.",
       policy_title(joint.keyframes), joint.loops.total, joint.wrong_loops_in_solution);
   for (std::size_t i = 0; i < joint.robots.size(); ++i) {

@@ -10,8 +10,7 @@ namespace {
 double squared_distance_to_segment(const Vector3& p, const Vector3& a, const Vector3& b) {
   const Vector3 along = b - a;
   const double squared_length = along.squaredNorm();
-  const double share =
-      squared_length > 0.0 ? std::clamp((p - a).dot(along) / squared_length, 0.0, 1.0) : 0.0;
+  const double share = squared_length > 0.0 ? std::clamp((p - a).dot(along) / squared_length, 0.0, 1.0) : 0.0;
   return (a + share * along - p).squaredNorm();
 }
 

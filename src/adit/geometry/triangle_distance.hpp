@@ -8,7 +8,8 @@
 
 namespace adit {
 
-/// The squared distance of `p` from the triangle, square metres; one that is a line or a point counts as such.
+/// The squared distance of `p` from the triangle, square metres; one that is a line or a point counts as
+/// such.
 [[nodiscard]] double squared_distance_to_triangle(const Vector3& p, const std::array<Vector3, 3>& corners);
 
 }  // namespace adit

@@ -20,14 +20,15 @@ namespace adit {
 namespace {
 
 constexpr std::size_t kFloorGrain = 256;
-constexpr double kAboveFloor = 0.02;   ///< Metres: where rays start that look up.
-constexpr double kRough = 0.1;         ///< Metres above what wheels climb that still is the floor's roughness.
+constexpr double kAboveFloor = 0.02;  ///< Metres: where rays start that look up.
+constexpr double kRough = 0.1;        ///< Metres above what wheels climb that still is the floor's roughness.
 constexpr double kSmallestPart = 4.0;  ///< Square metres: smaller parts of the floor are not told of.
 constexpr double kLargestFloor = 3e7;  ///< Samples of it.
 constexpr float kFarAway = 1e6F;       ///< Metres: no mesh is as large.
 constexpr int kSphereRays = 64;
-constexpr std::size_t kLookOuts = 256;  ///< Places in a part of the floor from which rays are cast all around.
-constexpr double kLeaks = 0.3;    ///< Share of these that meet nothing beyond which the part is outside.
+constexpr std::size_t kLookOuts =
+    256;                          ///< Places in a part of the floor from which rays are cast all around.
+constexpr double kLeaks = 0.15;   ///< Share of these that meet nothing beyond which the part is outside.
 constexpr double kOpening = 0.1;  ///< The same of one place beyond which it is at an opening.
 
 /// A floor sample with free space above, and how it hangs together with those beside it.
@@ -44,8 +45,11 @@ struct Ground {
 /// Of all samples: what is above them.
 struct Grounds {
   std::vector<Ground> list;
-  std::size_t num_open = 0;  ///< Samples with nothing above at all.
-  std::optional<Vector3> first_open;
+  std::size_t num_open = 0;  ///< Samples with nothing above at all,
+  Vector3 first_open = Vector3::Zero();
+  std::size_t num_low = 0;  ///< and those with less above than the robot needs.
+  Vector3 highest_low = Vector3::Zero();
+  double highest_m = 0.0;
 };
 
 Grounds with_headroom(const std::vector<FloorSample>& samples, const Raycaster& raycaster,
@@ -65,7 +69,13 @@ Grounds with_headroom(const std::vector<FloorSample>& samples, const Raycaster& 
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (free[i] == RayHit::kMiss) {
       if (++grounds.num_open == 1) grounds.first_open = position(samples[i]);
-    } else if (static_cast<double>(free[i]) + kAboveFloor >= config.height_m) {
+    } else if (const double headroom = static_cast<double>(free[i]) + kAboveFloor;
+               headroom < config.height_m) {
+      ++grounds.num_low;
+      if (headroom <= grounds.highest_m) continue;
+      grounds.highest_m = headroom;
+      grounds.highest_low = position(samples[i]);
+    } else {
       Ground& ground = grounds.list.emplace_back();
       ground.column = samples[i].column;
       ground.position = position(samples[i]);
@@ -88,8 +98,8 @@ std::uint32_t next_ground(const std::vector<Ground>& grounds, std::uint32_t from
   const auto [dx, dy] = kNeighbours[direction];
   const Ground& ground = grounds[from];
   const auto [begin, end] = range_of(grounds, {ground.column.x + dx, ground.column.y + dy});
-  double nearest = std::hypot(dx, dy) * config.cell_m * std::tan(config.max_slope_deg * kDegree) +
-                   config.max_step_m;
+  double nearest =
+      std::hypot(dx, dy) * config.cell_m * std::tan(config.max_slope_deg * kDegree) + config.max_step_m;
   std::uint32_t best = FloorCell::kNone;
   for (std::uint32_t i = begin; i < end; ++i) {
     const double rise = std::abs(grounds[i].position.z() - ground.position.z());
@@ -105,7 +115,8 @@ std::array<double, 3> looking_heights(const RouteConfig& config) {
   return {low, 0.5 * (low + config.height_m), config.height_m};
 }
 
-bool is_blocked(const Raycaster& raycaster, const Vector3& from, const Vector3& to, const RouteConfig& config) {
+bool is_blocked(const Raycaster& raycaster, const Vector3& from, const Vector3& to,
+                const RouteConfig& config) {
   const Vector3 way = to - from;
   return std::ranges::any_of(looking_heights(config), [&](double height) {
     const Vector3 eye = from + height * Vector3::UnitZ();
@@ -244,7 +255,7 @@ Vector3 sphere_direction(int k) {
 }
 
 Outlook look_around(const std::vector<Ground>& grounds, const std::vector<std::uint32_t>& part,
-                         const Raycaster& raycaster, const RouteConfig& config) {
+                    const Raycaster& raycaster, const RouteConfig& config) {
   const std::size_t num_places = std::min(part.size(), kLookOuts);
   std::vector<std::array<int, 2>> counts(num_places);  // escaped, front sides
   const auto place = [&](std::size_t k) { return grounds[part[k * part.size() / num_places]].position; };
@@ -282,8 +293,8 @@ struct InsidePart {
   Outlook around;
 };
 
-/// The floor's surface has two sides, and so has a roof: parts in the rock are left out. Rays from there escape,
-/// or where the rock is closed, too, they meet the back of what faces the tunnels.
+/// The floor's surface has two sides, and so has a roof: parts in the rock are left out. Rays from there
+/// escape, or where the rock is closed, too, they meet the back of what faces the tunnels.
 Result<std::vector<InsidePart>> inside_parts(const std::vector<Ground>& grounds,
                                              std::vector<std::vector<std::uint32_t>> parts,
                                              const Raycaster& raycaster, const RouteConfig& config) {
@@ -299,9 +310,10 @@ Result<std::vector<InsidePart>> inside_parts(const std::vector<Ground>& grounds,
       leaking = around;
   }
   if (inside.empty())
-    return fail(format("the mesh is not closed: of the rays from its floor {:.0f} % meet nothing, most of them at "
-                       "{}; it needs a roof and walls without large holes",
-                       100.0 * leaking->escaping, place_text(leaking->widest_open)));
+    return fail(
+        format("the mesh is not closed: of the rays from its floor {:.0f} % meet nothing, most of them at "
+               "{}; it needs a roof and walls without large holes",
+               100.0 * leaking->escaping, place_text(leaking->widest_open)));
   const bool front_exists = std::ranges::any_of(inside, [](const auto& p) { return p.around.facing > 0.7; });
   if (front_exists) std::erase_if(inside, [](const InsidePart& p) { return p.around.facing < 0.3; });
   return inside;
@@ -334,42 +346,55 @@ DrivableFloor floor_of(const std::vector<Ground>& grounds, std::vector<InsidePar
 Result<> check_size(const TriangleMesh& mesh, const RouteConfig& config) {
   double plan_area = 0.0;
   for (const Eigen::Vector3i& t : mesh.triangles) {
-    const auto corner = [&](int i) { return mesh.vertices[static_cast<std::size_t>(t[i])].head<2>().cast<double>(); };
+    const auto corner = [&](int i) {
+      return mesh.vertices[static_cast<std::size_t>(t[i])].head<2>().cast<double>();
+    };
     const Eigen::Vector2d u = corner(1) - corner(0);
     const Eigen::Vector2d v = corner(2) - corner(0);
     plan_area += 0.5 * std::abs(u.x() * v.y() - u.y() * v.x());
   }
   const double largest = kLargestFloor * config.cell_m * config.cell_m;
-  const double extent = static_cast<double>(bounding_box(mesh).max().cwiseAbs().cwiseMax(
-      bounding_box(mesh).min().cwiseAbs()).maxCoeff());
+  const double extent = static_cast<double>(
+      bounding_box(mesh).max().cwiseAbs().cwiseMax(bounding_box(mesh).min().cwiseAbs()).maxCoeff());
   if (extent > 1e5)
-    return fail(format("a coordinate is {:.0f} m, where single precision tells no centimetres apart; move the mesh "
-                       "to the origin", extent));
+    return fail(
+        format("a coordinate is {:.0f} m, where single precision tells no centimetres apart; move the mesh "
+               "to the origin",
+               extent));
   if (plan_area <= largest) return {};
-  return fail(format("seen from above its triangles cover {:.3g} m²; is the unit metres? If it is, set "
-                     "routes.cell_m to {:.1f} or more",
-                     plan_area, std::sqrt(plan_area / kLargestFloor)));
+  return fail(
+      format("seen from above its triangles cover {:.3g} m²; is the unit metres? If it is, set "
+             "routes.cell_m to {:.1f} or more",
+             plan_area, std::sqrt(plan_area / kLargestFloor)));
 }
 
 Error no_floor(const TriangleMesh& mesh, const Grounds& grounds, const RouteConfig& config) {
   const Eigen::Vector3f size = bounding_box(mesh).sizes();
+  if (grounds.num_low > 0 && grounds.num_low >= grounds.num_open)
+    return {format(
+        "no floor is high enough: the robot needs {} m, and there are {:.2f} m at {}; see routes.height_m; "
+        "are the units of the mesh metres?",
+        config.height_m, grounds.highest_m, place_text(grounds.highest_low))};
   if (grounds.num_open > 0)
-    return {format("no roof: nothing is above the floor, for example at {}; the mesh has to be closed, so that rays "
-                   "from the sensor meet something",
-                   place_text(*grounds.first_open))};
-  return {format("no floor: no surface has {} m of free height above; the mesh is {:.1f} x {:.1f} x {:.1f} m: is z "
-                 "upwards, and are its units metres?",
-                 config.height_m, size.x(), size.y(), size.z())};
+    return {format(
+        "no roof: nothing is above the floor, for example at {}; the mesh has to be closed, so that rays "
+        "from the sensor meet something",
+        place_text(grounds.first_open))};
+  return {format(
+      "no floor: all surfaces are steeper than 60 degrees or smaller than the grid of routes.cell_m; the "
+      "mesh is {:.1f} x {:.1f} x {:.1f} m: is z upwards, and are its units metres?",
+      size.x(), size.y(), size.z())};
 }
 
 Error too_narrow(const std::vector<Ground>& grounds, const RouteConfig& config) {
   const Ground& widest = *std::ranges::max_element(grounds, {}, &Ground::margin);
-  return {format("no floor is wide enough: the robot needs {:.2f} m to each side and a slope below {} degrees; the "
-                 "widest place, at {}, has {:.2f} m and a slope of {:.0f} degrees; see routes.width_m, "
-                 "routes.clearance_m, routes.max_slope_deg and, for passages narrower than three cells, "
-                 "routes.cell_m",
-                 config.half_width_m(), config.max_slope_deg, place_text(widest.position), widest.margin,
-                 std::atan(widest.slope.norm()) / kDegree)};
+  return {format(
+      "no floor is wide enough: the robot needs {:.2f} m to each side and a slope below {} degrees; the "
+      "widest place, at {}, has {:.2f} m and a slope of {:.0f} degrees; see routes.width_m, "
+      "routes.clearance_m, routes.max_slope_deg and, for passages narrower than three cells, "
+      "routes.cell_m",
+      config.half_width_m(), config.max_slope_deg, place_text(widest.position), widest.margin,
+      std::atan(widest.slope.norm()) / kDegree)};
 }
 
 }  // namespace
@@ -400,8 +425,8 @@ double wall_distance(const Raycaster& raycaster, const Vector3& p, const Eigen::
       const Eigen::Vector2d ahead(std::cos(yaw), std::sin(yaw));
       const Vector3 direction(ahead.x(), ahead.y(), slope.dot(ahead));
       const double stretch = direction.norm();
-      const RayHit hit = raycaster.cast({eye, (direction / stretch).cast<float>()},
-                                        static_cast<float>(nearest * stretch));
+      const RayHit hit =
+          raycaster.cast({eye, (direction / stretch).cast<float>()}, static_cast<float>(nearest * stretch));
       if (hit.hit()) nearest = std::min(nearest, static_cast<double>(hit.distance) / stretch);
     }
   }

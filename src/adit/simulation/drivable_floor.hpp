@@ -18,10 +18,11 @@ namespace adit {
 struct FloorCell {
   static constexpr std::uint32_t kNone = ~0U;
   FloorColumn column;
-  Vector3 position;  ///< On the floor, metres.
+  Vector3 position;                                 ///< On the floor, metres.
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< Rise of the floor along x and y, over about a metre.
   double margin = 0.0;  ///< From walls and drops, metres; more than `kFarthestMargin` is not told apart.
-  std::array<std::uint32_t, 8> links;  ///< Cells beside it to which the robot can drive, as kNeighbours; or kNone.
+  std::array<std::uint32_t, 8>
+      links;  ///< Cells beside it to which the robot can drive, as kNeighbours; or kNone.
 };
 /// Columns beside a column. Opposite directions are four apart.
 inline constexpr std::array<std::array<int, 2>, 8> kNeighbours{
@@ -31,9 +32,10 @@ inline constexpr double kFarthestMargin = 3.0;
 /// The largest part of a mesh's floor on which a robot can get everywhere.
 struct DrivableFloor {
   double cell_m = 0.0;
-  std::vector<FloorCell> cells;          ///< By column and height.
+  std::vector<FloorCell> cells;           ///< By column and height.
   std::vector<Vector3> other_parts = {};  ///< A place in each other part of 4 m² or more.
-  double escaping_rays = 0.0;  ///< Share of the rays from the floor that meet nothing: they leave through portals.
+  double escaping_rays =
+      0.0;  ///< Share of the rays from the floor that meet nothing: they leave through portals.
   std::vector<Vector3> openings = {};  ///< Places from which many of them do.
 
   [[nodiscard]] double area_m2() const { return static_cast<double>(cells.size()) * cell_m * cell_m; }
@@ -41,10 +43,11 @@ struct DrivableFloor {
   [[nodiscard]] std::optional<std::uint32_t> cell_at(const Vector3& p) const;
 };
 
-/// Looks for floor: a surface with the robot's height of free space above, no steeper than it can climb, walls
-/// and drops as far away as it needs (RouteConfig), reached from its neighbours without a wall in between.
-/// `raycaster` is that of `mesh`, watertight. Fails, naming a place and the remedy, where there is no floor or
-/// none wide enough, and on a mesh that does not enclose it: rays from the floor of a mine meet a wall.
+/// Looks for floor: a surface with the robot's height of free space above, no steeper than it can climb,
+/// walls and drops as far away as it needs (RouteConfig), reached from its neighbours without a wall in
+/// between. `raycaster` is that of `mesh`, watertight. Fails, naming a place and the remedy, where there is
+/// no floor or none wide enough, and on a mesh that does not enclose it: rays from the floor of a mine meet a
+/// wall.
 [[nodiscard]] Result<DrivableFloor> drivable_floor(const TriangleMesh& mesh, const Raycaster& raycaster,
                                                    const RouteConfig& config);
 

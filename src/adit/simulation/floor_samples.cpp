@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSteepestFloor = 0.5;  ///< Least share of a triangle's normal that points up or down.
 constexpr double kSameSurface = 0.03;   ///< Metres between surfaces that are taken for one.
-constexpr double kSeam = 1e-3;          ///< Metres by which triangles are widened: cracks between them are floor.
+constexpr double kSeam = 1e-3;  ///< Metres by which triangles are widened: cracks between them are floor.
 
 struct PlanTriangle {
   std::array<Vector3, 3> corners;

@@ -27,8 +27,8 @@ struct FloorSample {
 };
 
 /// Every such surface of the mesh, floors and ceilings alike, by column and from the lowest up: levels above
-/// one another are samples of one column. Of surfaces less than 3 cm apart the highest remains. Steeper than 60
-/// degrees is a wall. The mesh must pass `check_mesh`.
+/// one another are samples of one column. Of surfaces less than 3 cm apart the highest remains. Steeper than
+/// 60 degrees is a wall. The mesh must pass `check_mesh`.
 [[nodiscard]] std::vector<FloorSample> floor_samples(const TriangleMesh& mesh, double cell);
 
 /// Those of one column; `samples` are as floor_samples returns them.

@@ -237,10 +237,9 @@ RayHit Raycaster::cast(const Ray& ray, float max_distance) const {
 
 float Raycaster::distance(const Eigen::Vector3f& point, float max_distance) const {
   const RTCGeometry geometry = rtcGetGeometry(scene_->embree.get(), 0);
-  Nearest nearest{
-      static_cast<const float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0)),
-      static_cast<const unsigned*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0)),
-      point.cast<double>(), std::numeric_limits<double>::infinity()};
+  Nearest nearest{static_cast<const float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0)),
+                  static_cast<const unsigned*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0)),
+                  point.cast<double>(), std::numeric_limits<double>::infinity()};
   RTCPointQuery query{point.x(), point.y(), point.z(), 0.0F, max_distance};
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);

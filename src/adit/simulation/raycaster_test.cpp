@@ -234,7 +234,8 @@ TEST(Raycaster, TheNearestSurfaceIsThatOfAllTriangles) {
       const auto corner = [&](int c) -> Vector3 {
         return mesh.vertices[static_cast<std::size_t>(t[c])].cast<double>();
       };
-      nearest = std::min(nearest, squared_distance_to_triangle(p.cast<double>(), {corner(0), corner(1), corner(2)}));
+      nearest = std::min(nearest,
+                         squared_distance_to_triangle(p.cast<double>(), {corner(0), corner(1), corner(2)}));
     }
     const auto distance = static_cast<float>(std::sqrt(nearest));
     EXPECT_FLOAT_EQ(raycaster->distance(p), distance);

@@ -26,19 +26,20 @@ struct RouteConfig {
 };
 
 inline Fields fields_of(RouteConfig& c) {
-  return {{"width_m", &c.width_m, "m", 0.1, 10, "width of the robot, mirrors and mast included"},
-          {"height_m", &c.height_m, "m", 0.2, 10, "height of the robot: what hangs lower is in its way"},
-          {"clearance_m", &c.clearance_m, "m", 0, 5, "least distance from walls and drops on each side"},
-          {"max_slope_deg", &c.max_slope_deg, "deg", 0, 45, "steepest floor, in any direction"},
-          {"max_step_m", &c.max_step_m, "m", 0, 0.3,
-           "highest kerb or rail that a wheel climbs; what stands higher is in the way"},
-          {"cell_m", &c.cell_m, "m", 0.1, 2,
-           "spacing of the grid on which floor is looked for; passages need a few cells of width"},
-          {"length_m", &c.length_m, "m", 10, 1e5, "longest route; where the network ends sooner, it is shorter"},
-          {"shared_m", &c.shared_m, "m", 0, 1e5,
-           "path that each pair of robots should have in common, as far as the network allows"},
-          {"speed_mps", &c.speed_mps, "m/s", 0.05, 20, "mean speed of the robots"},
-          {"seed", &c.seed, "", 0, 9e15, "each seed plans other routes"}};
+  return {
+      {"width_m", &c.width_m, "m", 0.1, 10, "width of the robot, mirrors and mast included"},
+      {"height_m", &c.height_m, "m", 0.2, 10, "height of the robot: what hangs lower is in its way"},
+      {"clearance_m", &c.clearance_m, "m", 0, 5, "least distance from walls and drops on each side"},
+      {"max_slope_deg", &c.max_slope_deg, "deg", 0, 45, "steepest floor, in any direction"},
+      {"max_step_m", &c.max_step_m, "m", 0, 0.3,
+       "highest kerb or rail that a wheel climbs; what stands higher is in the way"},
+      {"cell_m", &c.cell_m, "m", 0.1, 2,
+       "spacing of the grid on which floor is looked for; passages need a few cells of width"},
+      {"length_m", &c.length_m, "m", 10, 1e5, "longest route; where the network ends sooner, it is shorter"},
+      {"shared_m", &c.shared_m, "m", 0, 1e5,
+       "path that each pair of robots should have in common, as far as the network allows"},
+      {"speed_mps", &c.speed_mps, "m/s", 0.05, 20, "mean speed of the robots"},
+      {"seed", &c.seed, "", 0, 9e15, "each seed plans other routes"}};
 }
 
 }  // namespace adit

@@ -14,9 +14,10 @@ namespace adit {
 namespace {
 
 constexpr double kUnreached = std::numeric_limits<double>::infinity();
-constexpr double kComfort = 1.0;     ///< Metres beyond what the robot needs, at which walls no longer count.
+constexpr double kComfort = 1.0;      ///< Metres beyond what the robot needs, at which walls no longer count.
 constexpr double kNarrowCosts = 3.0;  ///< Times its length a way without any of that costs in addition.
-constexpr double kStraightOn = -0.5;  ///< Cosine between two ways of a place that one can drive through: 120 degrees.
+constexpr double kStraightOn =
+    -0.5;  ///< Cosine between two ways of a place that one can drive through: 120 degrees.
 
 using Reached = std::pair<double, std::uint32_t>;  // cost or distance, cell or place
 using Frontier = std::priority_queue<Reached, std::vector<Reached>, std::greater<>>;
@@ -55,7 +56,8 @@ void mark_around(const DrivableFloor& floor, std::uint32_t place, double spacing
 }
 
 /// Cells no nearer than `spacing` to one another that leave no gap, those with the most room first.
-std::vector<std::uint32_t> place_cells(const DrivableFloor& floor, const RouteConfig& config, double spacing) {
+std::vector<std::uint32_t> place_cells(const DrivableFloor& floor, const RouteConfig& config,
+                                       double spacing) {
   std::vector<std::uint32_t> order(floor.cells.size());
   std::iota(order.begin(), order.end(), 0U);
   std::ranges::stable_sort(order, std::greater<>(), [&](std::uint32_t cell) {
@@ -79,7 +81,8 @@ struct Basins {
   std::vector<std::uint32_t> towards;
 };
 
-Basins basins_of(const DrivableFloor& floor, const std::vector<std::uint32_t>& places, const RouteConfig& config) {
+Basins basins_of(const DrivableFloor& floor, const std::vector<std::uint32_t>& places,
+                 const RouteConfig& config) {
   const std::size_t n = floor.cells.size();
   Basins basins{std::vector<double>(n, kUnreached), std::vector<std::uint32_t>(n),
                 std::vector<std::uint32_t>(n)};
@@ -114,8 +117,9 @@ struct Pass {
   std::uint32_t to = 0;
 };
 
-std::map<std::pair<std::uint32_t, std::uint32_t>, Pass> passes_of(const DrivableFloor& floor, const Basins& basins,
-                                                                 const RouteConfig& config) {
+std::map<std::pair<std::uint32_t, std::uint32_t>, Pass> passes_of(const DrivableFloor& floor,
+                                                                  const Basins& basins,
+                                                                  const RouteConfig& config) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Pass> passes;
   for (std::uint32_t cell = 0; cell < floor.cells.size(); ++cell) {
     for (const std::uint32_t next : floor.cells[cell].links) {
@@ -163,8 +167,7 @@ RouteNetwork route_network(const DrivableFloor& floor, const RouteConfig& config
   const std::vector<std::uint32_t> cells = place_cells(floor, config, spacing);
   const Basins basins = basins_of(floor, cells, config);
   RouteNetwork network;
-  for (const std::uint32_t cell : cells)
-    network.places.push_back({cell, floor.cells[cell].position, {}});
+  for (const std::uint32_t cell : cells) network.places.push_back({cell, floor.cells[cell].position, {}});
   for (const auto& [ends, pass] : passes_of(floor, basins, config)) {
     RouteEdge edge = edge_of(floor, basins, pass, ends.second);
     RouteEdge reverse = edge;

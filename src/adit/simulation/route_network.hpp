@@ -11,13 +11,13 @@ namespace adit {
 
 /// A way between two places that leads past no third one.
 struct RouteEdge {
-  std::uint32_t to = 0;               ///< Index of a place.
+  std::uint32_t to = 0;  ///< Index of a place.
   double length_m = 0.0;
-  std::vector<std::uint32_t> cells;   ///< Of the floor, from place to place, both included.
+  std::vector<std::uint32_t> cells;  ///< Of the floor, from place to place, both included.
 };
 
-/// A drivable floor reduced to places a few metres apart, in the middle of passages where there is one, and the
-/// ways between neighbouring places, which keep away from walls where there is room.
+/// A drivable floor reduced to places a few metres apart, in the middle of passages where there is one, and
+/// the ways between neighbouring places, which keep away from walls where there is room.
 struct RouteNetwork {
   struct Place {
     std::uint32_t cell = 0;  ///< Of the floor.
@@ -31,7 +31,8 @@ struct RouteNetwork {
 };
 
 /// `spacing`: least distance between places along the floor, metres.
-[[nodiscard]] RouteNetwork route_network(const DrivableFloor& floor, const RouteConfig& config, double spacing);
+[[nodiscard]] RouteNetwork route_network(const DrivableFloor& floor, const RouteConfig& config,
+                                         double spacing);
 
 /// Along the ways of the network from `from` to each place, metres; infinite where none leads. `before`, if
 /// given, receives the place before each on the shortest way (of `from`: itself).

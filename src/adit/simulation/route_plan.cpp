@@ -103,8 +103,8 @@ double clearance_at(const DrivableFloor& floor, const Raycaster& raycaster, cons
 }
 
 /// Puts waypoints on the floor; those that came too near to a wall go back to the middle of their cell.
-std::vector<Vector3> settled(const DrivableFloor& floor, const Raycaster& raycaster, std::vector<Vector3> points,
-                             const RouteConfig& config) {
+std::vector<Vector3> settled(const DrivableFloor& floor, const Raycaster& raycaster,
+                             std::vector<Vector3> points, const RouteConfig& config) {
   for (Vector3& point : points) {
     point.z() = floor_height(raycaster, point).value_or(point.z());
     const auto cell = cell_near(floor, point);
@@ -118,7 +118,8 @@ std::vector<Vector3> settled(const DrivableFloor& floor, const Raycaster& raycas
 PlannedRoute planned(const DrivableFloor& floor, const RouteNetwork& network, const Walk& walk,
                      const Raycaster& raycaster, const RouteConfig& config, std::size_t robot) {
   std::vector<Vector3> way;
-  for (const std::uint32_t cell : cells_along(floor, network, walk)) way.push_back(floor.cells[cell].position);
+  for (const std::uint32_t cell : cells_along(floor, network, walk))
+    way.push_back(floor.cells[cell].position);
   PlannedRoute out;
   out.route.name = format("robot_{}", robot);
   out.route.speed_mps = config.speed_mps;
@@ -128,7 +129,8 @@ PlannedRoute planned(const DrivableFloor& floor, const RouteNetwork& network, co
   out.clearance_m = kFarthestMargin;
   for (std::size_t i = 0; i < points.size(); ++i) {
     out.clearance_m = std::min(out.clearance_m, clearance_at(floor, raycaster, points[i], config));
-    if (i > 0) out.slope_deg = std::max(out.slope_deg, std::atan(steepness(points[i - 1], points[i])) / kDegree);
+    if (i > 0)
+      out.slope_deg = std::max(out.slope_deg, std::atan(steepness(points[i - 1], points[i])) / kDegree);
   }
   return out;
 }
@@ -142,29 +144,31 @@ double longest_way(const RouteNetwork& network) {
 
 std::string other_parts_text(const DrivableFloor& floor) {
   if (floor.other_parts.empty()) return "";
-  return format("{} other parts of the floor cannot be reached from it, the largest at {}; passages between them may "
-                "be too narrow, low or steep for routes.width_m, clearance_m, height_m or max_slope_deg",
-                floor.other_parts.size(), place_text(floor.other_parts.front()));
+  return format(
+      "{} other parts of the floor cannot be reached from it, the largest at {}; passages between them may "
+      "be too narrow, low or steep for routes.width_m, clearance_m, height_m or max_slope_deg",
+      floor.other_parts.size(), place_text(floor.other_parts.front()));
 }
 
 Result<> check_extent(const DrivableFloor& floor, const RouteNetwork& network) {
   const double longest = longest_way(network);
   if (network.places.size() > 1 && longest >= kShortestPlan) return {};
   const std::string others = other_parts_text(floor);
-  return fail(format("too small: the robot can drive on {:.0f} m² around {}, {:.0f} m from end to end, and a route "
-                     "needs {} m{}{}",
-                     floor.area_m2(), place_text(network.places.front().position), longest, kShortestPlan,
-                     others.empty() ? "; are its units metres?" : "; ", others));
+  return fail(
+      format("too small: the robot can drive on {:.0f} m² around {}, {:.0f} m from end to end, and a route "
+             "needs {} m{}{}",
+             floor.area_m2(), place_text(network.places.front().position), longest, kShortestPlan,
+             others.empty() ? "; are its units metres?" : "; ", others));
 }
 
 std::vector<std::string> notes_of(const DrivableFloor& floor) {
   std::vector<std::string> notes;
   if (const std::string others = other_parts_text(floor); !others.empty()) notes.push_back(others);
   if (!floor.openings.empty())
-    notes.push_back(format("the mesh is open at {} of the places that were looked at, for example at {}: portals, or "
-                           "holes; {:.1f} % of the rays from the floor meet nothing",
-                           floor.openings.size(), place_text(floor.openings.front()),
-                           100.0 * floor.escaping_rays));
+    notes.push_back(
+        format("the mesh is open at {} of the places that were looked at, for example at {}: portals, or "
+               "holes; {:.1f} % of the rays from the floor meet nothing",
+               floor.openings.size(), place_text(floor.openings.front()), 100.0 * floor.escaping_rays));
   return notes;
 }
 

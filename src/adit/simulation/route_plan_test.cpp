@@ -26,9 +26,8 @@ RoutePlan plan_of(const TriangleMesh& mesh, std::size_t robots, const RouteConfi
 /// Two levels of a hall, 60 x 6 m and 3 m high each, one above the other, and a ramp beside them that joins
 /// them: from (50, 9, 0) to (10, 9, 5).
 TriangleMesh two_levels() {
-  const auto quad = [](TriangleMesh& mesh, const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
-    test::add_quad(mesh, a, b, c, d);
-  };
+  const auto quad = [](TriangleMesh& mesh, const Vector3& a, const Vector3& b, const Vector3& c,
+                       const Vector3& d) { test::add_quad(mesh, a, b, c, d); };
   TriangleMesh mesh;
   for (const double z : {0.0, 5.0}) {
     const double door = z == 0.0 ? 50.0 : 4.0;  // of 6 m, in the wall at y = 6
@@ -108,8 +107,9 @@ TEST(RoutePlan, LevelsAboveOneAnotherAreJoinedByTheRampAlone) {
   EXPECT_NEAR(low.z(), 0.0, 0.01);
   EXPECT_NEAR(high.z(), 5.0, 0.01);
   for (const Vector3& p : points) {
-    if (p.y() < 6.0)
-      EXPECT_LT(std::min(p.z(), 5.0 - p.z()), 0.01) << "only the ramp leads up: " << p.transpose();
+    const bool is_on_ramp = p.y() >= 6.0;
+    EXPECT_TRUE(is_on_ramp || std::min(p.z(), 5.0 - p.z()) < 0.01)
+        << "only the ramp leads up: " << p.transpose();
   }
   RouteConfig flat;
   flat.max_slope_deg = 5.0;
@@ -149,8 +149,13 @@ TEST(RoutePlan, SaysWhatIsWrongWithAMesh) {
   const RouteConfig config;
   const auto flat = [](double, double) { return 0.0; };
   const Eigen::AlignedBox2d area(Eigen::Vector2d(0, 0), Eigen::Vector2d(40, 10));
-  EXPECT_ERROR(plan_routes(test::floor_of(area, 5.0, flat), 1, config), "no roof: nothing is above the floor");
-  EXPECT_ERROR(plan_routes(test::room({0, 0, 0}, {40, 10, 1}), 1, config), "no floor: no surface has 1.5 m");
+  EXPECT_ERROR(plan_routes(test::floor_of(area, 5.0, flat), 1, config),
+               "no roof: nothing is above the floor");
+  EXPECT_ERROR(plan_routes(test::room({0, 0, 0}, {40, 10, 1}), 1, config),
+               "no floor is high enough: the robot needs 1.5 m, and there are 1.00 m at");
+  TriangleMesh wall;
+  test::add_quad(wall, {0, 0, 0}, {40, 0, 0}, {40, 0, 9}, {0, 0, 9});
+  EXPECT_ERROR(plan_routes(wall, 1, config), "no floor: all surfaces are steeper than 60 degrees");
   EXPECT_ERROR(plan_routes(test::room({0, 0, 0}, {40, 1, 3}), 1, config), "no floor is wide enough");
   EXPECT_ERROR(plan_routes(test::room({0, 0, 0}, {6, 6, 3}), 1, config), "too small: the robot can drive on");
   EXPECT_ERROR(plan_routes({}, 1, config), "no triangle");
@@ -158,7 +163,7 @@ TEST(RoutePlan, SaysWhatIsWrongWithAMesh) {
   EXPECT_ERROR(plan_routes(test::room({0, 0, 0}, {9e4, 9e4, 3}), 1, config), "is the unit metres?");
   TriangleMesh leaking;  // floor and roof without walls
   test::add_quad(leaking, {0, 0, 0}, {40, 0, 0}, {40, 10, 0}, {0, 10, 0});
-  test::add_quad(leaking, {0, 0, 3}, {0, 10, 3}, {40, 10, 3}, {40, 0, 3});
+  test::add_quad(leaking, {0, 0, 8}, {0, 10, 8}, {40, 10, 8}, {40, 0, 8});
   EXPECT_ERROR(plan_routes(leaking, 1, config), "the mesh is not closed");
   RouteConfig bad;
   bad.cell_m = 0.0;

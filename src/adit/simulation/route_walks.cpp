@@ -13,14 +13,16 @@
 namespace adit {
 namespace {
 
-constexpr std::size_t kCandidates = 400;  ///< Walks that are drawn for a robot, each time that it is its turn.
+constexpr std::size_t kCandidates =
+    1000;  ///< Walks that are drawn for a robot, each time that it is its turn.
 constexpr int kRounds = 4;
-constexpr double kSharpestTurn = -0.2;   ///< Cosine of the sharpest turn at a place: 100 degrees.
-constexpr double kStraightness = 2.0;    ///< A way straight on is e^2 times as likely as one to the side.
-constexpr double kKnownWay = 0.1;        ///< A place where the robot was before is so much less likely.
-constexpr double kStartsApart = 25.0;    ///< Metres that robots should start apart.
-constexpr double kSharedCounts = 4.0;    ///< A metre that a pair lacks in common is worth so many that are covered.
-constexpr double kStartCounts = 100.0;   ///< Two robots that start at one place are as bad as so many metres.
+constexpr double kSharpestTurn = -0.2;  ///< Cosine of the sharpest turn at a place: 100 degrees.
+constexpr double kStraightness = 2.0;   ///< A way straight on is e^2 times as likely as one to the side.
+constexpr double kKnownWay = 0.1;       ///< A place where the robot was before is so much less likely.
+constexpr double kStartsApart = 25.0;   ///< Metres that robots should start apart.
+constexpr double kSharedCounts =
+    4.0;  ///< A metre that a pair lacks in common is worth so many that are covered.
+constexpr double kStartCounts = 100.0;  ///< Two robots that start at one place are as bad as so many metres.
 
 /// A robot's walk as it is drawn.
 class Walker {
@@ -100,15 +102,16 @@ Walk way_between(const RouteNetwork& network, std::uint32_t from, std::uint32_t 
 }
 
 /// From a start to a place of `other`, along it for about what two robots should share, and on at random.
-Walk meeting_walk(const RouteNetwork& network, const Walk& other, std::uint32_t start, const RouteConfig& config,
-                  Rng& rng) {
+Walk meeting_walk(const RouteNetwork& network, const Walk& other, std::uint32_t start,
+                  const RouteConfig& config, Rng& rng) {
   Walker walker(network, config.length_m, start);
   const std::size_t meeting = rng.below(other.size());
   for (const std::uint32_t place : way_between(network, start, other[meeting]))
     if (!walker.go(place)) return walker.walk();
   const bool forward = rng.below(2) == 0;
+  const double to_share = rng.uniform(0.8, 1.5) * config.shared_m;
   double shared = 0.0;
-  for (std::size_t i = meeting; shared < 1.5 * config.shared_m;) {
+  for (std::size_t i = meeting; shared < to_share;) {
     if (forward ? i + 1 == other.size() : i == 0) break;
     const std::size_t next = forward ? i + 1 : i - 1;
     shared += (network.places[other[next]].position - network.places[other[i]].position).norm();
@@ -195,7 +198,8 @@ Walk best_walk(const RouteNetwork& network, const Judge& judge, const Walk& pres
 
 }  // namespace
 
-std::vector<Walk> choose_walks(const RouteNetwork& network, std::size_t num_robots, const RouteConfig& config) {
+std::vector<Walk> choose_walks(const RouteNetwork& network, std::size_t num_robots,
+                               const RouteConfig& config) {
   if (starts_of(network).empty()) return {};
   const Phase phase("choosing routes", kRounds * num_robots);
   const Judge judge(network, config);

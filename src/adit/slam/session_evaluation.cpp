@@ -125,7 +125,8 @@ TruedMap trued_map(const SessionEvaluation& evaluation, const std::vector<std::s
   TruedMap map;
   for (const std::string& name : names) {
     const std::size_t robot = index_of(session.saved, name);
-    const auto placed = std::ranges::find(session.robots, name, [](const PlacedRobot& r) { return r.map->name; });
+    const auto placed =
+        std::ranges::find(session.robots, name, [](const PlacedRobot& r) { return r.map->name; });
     if (placed == session.robots.end() || !evaluation.robots.at(robot).joint) continue;
     map.T_world_map = evaluation.robots[robot].joint->T_world_estimate;
     map.robots.push_back({placed->map.get(), placed->T_world_keyframe, &*truths.at(robot)});

@@ -42,8 +42,8 @@ struct RobotErrors {
 
 struct SessionEvaluation {
   std::vector<std::vector<std::string>> components;
-  /// Of each component against the true surface; none where no robot of it has a truth. Empty where no surface
-  /// is given.
+  /// Of each component against the true surface; none where no robot of it has a truth. Empty where no
+  /// surface is given.
   std::vector<std::optional<MapAccuracy>> maps = {};
   std::vector<RobotErrors> robots;  ///< In the session's order; without errors where there is no truth.
   LoopCounts registered;            ///< Loops that registration accepted,
@@ -57,8 +57,8 @@ struct SessionEvaluation {
 [[nodiscard]] Result<SessionEvaluation> evaluate(const SavedSession& session,
                                                  const std::vector<std::optional<Trajectory>>& truths);
 
-/// Fills in `evaluation.maps`: each shared map, as its robots with a truth made it, after the alignment of its
-/// ATE. `session` is the one that was evaluated. Fails as TrueSurface::compare does.
+/// Fills in `evaluation.maps`: each shared map, as its robots with a truth made it, after the alignment of
+/// its ATE. `session` is the one that was evaluated. Fails as TrueSurface::compare does.
 Result<> add_map_accuracy(SessionEvaluation& evaluation, const PlacedSession& session,
                           const std::vector<std::optional<Trajectory>>& truths, const TrueSurface& surface,
                           const SightConfig& config);

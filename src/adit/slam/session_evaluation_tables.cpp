@@ -59,7 +59,8 @@ Table empty_map_table() {
   Table table;
   table.title = "Map against the true surface";
   table.caption =
-      "Distance of the map's points from the surface, and how much of the surface that could have been seen from "
+      "Distance of the map's points from the surface, and how much of the surface that could have been seen "
+      "from "
       "the true path lies within 10 cm of them.";
   table.header = {"Map", "Points", "Median (m)", "95 % (m)", "Complete (%)", "Could be seen (m²)"};
   return table;
@@ -72,7 +73,8 @@ std::vector<Table> tables_of(const SessionEvaluation& evaluation) {
   if (evaluation.maps.empty()) return tables;
   Table& maps = tables.emplace_back(empty_map_table());
   for (std::size_t i = 0; i < evaluation.maps.size(); ++i)
-    maps.rows.push_back(map_row(format("{}", fmt::join(evaluation.components.at(i), ", ")), evaluation.maps[i]));
+    maps.rows.push_back(
+        map_row(format("{}", fmt::join(evaluation.components.at(i), ", ")), evaluation.maps[i]));
   return tables;
 }
 

@@ -18,9 +18,9 @@
 namespace adit {
 namespace {
 
-constexpr double kSampleSpacing = 0.2;    ///< Metres between samples of the true surface.
-constexpr double kMapSpacing = 0.05;      ///< Of the maps that are compared: half of what counts as mapped.
-constexpr double kEyeSpacing = 1.0;       ///< Metres of the true path.
+constexpr double kSampleSpacing = 0.2;      ///< Metres between samples of the true surface.
+constexpr double kMapSpacing = 0.05;        ///< Of the maps that are compared: half of what counts as mapped.
+constexpr double kEyeSpacing = 1.0;         ///< Metres of the true path.
 constexpr float kSurfaceThickness = 0.01F;  ///< What a ray meets so near to a sample is the sample's surface.
 constexpr std::size_t kGrain = 4096;
 
@@ -77,9 +77,8 @@ struct Seen {
 }  // namespace
 
 Result<TrueSurface> TrueSurface::build(const TriangleMesh& mesh) {
-  return Raycaster::build(mesh).map([&](const Raycaster& raycaster) {
-    return TrueSurface(raycaster, mesh_points(mesh, kSampleSpacing));
-  });
+  return Raycaster::build(mesh).map(
+      [&](const Raycaster& raycaster) { return TrueSurface(raycaster, mesh_points(mesh, kSampleSpacing)); });
 }
 
 std::vector<double> TrueSurface::distances(const std::vector<Eigen::Vector3f>& map) const {
@@ -104,9 +103,10 @@ Result<> TrueSurface::add_completeness(const KdTree& map, std::span<const Eigen:
   });
   if (seen.total == 0) {
     const Eigen::Vector3f& first = positions.front();
-    return fail(format("nothing of the mesh is within {} m of the true path, which begins at ({:.1f}, {:.1f}, "
-                       "{:.1f}); do mesh and truth share a frame?",
-                       config.reach_m, first.x(), first.y(), first.z()));
+    return fail(
+        format("nothing of the mesh is within {} m of the true path, which begins at ({:.1f}, {:.1f}, "
+               "{:.1f}); do mesh and truth share a frame?",
+               config.reach_m, first.x(), first.y(), first.z()));
   }
   accuracy.completeness = static_cast<double>(seen.mapped) / static_cast<double>(seen.total);
   accuracy.seen_m2 = static_cast<double>(seen.total) * kSampleSpacing * kSampleSpacing;

@@ -38,10 +38,10 @@ class TrueSurface {
   /// Fails as `check_mesh` does.
   [[nodiscard]] static Result<TrueSurface> build(const TriangleMesh& mesh);
 
-  /// `map`, points in the frame of the mesh, against the surface; `eyes` are the true positions of the sensor,
-  /// a metre apart or less; without any there is no completeness. Points that are not finite do not count.
-  /// Fails on a map without points, and where nothing of the surface can be seen from the eyes: they are then
-  /// not inside of this mesh.
+  /// `map`, points in the frame of the mesh, against the surface; `eyes` are the true positions of the
+  /// sensor, a metre apart or less; without any there is no completeness. Points that are not finite do not
+  /// count. Fails on a map without points, and where nothing of the surface can be seen from the eyes: they
+  /// are then not inside of this mesh.
   [[nodiscard]] Result<MapAccuracy> compare(const std::vector<Eigen::Vector3f>& map,
                                             std::span<const Eigen::Vector3f> eyes,
                                             const SightConfig& config) const;

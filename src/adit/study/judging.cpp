@@ -175,12 +175,12 @@ std::vector<std::optional<MapAccuracy>> map_accuracies(const std::vector<const R
       const RobotId id = runs[i]->map->id;
       if (std::ranges::find(component.robots, id) == component.robots.end() || !joint.robots[i].ate) continue;
       T_world_map = joint.robots[i].ate->T_world_estimate;
-      robots.push_back(
-          {meeting.maps[i].get(), judged.solution.T_world_keyframe.at(id), &runs[i]->truth});
+      robots.push_back({meeting.maps[i].get(), judged.solution.T_world_keyframe.at(id), &runs[i]->truth});
     }
     std::optional<MapAccuracy>& accuracy = accuracies.emplace_back();
     if (!T_world_map) continue;
-    if (const Result<MapAccuracy> found = accuracy_of(robots, *T_world_map, surface, config)) accuracy = *found;
+    if (const Result<MapAccuracy> found = accuracy_of(robots, *T_world_map, surface, config))
+      accuracy = *found;
   }
   return accuracies;
 }

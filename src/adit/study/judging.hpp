@@ -28,8 +28,8 @@ struct JudgedSolution {
 [[nodiscard]] JointResult joint_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
                                        const JudgedSolution& judged);
 
-/// Each shared map of `joint`, the result of this meeting, against the true surface after the alignment of its
-/// ATE; none of a map that could not be aligned or has no point.
+/// Each shared map of `joint`, the result of this meeting, against the true surface after the alignment of
+/// its ATE; none of a map that could not be aligned or has no point.
 [[nodiscard]] std::vector<std::optional<MapAccuracy>> map_accuracies(
     const std::vector<const RobotRun*>& runs, const Meeting& meeting, const JudgedSolution& judged,
     const JointResult& joint, const TrueSurface& surface, const SightConfig& config);
