@@ -15,6 +15,7 @@
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/progress.hpp"
+#include "adit/simulation/outlook.hpp"
 
 namespace adit {
 namespace {
@@ -25,11 +26,9 @@ constexpr double kRough = 0.1;        ///< Metres above what wheels climb that s
 constexpr double kSmallestPart = 4.0;  ///< Square metres: smaller parts of the floor are not told of.
 constexpr double kLargestFloor = 3e7;  ///< Samples of it.
 constexpr float kFarAway = 1e6F;       ///< Metres: no mesh is as large.
-constexpr int kSphereRays = 64;
 constexpr std::size_t kLookOuts =
-    256;                          ///< Places in a part of the floor from which rays are cast all around.
-constexpr double kLeaks = 0.15;   ///< Share of these that meet nothing beyond which the part is outside.
-constexpr double kOpening = 0.1;  ///< The same of one place beyond which it is at an opening.
+    256;                         ///< Places in a part of the floor from which rays are cast all around.
+constexpr double kLeaks = 0.15;  ///< A part of the floor is outside where more of its rays meet nothing.
 
 /// A floor sample with free space above, and how it hangs together with those beside it.
 struct Ground {
@@ -238,53 +237,11 @@ std::vector<std::vector<std::uint32_t>> parts_of(const std::vector<Ground>& grou
   return by_root;
 }
 
-/// What is around a part of the floor.
-struct Outlook {
-  double escaping = 0.0;  ///< Share of rays that meet nothing,
-  double facing = 0.0;    ///< and of those that meet something the share of front sides.
-  std::vector<Vector3> openings;
-  Vector3 widest_open = Vector3::Zero();  ///< Where most rays escape.
-};
-
-Vector3 sphere_direction(int k) {
-  // Fibonacci lattice.
-  const double z = 1.0 - (2.0 * k + 1.0) / kSphereRays;
-  const double turn = k * std::numbers::pi * (3.0 - std::sqrt(5.0));
-  const double r = std::sqrt(1.0 - z * z);
-  return {r * std::cos(turn), r * std::sin(turn), z};
-}
-
-Outlook look_around(const std::vector<Ground>& grounds, const std::vector<std::uint32_t>& part,
-                    const Raycaster& raycaster, const RouteConfig& config) {
-  const std::size_t num_places = std::min(part.size(), kLookOuts);
-  std::vector<std::array<int, 2>> counts(num_places);  // escaped, front sides
-  const auto place = [&](std::size_t k) { return grounds[part[k * part.size() / num_places]].position; };
-  parallel_for_each(num_places, [&](std::size_t k) {
-    const Vector3 eye = place(k) + 0.5 * config.height_m * Vector3::UnitZ();
-    for (int ray = 0; ray < kSphereRays; ++ray) {
-      const Eigen::Vector3f direction = sphere_direction(ray).cast<float>();
-      const RayHit hit = raycaster.cast({eye.cast<float>(), direction}, kFarAway);
-      counts[k][0] += hit.hit() ? 0 : 1;
-      counts[k][1] += hit.hit() && hit.normal.dot(direction) < 0.0F ? 1 : 0;
-    }
-  });
-  Outlook around;
-  int escaped = 0;
-  int front = 0;
-  int most = -1;
-  for (std::size_t k = 0; k < num_places; ++k) {
-    escaped += counts[k][0];
-    front += counts[k][1];
-    if (counts[k][0] > most) {
-      most = counts[k][0];
-      around.widest_open = place(k);
-    }
-    if (counts[k][0] > kOpening * kSphereRays) around.openings.push_back(place(k));
-  }
-  const int all = static_cast<int>(num_places) * kSphereRays;
-  around.escaping = static_cast<double>(escaped) / all;
-  around.facing = all > escaped ? static_cast<double>(front) / (all - escaped) : 0.0;
-  return around;
+std::vector<Vector3> positions_of(const std::vector<Ground>& grounds,
+                                  const std::vector<std::uint32_t>& part) {
+  std::vector<Vector3> positions;
+  for (const std::uint32_t i : part) positions.push_back(grounds[i].position);
+  return positions;
 }
 
 /// A part of the floor inside of the mesh.
@@ -303,7 +260,7 @@ Result<std::vector<InsidePart>> inside_parts(const std::vector<Ground>& grounds,
   const double cell_area = config.cell_m * config.cell_m;
   for (std::vector<std::uint32_t>& part : parts) {
     if (!inside.empty() && static_cast<double>(part.size()) * cell_area < kSmallestPart) break;
-    const Outlook around = look_around(grounds, part, raycaster, config);
+    const Outlook around = look_around(positions_of(grounds, part), 0.5 * config.height_m, raycaster);
     if (around.escaping <= kLeaks)
       inside.push_back({std::move(part), around});
     else if (!leaking)

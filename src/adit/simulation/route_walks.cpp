@@ -23,6 +23,7 @@ constexpr double kStartsApart = 25.0;   ///< Metres that robots should start apa
 constexpr double kSharedCounts =
     4.0;  ///< A metre that a pair lacks in common is worth so many that are covered.
 constexpr double kStartCounts = 100.0;  ///< Two robots that start at one place are as bad as so many metres.
+constexpr double kEndCounts = 20.0;     ///< So many metres is it worth to begin at the end of a passage.
 
 /// A robot's walk as it is drawn.
 class Walker {
@@ -81,13 +82,20 @@ class Walker {
   std::vector<int> times_;  ///< How often each place was passed.
 };
 
-std::vector<std::uint32_t> starts_of(const RouteNetwork& network) {
-  std::vector<std::uint32_t> starts;
-  for (std::uint32_t place = 0; place < network.places.size(); ++place)
-    if (!network.places[place].ways.empty() && network.is_end(place)) starts.push_back(place);
-  if (!starts.empty()) return starts;
-  for (std::uint32_t place = 0; place < network.places.size(); ++place)
-    if (!network.places[place].ways.empty()) starts.push_back(place);
+/// Where robots may begin.
+struct Starts {
+  std::vector<std::uint32_t> ends;  ///< Of passages; where there is none, all places.
+  std::vector<std::uint32_t> all;
+};
+
+Starts starts_of(const RouteNetwork& network) {
+  Starts starts;
+  for (std::uint32_t place = 0; place < network.places.size(); ++place) {
+    if (network.places[place].ways.empty()) continue;
+    starts.all.push_back(place);
+    if (network.is_end(place)) starts.ends.push_back(place);
+  }
+  if (starts.ends.empty()) starts.ends = starts.all;
   return starts;
 }
 
@@ -144,7 +152,7 @@ class Judge {
   [[nodiscard]] double worth(const Walk& walk, const std::vector<Walk>& others,
                              const std::vector<Places>& of_others) const {
     const Places own = places_of(walk);
-    double score = 0.0;
+    double score = network_.is_end(walk.front()) ? 0.0 : -kEndCounts;
     std::vector<double> shared(others.size(), 0.0);
     for (std::size_t place = 0; place < own.size(); ++place) {
       if (!own[place]) continue;
@@ -174,14 +182,15 @@ class Judge {
 /// The best of many walks beside the others; `present` stays where none is better.
 Walk best_walk(const RouteNetwork& network, const Judge& judge, const Walk& present,
                const std::vector<Walk>& others, const RouteConfig& config, std::uint64_t seed) {
-  const std::vector<std::uint32_t> starts = starts_of(network);
+  const Starts starts = starts_of(network);
   std::vector<Walk> candidates(kCandidates);
   std::vector<double> worth(kCandidates);
   std::vector<Judge::Places> of_others;
   for (const Walk& other : others) of_others.push_back(judge.places_of(other));
   parallel_for_each(kCandidates, [&](std::size_t k) {
     Rng rng(mix64(seed, k));
-    const std::uint32_t start = starts[rng.below(starts.size())];
+    const std::vector<std::uint32_t>& from = k % 3 == 0 ? starts.all : starts.ends;
+    const std::uint32_t start = from[rng.below(from.size())];
     if (!others.empty() && k % 4 != 0) {
       candidates[k] = meeting_walk(network, others[rng.below(others.size())], start, config, rng);
     } else {
@@ -200,7 +209,7 @@ Walk best_walk(const RouteNetwork& network, const Judge& judge, const Walk& pres
 
 std::vector<Walk> choose_walks(const RouteNetwork& network, std::size_t num_robots,
                                const RouteConfig& config) {
-  if (starts_of(network).empty()) return {};
+  if (starts_of(network).all.empty()) return {};
   const Phase phase("choosing routes", kRounds * num_robots);
   const Judge judge(network, config);
   std::vector<Walk> walks(num_robots);
