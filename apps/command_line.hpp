@@ -111,6 +111,7 @@ void print_notes(const std::string& command, const std::vector<std::string>& not
 
 // One function per command, each in its own file of this folder.
 void add_world(Program& program);
+void add_routes(Program& program);
 void add_simulate(Program& program);
 void add_odometry(Program& program);
 void add_slam(Program& program);

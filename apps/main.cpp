@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   add_localize(program);
   add_georeference(program);
   add_world(program);
+  add_routes(program);
   add_simulate(program);
   add_odometry(program);
   add_register(program);

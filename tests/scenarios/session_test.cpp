@@ -108,6 +108,8 @@ TEST(Session, IsEvaluatedByNameInAnyOrder) {
     ++correct;
   EXPECT_EQ(correct, result["loops"]["registered"]["correct"].get<std::size_t>());
 
+  EXPECT_TRUE(result["maps"].empty()) << "no mesh was given";
+
   const test::ProgramRun one = run_adit("evaluate " + session + " --truth ahead=" + ahead);
   EXPECT_EQ(one.exit_code, 0) << one.err;
   EXPECT_NE(one.err.find("behind has no truth"), std::string::npos) << one.err;
@@ -117,6 +119,57 @@ TEST(Session, IsEvaluatedByNameInAnyOrder) {
   put_file(folder / "ahead.tum", "1000000000 0 0 0 0 0 0 1\n1000000001 1 0 0 0 0 0 1\n");
   expect_refused("evaluate " + session + " --truth " + (folder / "ahead.tum").string(), 1,
                  "not the truth of this drive");
+}
+
+void expect_near_the_mesh(const nlohmann::json& map) {
+  EXPECT_GT(map["points"].get<int>(), 5000);
+  EXPECT_LT(map["surface_median_m"].get<double>(), 0.08) << map;
+  EXPECT_GT(map["surface_median_m"].get<double>(), 0.0) << map;
+  EXPECT_LT(map["surface_p95_m"].get<double>(), 0.4) << map;
+  EXPECT_GT(map["completeness_10cm_pct"].get<double>(), 20.0) << map;
+  EXPECT_LT(map["completeness_10cm_pct"].get<double>(), 100.0) << map;
+}
+
+TEST(Session, ItsMapIsComparedWithTheMesh) {
+  const test::TemporaryFolder folder;
+  put_two_drives(folder.path());
+  const std::string session = (folder / "session").string();
+  const std::string recordings = (folder / "recordings").string();
+  const std::string routes = (folder / "routes.yaml").string();
+  const std::string mesh = " --mesh " + (folder / "world.ply").string();
+  expect_done("slam " + routes + " --lidar os2-32 --out " + session);
+  expect_done("simulate --routes " + routes + " --lidar os2-32 --set simulation.lidar.rate_hz=1 --out " +
+              recordings);
+  const std::string truths =
+      " --truth " + recordings + "/ahead_truth.tum " + recordings + "/behind_truth.tum";
+  const test::ProgramRun run = run_adit("evaluate " + session + truths + mesh + " --json");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const nlohmann::json maps = nlohmann::json::parse(run.out)["maps"];
+  ASSERT_EQ(maps.size(), 1U);
+  expect_near_the_mesh(maps[0]);
+  EXPECT_EQ(nlohmann::json::parse(get_file(folder / "session/metrics.json"))["evaluation"]["maps"], maps);
+  EXPECT_NE(run_adit("evaluate " + session + truths + mesh).out.find("Map against the true surface"),
+            std::string::npos);
+
+  // The session's map as a cloud of its own: the same alignment, points that are thinned more.
+  const std::string cloud = session + "/map.ply";
+  const std::string trajectories =
+      " --trajectory " + session + "/ahead/trajectory.tum " + session + "/behind/trajectory.tum";
+  const test::ProgramRun aligned = run_adit("evaluate " + cloud + truths + trajectories + mesh + " --json");
+  ASSERT_EQ(aligned.exit_code, 0) << aligned.err;
+  const nlohmann::json map = nlohmann::json::parse(aligned.out);
+  EXPECT_NEAR(map["surface_median_m"].get<double>(), maps[0]["surface_median_m"].get<double>(), 0.03);
+  EXPECT_NEAR(map["could_be_seen_m2"].get<double>(), maps[0]["could_be_seen_m2"].get<double>(),
+              0.1 * maps[0]["could_be_seen_m2"].get<double>());
+  EXPECT_LT(map["completeness_10cm_pct"].get<double>(), maps[0]["completeness_10cm_pct"].get<double>());
+  const test::ProgramRun alone = run_adit("evaluate " + cloud + mesh + " --json");
+  ASSERT_EQ(alone.exit_code, 0) << alone.err;
+  EXPECT_NE(alone.err.find("in the frame of the mesh"), std::string::npos) << alone.err;
+  EXPECT_TRUE(nlohmann::json::parse(alone.out)["completeness_10cm_pct"].is_null());
+
+  expect_refused("evaluate " + session, 2, "--truth is required");
+  expect_refused("evaluate " + cloud + trajectories + mesh, 2, "each needs its truth");
+  expect_refused("evaluate " + session + truths + " --mesh " + cloud, 1, "no triangle");
 }
 
 TEST(Session, ExplainsItsMerges) {
@@ -238,6 +291,7 @@ TEST(Config, AWrongSettingIsWrongUsageInEveryCommand) {
   const std::string a = (folder / "a").string();
   const std::string out = " --out " + (folder / "out").string();
   const std::vector<std::string> commands = {"world" + out,
+                                             "routes " + a + out,
                                              "simulate --routes " + a + out,
                                              "odometry " + a + out,
                                              "slam " + a + out,

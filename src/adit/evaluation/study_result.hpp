@@ -14,6 +14,7 @@
 #include "adit/evaluation/ate.hpp"
 #include "adit/evaluation/floor_plan.hpp"
 #include "adit/evaluation/loop_stats.hpp"
+#include "adit/evaluation/map_accuracy.hpp"
 
 namespace adit {
 
@@ -138,7 +139,9 @@ struct JointResult {
   std::vector<std::vector<std::string>>
       components;                   ///< Names of the robots that share a map, one list per map.
   std::vector<MergedRobot> robots;  ///< In the order of StudyResult::robots.
-  LoopCounts loops;                 ///< In the solution, or before GNC.
+  /// Of each component against the mesh of the world, none where it could not be compared; may be empty.
+  std::vector<std::optional<MapAccuracy>> map_accuracy = {};
+  LoopCounts loops;  ///< In the solution, or before GNC.
   int wrong_loops_in_solution = 0;
   std::vector<std::uint64_t> bytes_sent_per_robot;
   std::vector<std::string> refusals;  ///< "robot_0 and robot_3 were not merged: ...".

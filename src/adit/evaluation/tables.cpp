@@ -183,6 +183,17 @@ std::string map_of(const JointResult& joint, const std::string& robot) {
   return "alone";
 }
 
+/// Of the shared map that the robot is in: blank where it was not compared with the true surface.
+Row map_cells(const JointResult& joint, const std::string& robot) {
+  for (std::size_t i = 0; i < joint.components.size() && i < joint.map_accuracy.size(); ++i) {
+    const std::optional<MapAccuracy>& map = joint.map_accuracy[i];
+    if (!map || std::ranges::find(joint.components[i], robot) == joint.components[i].end()) continue;
+    return {format("{:.3f}", map->median_m), format("{:.3f}", map->p95_m),
+            map->completeness ? format("{:.1f}", 100.0 * *map->completeness) : ""};
+  }
+  return {"", "", ""};
+}
+
 }  // namespace
 
 Table trajectories_table(const StudyResult& study, PaperFigures paper) {
@@ -301,22 +312,26 @@ Table odometry_table(const StudyResult& study) {
 Table joint_table(const StudyResult& study) {
   Table table;
   table.title = "All robots jointly";
-  table.header = {"Robot", "Shared map", "Max ATE (m)", "RMSE (m)", "Max / path (%)", "Sent (MB)"};
+  table.header = {"Robot",          "Shared map",   "Max ATE (m)",      "RMSE (m)", "Max / path (%)",
+                  "Map median (m)", "Map 95 % (m)", "Map complete (%)", "Sent (MB)"};
   if (!study.joint) return table;
   const JointResult& joint = *study.joint;
   table.caption = format(
       "All robots merged at once ({}): {} loops, {} of them wrong and in use. ATE after one alignment of "
-      "each shared map.",
+      "each shared map. Map: distance of the shared map's points from the true surface after that alignment, "
+      "and "
+      "how much of the surface that could have been seen lies within 10 cm of it.",
       policy_title(joint.keyframes), joint.loops.total, joint.wrong_loops_in_solution);
   for (std::size_t i = 0; i < joint.robots.size(); ++i) {
     const MergedRobot& robot = joint.robots[i];
     const std::optional<double> ratio = robot.ate_max_over_path_pct();
     const bool counted = i < joint.bytes_sent_per_robot.size();
-    table.rows.push_back(
-        {short_name(robot.name), map_of(joint, robot.name),
-         robot.ate ? format("{:.3f}", robot.ate->max_m) : "",
-         robot.ate ? format("{:.3f}", robot.ate->rmse_m) : "", ratio ? format("{:.2f}", *ratio) : "",
-         counted ? format("{:.2f}", 1e-6 * static_cast<double>(joint.bytes_sent_per_robot[i])) : ""});
+    Row row = {short_name(robot.name), map_of(joint, robot.name),
+               robot.ate ? format("{:.3f}", robot.ate->max_m) : "",
+               robot.ate ? format("{:.3f}", robot.ate->rmse_m) : "", ratio ? format("{:.2f}", *ratio) : ""};
+    add_cells(row, map_cells(joint, robot.name));
+    row.push_back(counted ? format("{:.2f}", 1e-6 * static_cast<double>(joint.bytes_sent_per_robot[i])) : "");
+    table.rows.push_back(std::move(row));
   }
   return table;
 }

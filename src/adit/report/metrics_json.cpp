@@ -72,12 +72,25 @@ Json pair_json(const PairResult& pair) {
           {"ate_max_over_path_pct", ratio_list(pair.robots)}};
 }
 
+Json map_list(std::span<const std::optional<MapAccuracy>> maps) {
+  Json list = Json::array();
+  for (const std::optional<MapAccuracy>& map : maps) {
+    list.push_back(map ? Json{{"surface_median_m", map->median_m},
+                              {"surface_p95_m", map->p95_m},
+                              {"completeness_10cm_pct",
+                               map->completeness ? number(100.0 * *map->completeness) : Json(nullptr)}}
+                       : Json(nullptr));
+  }
+  return list;
+}
+
 Json joint_json(const JointResult& joint) {
   return {{"keyframes", joint.keyframes},
           {"components", joint.components},
           {"ate_max_m", ate_list(joint.robots, &AteResult::max_m)},
           {"ate_rmse_m", ate_list(joint.robots, &AteResult::rmse_m)},
           {"ate_max_over_path_pct", ratio_list(joint.robots)},
+          {"maps", map_list(joint.map_accuracy)},
           {"loops", joint.loops.total},
           {"wrong_place", joint.loops.wrong_place},
           {"wrong_registration", joint.loops.wrong_registration},

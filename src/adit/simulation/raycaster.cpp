@@ -12,6 +12,7 @@
 #include "adit/core/pose.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/core/simd.hpp"
+#include "adit/geometry/triangle_distance.hpp"
 
 namespace adit {
 namespace {
@@ -170,6 +171,30 @@ ADIT_WIDE_VECTORS void measure(const PlaneBlock& planes, const RayBlock::Vectors
   }
 }
 
+// Of a search for the nearest triangle: the mesh as Embree holds it, and what was found.
+struct Nearest {
+  const float* vertices;
+  const unsigned* triangles;
+  Vector3 point;
+  double squared_distance;
+};
+
+// Embree calls it for each triangle that may be nearer than the best one so far.
+bool compare_triangle(RTCPointQueryFunctionArguments* arguments) {
+  Nearest& nearest = *static_cast<Nearest*>(arguments->userPtr);
+  std::array<Vector3, 3> corners;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const float* vertex = nearest.vertices + 3UL * nearest.triangles[3UL * arguments->primID + i];
+    corners[i] = Vector3(vertex[0], vertex[1], vertex[2]);
+  }
+  const double squared = squared_distance_to_triangle(nearest.point, corners);
+  if (squared >= nearest.squared_distance) return false;
+  nearest.squared_distance = squared;
+  // A little more than the distance, which was rounded to a float: what is nearer by less is looked at, too.
+  arguments->query->radius = static_cast<float>(std::sqrt(squared) * (1.0 + 1e-6));
+  return true;
+}
+
 }  // namespace
 
 struct Raycaster::Scene {
@@ -208,6 +233,19 @@ RayHit Raycaster::cast(const Ray& ray, float max_distance) const {
   RTCIntersectContext context = context_of(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
   rtcIntersect1(scene_->embree.get(), &context, &query);
   return scene_->hit_of(query, ray);
+}
+
+float Raycaster::distance(const Eigen::Vector3f& point, float max_distance) const {
+  const RTCGeometry geometry = rtcGetGeometry(scene_->embree.get(), 0);
+  Nearest nearest{static_cast<const float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0)),
+                  static_cast<const unsigned*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0)),
+                  point.cast<double>(), std::numeric_limits<double>::infinity()};
+  RTCPointQuery query{point.x(), point.y(), point.z(), 0.0F, max_distance};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(scene_->embree.get(), &query, &context, compare_triangle, &nearest);
+  const auto distance = static_cast<float>(std::sqrt(nearest.squared_distance));
+  return distance <= max_distance ? distance : RayHit::kMiss;
 }
 
 void Raycaster::cast(RayBlock& block, float max_distance) const {

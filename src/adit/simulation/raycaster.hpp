@@ -68,6 +68,9 @@ class Raycaster {
   /// The same for many rays at once: fastest when neighbours in the block start and point alike.
   void cast(RayBlock& block, float max_distance) const;
 
+  /// How far the nearest surface is from `point`, metres; `RayHit::kMiss` when none is within `max_distance`.
+  [[nodiscard]] float distance(const Eigen::Vector3f& point, float max_distance = RayHit::kMiss) const;
+
  private:
   struct Scene;
   explicit Raycaster(std::shared_ptr<const Scene> scene) : scene_(std::move(scene)) {}

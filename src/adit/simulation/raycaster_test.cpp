@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "adit/core/parallel.hpp"
+#include "adit/geometry/triangle_distance.hpp"
 #include "support/meshes.hpp"
 
 namespace adit {
@@ -219,6 +220,28 @@ TEST(Raycaster, refuses_what_is_not_a_mesh) {
   mesh = test::room({0, 0, 0}, {1, 1, 1});
   mesh.triangles[1].x() = 24;
   EXPECT_FALSE(Raycaster::build(mesh).has_value());
+}
+
+TEST(Raycaster, TheNearestSurfaceIsThatOfAllTriangles) {
+  const TriangleMesh mesh = random_soup(300);
+  const Result<Raycaster> raycaster = Raycaster::build(mesh);
+  ASSERT_TRUE(raycaster) << raycaster.error().message;
+  Rng rng(13);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3f p = test::random_vector(rng, 14.0).cast<float>();
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector3i& t : mesh.triangles) {
+      const auto corner = [&](int c) -> Vector3 {
+        return mesh.vertices[static_cast<std::size_t>(t[c])].cast<double>();
+      };
+      nearest = std::min(nearest,
+                         squared_distance_to_triangle(p.cast<double>(), {corner(0), corner(1), corner(2)}));
+    }
+    const auto distance = static_cast<float>(std::sqrt(nearest));
+    EXPECT_FLOAT_EQ(raycaster->distance(p), distance);
+    EXPECT_EQ(raycaster->distance(p, 0.9F * distance), RayHit::kMiss);
+    EXPECT_FLOAT_EQ(raycaster->distance(p, 1.1F * distance), distance);
+  }
 }
 
 }  // namespace

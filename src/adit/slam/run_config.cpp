@@ -13,6 +13,8 @@ Fields fields_of(RunConfig& c) {
   append(fields, "simulation", fields_of(c.simulation));
   append(fields, "world", fields_of(c.world));
   append(fields, "maps", fields_of(c.maps));
+  append(fields, "routes", fields_of(c.routes));
+  append(fields, "sight", fields_of(c.sight));
   return fields;
 }
 

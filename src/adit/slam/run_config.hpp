@@ -7,10 +7,12 @@
 #include <string_view>
 
 #include "adit/core/recording_config.hpp"
+#include "adit/simulation/route_config.hpp"
 #include "adit/simulation/scenario.hpp"
 #include "adit/simulation/world.hpp"
 #include "adit/slam/joint_map.hpp"
 #include "adit/slam/slam_config.hpp"
+#include "adit/slam/true_surface.hpp"
 
 namespace adit {
 
@@ -22,6 +24,8 @@ struct RunConfig {
   WorldConfig world;
   OdometryMethod paper_odometry = OdometryMethod::kinematic_icp;
   MapsConfig maps;
+  SightConfig sight;
+  RouteConfig routes;
 };
 /// The keys of `slam` have no prefix of their own: robot.odometry.method, loops.place.max_distance, ...
 Fields fields_of(RunConfig& config);

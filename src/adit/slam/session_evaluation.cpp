@@ -114,6 +114,26 @@ void add_loops(const SavedSession& session, const std::vector<std::optional<Traj
   }
 }
 
+/// The robots of a shared map that have a truth, and the alignment of their ATE.
+struct TruedMap {
+  std::vector<TruedRobot> robots;
+  Pose T_world_map;
+};
+
+TruedMap trued_map(const SessionEvaluation& evaluation, const std::vector<std::string>& names,
+                   const PlacedSession& session, const std::vector<std::optional<Trajectory>>& truths) {
+  TruedMap map;
+  for (const std::string& name : names) {
+    const std::size_t robot = index_of(session.saved, name);
+    const auto placed =
+        std::ranges::find(session.robots, name, [](const PlacedRobot& r) { return r.map->name; });
+    if (placed == session.robots.end() || !evaluation.robots.at(robot).joint) continue;
+    map.T_world_map = evaluation.robots[robot].joint->T_world_estimate;
+    map.robots.push_back({placed->map.get(), placed->T_world_keyframe, &*truths.at(robot)});
+  }
+  return map;
+}
+
 }  // namespace
 
 Result<std::vector<std::optional<Trajectory>>> match_truths(const SavedSession& session,
@@ -150,6 +170,21 @@ Result<SessionEvaluation> evaluate(const SavedSession& session,
   }
   add_loops(session, truths, evaluation);
   return evaluation;
+}
+
+Result<> add_map_accuracy(SessionEvaluation& evaluation, const PlacedSession& session,
+                          const std::vector<std::optional<Trajectory>>& truths, const TrueSurface& surface,
+                          const SightConfig& config) {
+  evaluation.maps.clear();
+  for (const std::vector<std::string>& names : evaluation.components) {
+    std::optional<MapAccuracy>& map = evaluation.maps.emplace_back();
+    const TruedMap trued = trued_map(evaluation, names, session, truths);
+    if (trued.robots.empty()) continue;
+    const Result<MapAccuracy> accuracy = accuracy_of(trued.robots, trued.T_world_map, surface, config);
+    if (!accuracy) return fail(format("the map of {}", fmt::join(names, ", ")), accuracy.error());
+    map = *accuracy;
+  }
+  return {};
 }
 
 }  // namespace adit

@@ -10,9 +10,12 @@
 #include <vector>
 
 #include "adit/evaluation/ate.hpp"
+#include "adit/evaluation/map_accuracy.hpp"
 #include "adit/evaluation/rpe.hpp"
 #include "adit/evaluation/tables.hpp"
 #include "adit/io/session_dir.hpp"
+#include "adit/slam/joint_map.hpp"
+#include "adit/slam/true_surface.hpp"
 
 namespace adit {
 
@@ -39,6 +42,9 @@ struct RobotErrors {
 
 struct SessionEvaluation {
   std::vector<std::vector<std::string>> components;
+  /// Of each component against the true surface; none where no robot of it has a truth. Empty where no
+  /// surface is given.
+  std::vector<std::optional<MapAccuracy>> maps = {};
   std::vector<RobotErrors> robots;  ///< In the session's order; without errors where there is no truth.
   LoopCounts registered;            ///< Loops that registration accepted,
   LoopCounts consistent;            ///< of these those that PCM or the merge check kept,
@@ -51,10 +57,18 @@ struct SessionEvaluation {
 [[nodiscard]] Result<SessionEvaluation> evaluate(const SavedSession& session,
                                                  const std::vector<std::optional<Trajectory>>& truths);
 
-/// Two tables: trajectory errors, loops.
+/// Fills in `evaluation.maps`: each shared map, as its robots with a truth made it, after the alignment of
+/// its ATE. `session` is the one that was evaluated. Fails as TrueSurface::compare does.
+Result<> add_map_accuracy(SessionEvaluation& evaluation, const PlacedSession& session,
+                          const std::vector<std::optional<Trajectory>>& truths, const TrueSurface& surface,
+                          const SightConfig& config);
+
+/// Two tables: trajectory errors, loops; a third one where maps were compared with the true surface.
 [[nodiscard]] std::vector<Table> tables_of(const SessionEvaluation& evaluation);
+[[nodiscard]] Table table_of(const MapAccuracy& map, const std::string& name);
 /// The same as JSON, with RPE.
 [[nodiscard]] std::string json_of(const SessionEvaluation& evaluation);
+[[nodiscard]] std::string json_of(const MapAccuracy& map);
 
 /// Puts the classes into loops.csv of the session, and `evaluation` into its metrics.json.
 Result<> save_evaluation(const std::filesystem::path& session, const SessionEvaluation& evaluation);

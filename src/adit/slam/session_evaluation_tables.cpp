@@ -7,6 +7,8 @@
 namespace adit {
 namespace {
 
+using Row = std::vector<std::string>;
+
 template <class Errors>
 std::string metres(const std::optional<Errors>& errors, double Errors::*field) {
   return errors ? format("{:.3f}", (*errors).*field) : "-";
@@ -43,10 +45,43 @@ Table loop_table(const SessionEvaluation& evaluation) {
   return table;
 }
 
+Row map_row(const std::string& robots, const std::optional<MapAccuracy>& map) {
+  if (!map) return {robots, "-", "-", "-", "-", "-"};
+  return {robots,
+          format("{}", map->num_points),
+          format("{:.3f}", map->median_m),
+          format("{:.3f}", map->p95_m),
+          map->completeness ? format("{:.1f}", 100.0 * *map->completeness) : "-",
+          map->completeness ? format("{:.0f}", map->seen_m2) : "-"};
+}
+
+Table empty_map_table() {
+  Table table;
+  table.title = "Map against the true surface";
+  table.caption =
+      "Distance of the map's points from the surface, and how much of the surface that could have been seen "
+      "from "
+      "the true path lies within 10 cm of them.";
+  table.header = {"Map", "Points", "Median (m)", "95 % (m)", "Complete (%)", "Could be seen (m²)"};
+  return table;
+}
+
 }  // namespace
 
 std::vector<Table> tables_of(const SessionEvaluation& evaluation) {
-  return {robot_table(evaluation), loop_table(evaluation)};
+  std::vector<Table> tables = {robot_table(evaluation), loop_table(evaluation)};
+  if (evaluation.maps.empty()) return tables;
+  Table& maps = tables.emplace_back(empty_map_table());
+  for (std::size_t i = 0; i < evaluation.maps.size(); ++i)
+    maps.rows.push_back(
+        map_row(format("{}", fmt::join(evaluation.components.at(i), ", ")), evaluation.maps[i]));
+  return tables;
+}
+
+Table table_of(const MapAccuracy& map, const std::string& name) {
+  Table table = empty_map_table();
+  table.rows.push_back(map_row(name, map));
+  return table;
 }
 
 }  // namespace adit

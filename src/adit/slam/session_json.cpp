@@ -99,6 +99,15 @@ Json counts_json(const LoopCounts& counts) {
           {"wrong_registration", counts.wrong_registration}};
 }
 
+Json map_json(const std::optional<MapAccuracy>& map) {
+  if (!map) return nullptr;
+  return {{"points", map->num_points},
+          {"surface_median_m", map->median_m},
+          {"surface_p95_m", map->p95_m},
+          {"completeness_10cm_pct", map->completeness ? Json(100.0 * *map->completeness) : Json(nullptr)},
+          {"could_be_seen_m2", map->completeness ? Json(map->seen_m2) : Json(nullptr)}};
+}
+
 Json evaluation_json(const SessionEvaluation& evaluation) {
   Json robots = Json::array();
   for (const RobotErrors& robot : evaluation.robots)
@@ -113,8 +122,11 @@ Json evaluation_json(const SessionEvaluation& evaluation) {
                       {"rpe_translation_median_m", number(robot.relative, &RpeResult::translation_median_m)},
                       {"rpe_rotation_rmse_rad", number(robot.relative, &RpeResult::rotation_rmse_rad)},
                       {"rpe_rotation_median_rad", number(robot.relative, &RpeResult::rotation_median_rad)}});
+  Json maps = Json::array();
+  for (const std::optional<MapAccuracy>& map : evaluation.maps) maps.push_back(map_json(map));
   return {{"components", evaluation.components},
           {"robots", robots},
+          {"maps", maps},
           {"loops",
            {{"registered", counts_json(evaluation.registered)},
             {"after_pcm", counts_json(evaluation.consistent)},
@@ -142,6 +154,8 @@ std::string session_metrics(const SlamRun& run) {
 }
 
 std::string json_of(const SessionEvaluation& evaluation) { return json_text(evaluation_json(evaluation)); }
+
+std::string json_of(const MapAccuracy& map) { return json_text(map_json(map)); }
 
 Result<> save_evaluation(const std::filesystem::path& session, const SessionEvaluation& evaluation) {
   const std::filesystem::path loops = session / "loops.csv";

@@ -163,4 +163,26 @@ JointResult joint_result(const std::vector<const RobotRun*>& runs, const Meeting
   return result;
 }
 
+std::vector<std::optional<MapAccuracy>> map_accuracies(const std::vector<const RobotRun*>& runs,
+                                                       const Meeting& meeting, const JudgedSolution& judged,
+                                                       const JointResult& joint, const TrueSurface& surface,
+                                                       const SightConfig& config) {
+  std::vector<std::optional<MapAccuracy>> accuracies;
+  for (const Component& component : judged.solution.components) {
+    std::vector<TruedRobot> robots;
+    std::optional<Pose> T_world_map;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const RobotId id = runs[i]->map->id;
+      if (std::ranges::find(component.robots, id) == component.robots.end() || !joint.robots[i].ate) continue;
+      T_world_map = joint.robots[i].ate->T_world_estimate;
+      robots.push_back({meeting.maps[i].get(), judged.solution.T_world_keyframe.at(id), &runs[i]->truth});
+    }
+    std::optional<MapAccuracy>& accuracy = accuracies.emplace_back();
+    if (!T_world_map) continue;
+    if (const Result<MapAccuracy> found = accuracy_of(robots, *T_world_map, surface, config))
+      accuracy = *found;
+  }
+  return accuracies;
+}
+
 }  // namespace adit

@@ -7,6 +7,7 @@
 
 #include "adit/evaluation/study_result.hpp"
 #include "adit/slam/meeting.hpp"
+#include "adit/slam/true_surface.hpp"
 #include "adit/study/robot_run.hpp"
 
 namespace adit {
@@ -26,5 +27,11 @@ struct JudgedSolution {
                                      const JudgedSolution& judged);
 [[nodiscard]] JointResult joint_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
                                        const JudgedSolution& judged);
+
+/// Each shared map of `joint`, the result of this meeting, against the true surface after the alignment of
+/// its ATE; none of a map that could not be aligned or has no point.
+[[nodiscard]] std::vector<std::optional<MapAccuracy>> map_accuracies(
+    const std::vector<const RobotRun*>& runs, const Meeting& meeting, const JudgedSolution& judged,
+    const JointResult& joint, const TrueSurface& surface, const SightConfig& config);
 
 }  // namespace adit

@@ -72,8 +72,9 @@ Result<> study_pairs(const Study& study, const std::vector<RobotRun>& runs, Stud
   return {};
 }
 
-Result<> study_joint(const Study& study, const std::vector<const RobotRun*>& runs, KeyframeSelection policy,
+Result<> study_joint(const Study& study, const TriangleMesh& mesh, const std::vector<const RobotRun*>& runs,
                      StudyResult& result) {
+  const KeyframeSelection policy = study.policies.back();
   const SlamConfig config = with_policy(policy, study.config).slam;
   const Result<Meeting> meeting = hold_meeting(selected_maps(runs, policy), config);
   if (!meeting) return tl::unexpected(meeting.error());
@@ -82,6 +83,9 @@ Result<> study_joint(const Study& study, const std::vector<const RobotRun*>& run
   if (!judged) return tl::unexpected(judged.error());
   JointResult& joint = result.joint.emplace(joint_result(runs, *meeting, *judged));
   joint.keyframes = to_string(policy);
+  const Result<TrueSurface> surface = TrueSurface::build(mesh);
+  if (!surface) return tl::unexpected(surface.error());
+  joint.map_accuracy = map_accuracies(runs, *meeting, *judged, joint, *surface, study.config.sight);
   joint.loop_map = loop_map(known, judged->solution);
   joint.merges = merge_pictures(known, judged->solution);
   for (const auto& map : meeting->maps)
@@ -135,7 +139,7 @@ Result<StudyResult> run_study(const Study& study, const World& world) {
   for (const RobotRun& run : *runs) result.robots.push_back(run.result);
   Result<> done = write_trajectories(*runs, study.folder);
   if (done) done = study_pairs(study, *runs, result);
-  if (done && runs->size() > 1) done = study_joint(study, all, study.policies.back(), result);
+  if (done && runs->size() > 1) done = study_joint(study, world.mesh, all, result);
   if (!done) return tl::unexpected(done.error());
   return result;
 }

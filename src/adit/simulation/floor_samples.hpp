@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "adit/core/pose.hpp"
+#include "adit/geometry/triangle_mesh.hpp"
+
+namespace adit {
+
+/// A column of a grid in plan: its middle is at ((x + 0.5) cell, (y + 0.5) cell).
+struct FloorColumn {
+  int x = 0;
+  int y = 0;
+  auto operator<=>(const FloorColumn&) const = default;
+};
+[[nodiscard]] FloorColumn column_of(const Vector3& p, double cell);
+
+/// A surface that is not too steep, exactly above or below the middle of a column.
+struct FloorSample {
+  FloorColumn column;
+  double z = 0.0;
+};
+
+/// Every such surface of the mesh, floors and ceilings alike, by column and from the lowest up: levels above
+/// one another are samples of one column. Of surfaces less than 3 cm apart the highest remains. Steeper than
+/// 60 degrees is a wall. The mesh must pass `check_mesh`.
+[[nodiscard]] std::vector<FloorSample> floor_samples(const TriangleMesh& mesh, double cell);
+
+/// Those of one column; `samples` are as floor_samples returns them.
+[[nodiscard]] std::span<const FloorSample> samples_in(const std::vector<FloorSample>& samples,
+                                                      FloorColumn column);
+
+}  // namespace adit
