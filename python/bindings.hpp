@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// What the files of the Python module share. Each adds one group of functions and classes; python/adit/__init__.pyi
-/// describes them for users.
+/// What the files of the Python module share. Each adds one group of functions and classes;
+/// python/adit/__init__.pyi describes them for users.
 #pragma once
 
 #include <pybind11/eigen.h>
@@ -64,8 +64,8 @@ class Stop : public ProgressObserver {
   std::atomic<bool> stopped_ = false;
 };
 
-/// The result of `work`, which touches no Python object: other Python threads run meanwhile, and Ctrl-C ends it with
-/// KeyboardInterrupt.
+/// The result of `work`, which touches no Python object: other Python threads run meanwhile, and Ctrl-C ends
+/// it with KeyboardInterrupt.
 template <class Work>
 auto without_gil(const Work& work) {
   Stop stop;

@@ -18,7 +18,8 @@ void write_points(const std::filesystem::path& path, const PointArray& points) {
 }  // namespace
 
 PointCloud cloud_of(const PointArray& points) {
-  if (points.ndim() != 2 || points.shape(1) != 3) throw py::value_error("points are an array of shape (n, 3)");
+  if (points.ndim() != 2 || points.shape(1) != 3)
+    throw py::value_error("points are an array of shape (n, 3)");
   PointCloud cloud;
   cloud.points.resize(static_cast<std::size_t>(points.shape(0)));
   if (!cloud.empty()) std::memcpy(cloud.points.data(), points.data(), cloud.size() * sizeof(Eigen::Vector3f));

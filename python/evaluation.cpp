@@ -27,7 +27,8 @@ void add_ate(py::module_& m) {
                                for (const Vector3& position : r.positions) rows.row(row++) = position;
                                return rows;
                              })
-      .def_property_readonly("T_world_estimate", [](const AteResult& r) { return r.T_world_estimate.matrix(); })
+      .def_property_readonly("T_world_estimate",
+                             [](const AteResult& r) { return r.T_world_estimate.matrix(); })
       .def_readonly("max", &AteResult::max_m)
       .def_readonly("rmse", &AteResult::rmse_m)
       .def_readonly("mean", &AteResult::mean_m)
@@ -37,8 +38,10 @@ void add_ate(py::module_& m) {
 
 void add_rpe(py::module_& m) {
   py::class_<RpeResult>(m, "Rpe")
-      .def_property_readonly("translation_errors", [](const RpeResult& r) { return array_of(r.translation_errors_m); })
-      .def_property_readonly("rotation_errors", [](const RpeResult& r) { return array_of(r.rotation_errors_rad); })
+      .def_property_readonly("translation_errors",
+                             [](const RpeResult& r) { return array_of(r.translation_errors_m); })
+      .def_property_readonly("rotation_errors",
+                             [](const RpeResult& r) { return array_of(r.rotation_errors_rad); })
       .def_readonly("segment", &RpeResult::segment_m)
       .def_readonly("translation_rmse", &RpeResult::translation_rmse_m)
       .def_readonly("translation_median", &RpeResult::translation_median_m)

@@ -62,7 +62,8 @@ template <class P>
 void check_shapes(const GraphArrays& a, std::size_t num_poses, std::size_t num_measurements) {
   if (a.keys.ndim() != 1 || static_cast<std::size_t>(a.keys.size()) != num_poses)
     throw py::value_error("keys: one for each pose is needed");
-  if (a.edges.ndim() != 2 || a.edges.shape(1) != 2 || static_cast<std::size_t>(a.edges.shape(0)) != num_measurements)
+  if (a.edges.ndim() != 2 || a.edges.shape(1) != 2 ||
+      static_cast<std::size_t>(a.edges.shape(0)) != num_measurements)
     throw py::value_error("edges: an array of shape (m, 2) is needed, one row for each measurement");
   if (a.is_loop.ndim() != 1 || static_cast<std::size_t>(a.is_loop.size()) != num_measurements)
     throw py::value_error("is_loop: one for each edge is needed");
@@ -83,9 +84,10 @@ BasicPoseGraph<P> graph_of(const GraphArrays& a) {
     const std::int64_t from = a.edges.data()[2 * e];
     const std::int64_t to = a.edges.data()[2 * e + 1];
     if (from < 0 || to < 0) throw py::value_error("edges: indices of poses are counted from 0");
-    graph.edges.push_back({static_cast<std::size_t>(from), static_cast<std::size_t>(to), measurements[e],
-                           Eigen::Map<const Eigen::Matrix<double, P::kDof, P::kDof, Eigen::RowMajor>>(information),
-                           a.is_loop.data()[e] ? EdgeKind::loop : EdgeKind::odometry});
+    graph.edges.push_back(
+        {static_cast<std::size_t>(from), static_cast<std::size_t>(to), measurements[e],
+         Eigen::Map<const Eigen::Matrix<double, P::kDof, P::kDof, Eigen::RowMajor>>(information),
+         a.is_loop.data()[e] ? EdgeKind::loop : EdgeKind::odometry});
   }
   graph.check();
   return graph;
@@ -118,7 +120,8 @@ PoseArray measurements_of(const BasicPoseGraph<P>& graph) {
 
 template <class P>
 MatrixArray information_of(const BasicPoseGraph<P>& graph) {
-  MatrixArray matrices(std::vector<py::ssize_t>{static_cast<py::ssize_t>(graph.edges.size()), P::kDof, P::kDof});
+  MatrixArray matrices(
+      std::vector<py::ssize_t>{static_cast<py::ssize_t>(graph.edges.size()), P::kDof, P::kDof});
   double* matrix = matrices.mutable_data();
   for (const auto& edge : graph.edges) {
     Eigen::Map<Eigen::Matrix<double, P::kDof, P::kDof, Eigen::RowMajor>>{matrix} = edge.information;
@@ -163,8 +166,8 @@ void add_graph(py::module_& m, const char* graph_name, const char* solution_name
                        const py::array_t<bool, py::array::c_style | py::array::forcecast>& is_loop) {
              return graph_of<P>({keys, poses, edges, measurements, information, is_loop});
            }),
-           py::arg("keys"), py::arg("poses"), py::arg("edges"), py::arg("measurements"), py::arg("information"),
-           py::arg("is_loop"))
+           py::arg("keys"), py::arg("poses"), py::arg("edges"), py::arg("measurements"),
+           py::arg("information"), py::arg("is_loop"))
       .def_property_readonly("keys", &keys_of<P>)
       .def_property_readonly("poses", [](const Graph& graph) { return array_of_poses(poses_of(graph)); })
       .def_property_readonly("edges", &ends_of<P>)
@@ -181,7 +184,8 @@ void add_graph(py::module_& m, const char* graph_name, const char* solution_name
       .def_readonly("reason", &Solution<P>::reason)
       .def_readonly("notes", &Solution<P>::notes)
       .def_property_readonly("edge_weights", [](const Solution<P>& s) { return array_of(s.edge_weights); });
-  m.def("solve", &solved<P>, py::arg("graph"), py::kw_only(), py::arg("gnc") = false, py::arg("config") = py::none(),
+  m.def("solve", &solved<P>, py::arg("graph"), py::kw_only(), py::arg("gnc") = false,
+        py::arg("config") = py::none(),
         "Minimises chi2 over all poses; with gnc=True it finds and rejects false loops.");
 }
 
@@ -191,9 +195,8 @@ void add_graphs(py::module_& m) {
   add_graph<Pose>(m, "PoseGraph", "Solution");
   add_graph<Pose2>(m, "PoseGraph2", "Solution2");
   m.def(
-      "read_graph",
-      [](const std::filesystem::path& path) { return value_of(read_g2o(path)).graph; }, py::arg("path"),
-      "The pose graph of a g2o file, in space or in the plane.");
+      "read_graph", [](const std::filesystem::path& path) { return value_of(read_g2o(path)).graph; },
+      py::arg("path"), "The pose graph of a g2o file, in space or in the plane.");
 }
 
 }  // namespace adit::python

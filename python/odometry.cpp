@@ -60,9 +60,11 @@ OdometryStep register_scan(Odometry& odometry, const Scan& scan, const SensedMot
 void add_step(py::module_& m) {
   py::class_<OdometryStep>(m, "OdometryStep")
       .def_property_readonly("stamp", [](const OdometryStep& step) { return step.stamp.ns; })
-      .def_property_readonly("T_odom_base", [](const OdometryStep& step) { return step.T_odom_base.matrix(); })
+      .def_property_readonly("T_odom_base",
+                             [](const OdometryStep& step) { return step.T_odom_base.matrix(); })
       .def_readonly("information", &OdometryStep::information)
-      .def_property_readonly("status", [](const OdometryStep& step) { return std::string(to_string(step.status)); })
+      .def_property_readonly("status",
+                             [](const OdometryStep& step) { return std::string(to_string(step.status)); })
       .def_readonly("num_correspondences", &OdometryStep::num_correspondences)
       .def_readonly("iterations", &OdometryStep::iterations);
 }
@@ -72,8 +74,8 @@ void add_step(py::module_& m) {
 void add_odometry(py::module_& m) {
   add_step(m);
   py::class_<Odometry>(m, "Odometry")
-      .def(py::init(&method_of),
-           identity_by_default("T_base_lidar"), py::arg("config") = py::none(), py::arg("profile") = "default")
+      .def(py::init(&method_of), identity_by_default("T_base_lidar"), py::arg("config") = py::none(),
+           py::arg("profile") = "default")
       .def("register_scan", &register_scan, py::arg("scan"), py::arg("motion") = py::none())
       .def_property_readonly("points_of_last_scan",
                              [](const Odometry& o) { return array_of(o.cloud_of_last_scan().points); });
@@ -81,7 +83,8 @@ void add_odometry(py::module_& m) {
       .def_readonly("trajectory", &OdometryRun::trajectory)
       .def_readonly("statuses", &OdometryRun::statuses)
       .def_readonly("notes", &OdometryRun::notes);
-  m.def("odometry", &odometry, py::arg("recording"), py::arg("config") = py::none(), py::arg("profile") = "default",
+  m.def("odometry", &odometry, py::arg("recording"), py::arg("config") = py::none(),
+        py::arg("profile") = "default",
         "The odometry of a recording, scan by scan, as 'adit odometry' computes it.");
 }
 

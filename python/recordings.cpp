@@ -63,12 +63,14 @@ void add_trajectory(py::module_& m) {
       .def_property_readonly("length", [](const Path& path) { return path_length(path.poses); })
       .def(
           "write",
-          [](const Path& path, const std::filesystem::path& file) { value_of(write_trajectory(file, path.poses)); },
+          [](const Path& path, const std::filesystem::path& file) {
+            value_of(write_trajectory(file, path.poses));
+          },
           py::arg("path"));
   m.def(
       "read_trajectory",
-      [](const std::filesystem::path& file) { return Path{value_of(read_trajectory(file))}; }, py::arg("path"),
-      "A trajectory of a TUM or .csv file.");
+      [](const std::filesystem::path& file) { return Path{value_of(read_trajectory(file))}; },
+      py::arg("path"), "A trajectory of a TUM or .csv file.");
 }
 
 // ---- scans -----------------------------------------------------------------------------------------------
@@ -141,8 +143,9 @@ std::optional<ImuArrays> arrays_of(const std::vector<ImuSample>& imu) {
 }
 
 /// A recording of scans that Python hands over.
-Recording recording_of(const std::string& name, const std::vector<Scan>& scans, const Eigen::Matrix4d& T_base_lidar,
-                       const Path* wheel, const std::optional<ImuArrays>& imu, const Eigen::Matrix4d& T_base_imu,
+Recording recording_of(const std::string& name, const std::vector<Scan>& scans,
+                       const Eigen::Matrix4d& T_base_lidar, const Path* wheel,
+                       const std::optional<ImuArrays>& imu, const Eigen::Matrix4d& T_base_imu,
                        const Path* truth) {
   Recording recording;
   recording.name = name;
@@ -197,9 +200,9 @@ py::object path_or_none(const Trajectory& trajectory) {
 
 void add_recording(py::module_& m) {
   py::class_<Recording>(m, "Recording")
-      .def(py::init(&recording_of), py::arg("name"), py::arg("scans"),
-           identity_by_default("T_base_lidar"), py::arg("wheel") = py::none(), py::arg("imu") = py::none(),
-           identity_by_default("T_base_imu"), py::arg("truth") = py::none())
+      .def(py::init(&recording_of), py::arg("name"), py::arg("scans"), identity_by_default("T_base_lidar"),
+           py::arg("wheel") = py::none(), py::arg("imu") = py::none(), identity_by_default("T_base_imu"),
+           py::arg("truth") = py::none())
       .def_readwrite("name", &Recording::name)
       .def_readonly("lidar", &Recording::lidar)
       .def_property_readonly("T_base_lidar", [](const Recording& r) { return r.T_base_lidar.matrix(); })
@@ -230,8 +233,9 @@ Recording open_one(const std::string& input, const py::object& config) {
 std::vector<Recording> simulated(const py::object& config) {
   const RunConfig values = run_config(config, "default");
   return without_gil([&] {
-    return value_of(
-        make_world(values.world).and_then([&](const World& world) { return simulate(world, values.simulation); }));
+    return value_of(make_world(values.world).and_then([&](const World& world) {
+      return simulate(world, values.simulation);
+    }));
   });
 }
 
@@ -242,14 +246,18 @@ void add_recordings(py::module_& m) {
   add_scan(m);
   py::class_<SensedMotion>(m, "Motion")
       .def(py::init([](const Eigen::Matrix4d& T_base0_base1, double duration_s, const Matrix6& covariance) {
-             return SensedMotion{.wheel = WheelDelta{from_seconds(duration_s), Pose::from_matrix(T_base0_base1), covariance}};
+             return SensedMotion{
+                 .wheel = WheelDelta{from_seconds(duration_s), Pose::from_matrix(T_base0_base1), covariance}};
            }),
            py::arg("T_base0_base1"), py::arg("duration"), py::arg("covariance"));
   add_recording(m);
   m.def(
       "open_recording",
-      [](const std::filesystem::path& path, const py::object& config) { return open_one(path.string(), config); },
-      py::arg("path"), py::arg("config") = py::none(), "Opens a bag or a folder of clouds; scans are read when asked for.");
+      [](const std::filesystem::path& path, const py::object& config) {
+        return open_one(path.string(), config);
+      },
+      py::arg("path"), py::arg("config") = py::none(),
+      "Opens a bag or a folder of clouds; scans are read when asked for.");
   m.def("simulate", &simulated, py::arg("config") = py::none(),
         "Drives robots through a generated world; scans are cast when asked for.");
 }

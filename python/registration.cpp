@@ -18,12 +18,12 @@ Registration registered(const PointArray& a, const PointArray& b, const py::obje
 
 void add_registration(py::module_& m) {
   py::class_<Registration>(m, "Registration")
-      .def_property_readonly("accepted", [](const Registration& r) { return r.verdict == LoopVerdict::accepted; })
+      .def_property_readonly("accepted",
+                             [](const Registration& r) { return r.verdict == LoopVerdict::accepted; })
       .def_readonly("reason", &Registration::reason)
-      .def_property_readonly("T_a_b",
-                             [](const Registration& r) {
-                               return r.T_a_b ? std::optional(r.T_a_b->matrix()) : std::nullopt;
-                             })
+      .def_property_readonly(
+          "T_a_b",
+          [](const Registration& r) { return r.T_a_b ? std::optional(r.T_a_b->matrix()) : std::nullopt; })
       .def_readonly("information", &Registration::information)
       .def_readonly("num_inliers", &Registration::num_inliers)
       .def_readonly("num_correspondences", &Registration::num_correspondences)

@@ -65,7 +65,8 @@ PointArray points_of(const RunSession& s, const std::string& robot, double voxel
   const RobotMap& map = map_of(s, robot);
   const auto& poses = s.session().solution.T_world_keyframe;
   const auto found = poses.find(map.id);
-  return array_of(found == poses.end() ? std::vector<Eigen::Vector3f>{} : merged_cloud(map, found->second, voxel).points);
+  return array_of(found == poses.end() ? std::vector<Eigen::Vector3f>{}
+                                       : merged_cloud(map, found->second, voxel).points);
 }
 
 struct Pair {
@@ -78,8 +79,8 @@ struct Pair {
 std::vector<Pair> pairs_of(const RunSession& s) {
   std::vector<Pair> pairs;
   for (const PairOutcome& pair : s.session().solution.pairs)
-    pairs.push_back(
-        {s.session().name_of(pair.a), s.session().name_of(pair.b), pair.merged, pair.refused_reason, pair.num_loops});
+    pairs.push_back({s.session().name_of(pair.a), s.session().name_of(pair.b), pair.merged,
+                     pair.refused_reason, pair.num_loops});
   return pairs;
 }
 
@@ -112,7 +113,8 @@ std::vector<std::string> failures_of(const RunSession& s) {
   return reasons;
 }
 
-RunSession slam_of(const std::vector<Recording>& recordings, const py::object& config, const std::string& profile) {
+RunSession slam_of(const std::vector<Recording>& recordings, const py::object& config,
+                   const std::string& profile) {
   Job job;
   job.config = run_config(config, profile);
   job.provenance.command = "adit.slam of Python";
@@ -172,8 +174,10 @@ void add_run_session(py::module_& m) {
       .def_property_readonly("failures", &failures_of)
       .def_property_readonly("metrics", [](const RunSession& s) { return json(session_metrics(s.run)); })
       .def("trajectory", &trajectory_of, py::arg("robot"))
-      .def("odometry", [](const RunSession& s, const std::string& robot) { return Path{map_of(s, robot).odometry}; },
-           py::arg("robot"))
+      .def(
+          "odometry",
+          [](const RunSession& s, const std::string& robot) { return Path{map_of(s, robot).odometry}; },
+          py::arg("robot"))
       .def("points", &points_of, py::arg("robot"), py::arg("voxel") = 0.1)
       .def("save", &save, py::arg("path"));
 }
@@ -202,21 +206,25 @@ void add_saved_session(py::module_& m) {
   py::class_<OpenedSession>(m, "SavedSession")
       .def_property_readonly("robots", [](const OpenedSession& s) { return s.saved.robots; })
       .def_property_readonly("components", [](const OpenedSession& s) { return s.saved.components; })
-      .def("trajectory",
-           [](const OpenedSession& s, const std::string& robot) {
-             return Path{s.saved.optimized[index_of(s.saved.robots, robot)]};
-           },
-           py::arg("robot"))
-      .def("odometry",
-           [](const OpenedSession& s, const std::string& robot) {
-             return Path{s.saved.odometry[index_of(s.saved.robots, robot)]};
-           },
-           py::arg("robot"))
+      .def(
+          "trajectory",
+          [](const OpenedSession& s, const std::string& robot) {
+            return Path{s.saved.optimized[index_of(s.saved.robots, robot)]};
+          },
+          py::arg("robot"))
+      .def(
+          "odometry",
+          [](const OpenedSession& s, const std::string& robot) {
+            return Path{s.saved.odometry[index_of(s.saved.robots, robot)]};
+          },
+          py::arg("robot"))
       .def("points", &saved_points, py::arg("robot"), py::arg("voxel") = 0.1)
       .def("evaluate", &evaluated, py::arg("truths"));
   m.def(
       "read_session",
-      [](const std::filesystem::path& path) { return OpenedSession{path, value_of(read_session(path))}; },
+      [](const std::filesystem::path& path) {
+        return OpenedSession{path, value_of(read_session(path))};
+      },
       py::arg("path"), "A session directory.");
 }
 
@@ -226,7 +234,8 @@ void add_sessions(py::module_& m) {
   add_loops_and_pairs(m);
   add_run_session(m);
   add_saved_session(m);
-  m.def("slam", &slam_of, py::arg("recordings"), py::arg("config") = py::none(), py::arg("profile") = "default",
+  m.def("slam", &slam_of, py::arg("recordings"), py::arg("config") = py::none(),
+        py::arg("profile") = "default",
         "Maps every robot, lets each meet every other, and merges what tested evidence joins.");
   m.def("merge", &merge, py::arg("sessions"), py::arg("recordings") = std::vector<Recording>{}, py::kw_only(),
         py::arg("veto") = std::vector<std::pair<std::string, std::string>>{},

@@ -23,7 +23,8 @@ struct SavedSessions {
   std::vector<SavedFleet> fleets;
   Job job;  ///< With the configuration of the first, and a note where that of another one differs.
 };
-/// Reads session directories. Fails as read_fleet does, and on a configuration that this version does not know.
+/// Reads session directories. Fails as read_fleet does, and on a configuration that this version does not
+/// know.
 [[nodiscard]] Result<SavedSessions> open_sessions(const std::vector<std::string>& paths);
 
 /// Writes the session into `dir`, which exists, with the provenance and the configuration of the job.
