@@ -121,8 +121,10 @@ endfunction()
 function(adit_shared_library)
   add_library(adit SHARED ${PROJECT_SOURCE_DIR}/cmake/shared.cpp)
   target_link_libraries(adit PRIVATE ${ARGN} PUBLIC Eigen3::Eigen)
-  list(JOIN ARGN "," archives)
-  set_property(TARGET adit PROPERTY LINK_LIBRARY_OVERRIDE WHOLE_ARCHIVE,${archives})
+  # All of every archive; CMake 3.25's WHOLE_ARCHIVE would take those twice that depend on one another.
+  list(TRANSFORM ARGN REPLACE "(.+)" "$<TARGET_FILE:\\1>" OUTPUT_VARIABLE archives)
+  list(JOIN archives "," archives)
+  target_link_options(adit PRIVATE -Wl,--whole-archive,${archives},--no-whole-archive)
   target_include_directories(adit PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
                                          $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(adit PUBLIC cxx_std_20)

@@ -14,13 +14,13 @@ namespace adit {
 
 /// What is to run, and the provenance that the session will state.
 struct Job {
-  RunConfig config;
-  Provenance provenance;
+  RunConfig config;       ///< Of the mapping and of how recordings are read.
+  Provenance provenance;  ///< Without robots, which the run adds.
 };
 
 /// Sessions to go on from.
 struct SavedSessions {
-  std::vector<SavedFleet> fleets;
+  std::vector<SavedFleet> fleets;  ///< In the order of the paths.
   Job job;  ///< With the configuration of the first, and a note where that of another one differs.
 };
 /// Reads session directories. Fails as read_fleet does, and on a configuration that this version does not
