@@ -38,9 +38,8 @@ std::string option_entry(const OptionHelp& option) {
     const std::string value = "\\fI" + roff(option.value) + "\\fR";
     term = option.name.empty() ? value : term + " " + value;
   }
-  std::string text = ".TP\n" + term + "\n" + roff(option.help) + "\n";
-  if (!option.choices.empty()) text += roff("One of: " + joined(option.choices) + ".") + "\n";
-  return text;
+  const std::string choices = option.choices.empty() ? "" : ". One of: " + joined(option.choices);
+  return ".TP\n" + term + "\n" + roff(option.help + choices) + "\n";
 }
 
 std::string command_section(const CommandHelp& command) {
@@ -80,8 +79,8 @@ std::string choice_cases(const CommandHelp& command) {
   std::string cases;
   for (const OptionHelp& option : command.options) {
     if (option.name.empty() || option.choices.empty()) continue;
-    cases += format("    '{} {}') words='{}' ;;\n", command.name.empty() ? "*" : command.name, option.name,
-                    joined(option.choices));
+    cases += format("    {}' {}') words='{}' ;;\n", command.name.empty() ? "*" : "'" + command.name,
+                    option.name, joined(option.choices));
   }
   return cases;
 }

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cstring>
 
 #include "adit/io/cloud_files.hpp"
 #include "bindings.hpp"
@@ -21,8 +20,9 @@ PointCloud cloud_of(const PointArray& points) {
   if (points.ndim() != 2 || points.shape(1) != 3)
     throw py::value_error("points are an array of shape (n, 3)");
   PointCloud cloud;
-  cloud.points.resize(static_cast<std::size_t>(points.shape(0)));
-  if (!cloud.empty()) std::memcpy(cloud.points.data(), points.data(), cloud.size() * sizeof(Eigen::Vector3f));
+  cloud.points.reserve(static_cast<std::size_t>(points.shape(0)));
+  for (const float* row = points.data(); row != points.data() + points.size(); row += 3)
+    cloud.points.emplace_back(row[0], row[1], row[2]);
   return cloud;
 }
 
