@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # A thin front: each target installs what it needs (tools/setup.sh does nothing where all is there) and builds.
 .DEFAULT_GOAL := build
-.PHONY: build demo test bench bench-merge bench-uncertainty lint docs clean
+.PHONY: build demo test bench bench-merge bench-uncertainty lint docs package clean
 
 build:
 	@tools/build.sh release adit_program
@@ -28,6 +28,9 @@ lint:
 
 docs: build
 	@tools/docs.sh
+
+package:
+	@tools/package.sh
 
 clean:
 	rm -rf build

@@ -117,6 +117,42 @@ std::string text_of(const CLI::Option& option) {
 
 }  // namespace
 
+namespace {
+
+/// Of a type such as "TEXT:{a,b}", as CLI11 writes it.
+std::vector<std::string> choices_of(const std::string& type) {
+  const std::size_t begin = type.find(":{");
+  if (begin == std::string::npos || type.back() != '}') return {};
+  return CLI::detail::split(type.substr(begin + 2, type.size() - begin - 3), ',');
+}
+
+OptionHelp help_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  OptionHelp help{"", "", choices_of(type), option.get_description()};
+  if (option.get_positional()) {
+    help.value = option.get_name(true);
+  } else {
+    help.name = option.get_lnames().empty() ? option.get_name() : "--" + option.get_lnames().front();
+    if (option.get_expected_max() != 0) help.value = type.substr(0, type.find(':'));
+  }
+  return help;
+}
+
+CommandHelp help_of(const CLI::App& app, const std::string& name) {
+  CommandHelp help{name, app.get_description(), app.get_footer(), {}};
+  for (const CLI::Option* option : app.get_options()) help.options.push_back(help_of(*option));
+  return help;
+}
+
+}  // namespace
+
+std::vector<CommandHelp> Program::help() const {
+  std::vector<CommandHelp> all{help_of(*cli_, "")};
+  for (const CLI::App* command : cli_->get_subcommands({}))
+    all.push_back(help_of(*command, command->get_name()));
+  return all;
+}
+
 std::string Program::command_of(const CLI::App& command) const {
   std::string text = "adit " + command.get_name();
   for (const CLI::Option* option : command.get_options()) text += text_of(*option);

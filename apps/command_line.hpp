@@ -67,6 +67,20 @@ struct Common {
 /// The body of a command: returns 0, or an error that main prints in one line (exit code 1).
 using Body = std::function<Result<>(const Common&)>;
 
+/// An option or an argument as the help shows it.
+struct OptionHelp {
+  std::string name;                  ///< "--out"; "" of an argument.
+  std::string value;                 ///< "TEXT", the argument's name; "" of a flag.
+  std::vector<std::string> choices;  ///< The values it takes, where they are few.
+  std::string help;
+};
+struct CommandHelp {
+  std::string name;  ///< "" of the program itself.
+  std::string description;
+  std::string footer;
+  std::vector<OptionHelp> options;
+};
+
 /// Collects the commands; `main` owns it. Wrong usage (exit code 2) is found by CLI11 or reported by
 /// `usage_error`.
 class Program {
@@ -77,6 +91,8 @@ class Program {
   Program& operator=(const Program&) = delete;
   /// Adds `adit NAME`; options go on the returned command, `body` runs once they are parsed.
   Command add_command(const std::string& name, const std::string& description, Body body);
+  /// The program with the options that every command takes, then its commands.
+  [[nodiscard]] std::vector<CommandHelp> help() const;
   int run(int argc, char** argv);
 
  private:
@@ -132,5 +148,6 @@ void add_convert(Program& program);
 void add_info(Program& program);
 void add_doctor(Program& program);
 void add_config(Program& program);
+void add_describe(Program& program);
 
 }  // namespace adit::app

@@ -26,5 +26,6 @@ int main(int argc, char** argv) {
   add_info(program);
   add_doctor(program);
   add_config(program);
+  add_describe(program);
   return program.run(argc, argv);
 }

@@ -9,7 +9,6 @@
 
 #include "adit/core/format.hpp"
 #include "adit/fleet/joint/merge_accuracy.hpp"
-#include "adit/io/config_toml.hpp"
 #include "adit/io/crs.hpp"
 #include "adit/io/text.hpp"
 #include "adit/io/tum.hpp"
@@ -90,18 +89,6 @@ Result<> without_failures(const SlamRun& run, const std::string& out) {
                      run.failed.size() + run.num_mapped, out, reasons));
 }
 
-void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
-  to.insert(to.end(), more.begin(), more.end());
-}
-
-/// Whether a configuration maps and merges as another does; how recordings are read and worlds made is no
-/// matter.
-bool maps_alike(RunConfig config, const std::string& other_toml) {
-  RunConfig other;
-  return parse_config(fields_of(other), other_toml) &&
-         to_toml(fields_of(config.slam)) == to_toml(fields_of(other.slam));
-}
-
 Ruling ruling_of(const std::string& pair, Ruling::Kind kind) {
   const std::size_t comma = pair.find(',');
   if (comma == std::string::npos || comma == 0 || comma + 1 == pair.size())
@@ -110,32 +97,6 @@ Ruling ruling_of(const std::string& pair, Ruling::Kind kind) {
 }
 
 }  // namespace
-
-Result<SavedSessions> open_sessions(const std::vector<std::string>& paths) {
-  SavedSessions saved;
-  Provenance& all = saved.job.provenance;
-  for (const std::string& path : paths) {
-    Result<SavedFleet> fleet = read_fleet(path);
-    if (!fleet) return tl::unexpected(fleet.error());
-    const Provenance& one = fleet->provenance;
-    if (saved.fleets.empty()) {
-      const Result<> set = parse_config(fields_of(saved.job.config), one.configuration);
-      if (!set) return fail(path + "/session.toml: configuration", set.error());
-      all.world = one.world;
-      all.profile = one.profile;
-      all.settings = one.settings;
-      all.seed = one.seed;
-    } else if (!maps_alike(saved.job.config, one.configuration)) {
-      fleet->notes.push_back(format(
-          "{} was made with another configuration than {}, whose counts from here on", path, paths.front()));
-    }
-    append(all.inputs, one.inputs);
-    append(all.earlier_commands, one.earlier_commands);
-    all.earlier_commands.push_back(one.command);
-    saved.fleets.push_back(std::move(*fleet));
-  }
-  return saved;
-}
 
 void refuse_configuration(const Common& common) {
   if (!common.sets.empty() || !common.config_file.empty() || common.profile != Profile::standard)
@@ -210,10 +171,7 @@ void print_georeferences(const std::vector<Georeference>& maps) {
 
 Result<> finish_session(SlamRun run, Job job, OutputDir& out, const std::string& path, bool json,
                         const Control& control) {
-  job.provenance.configuration = to_toml(fields_of(job.config));
-  job.provenance.robots = run.session.provenance.robots;
-  run.session.provenance = std::move(job.provenance);
-  Result<> done = write_slam(out.path(), run);
+  Result<> done = write_slam(out.path(), run, std::move(job));
   if (done) done = out.commit();
   if (!done) return done;
   if (json) {

@@ -8,23 +8,11 @@
 
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/georeference.hpp"
+#include "adit/slam/session_job.hpp"
 #include "adit/slam/slam.hpp"
 #include "command_line.hpp"
 
 namespace adit::app {
-
-/// What is to run, and the provenance that the session will state.
-struct Job {
-  RunConfig config;
-  Provenance provenance;
-};
-
-/// Sessions to go on from.
-struct SavedSessions {
-  std::vector<SavedFleet> fleets;
-  Job job;  ///< With the configuration of the first, and a note where that of another one differs.
-};
-Result<SavedSessions> open_sessions(const std::vector<std::string>& paths);
 
 /// Ends the command where it was given a configuration: a session goes on with its own.
 void refuse_configuration(const Common& common);

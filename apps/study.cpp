@@ -19,6 +19,7 @@ namespace adit::app {
 namespace {
 
 struct StudyOptions {
+  bool quick = false;
   std::string world;
   std::string routes;
   std::string out;
@@ -57,7 +58,11 @@ void print(const StudyResult& result, const std::vector<Table>& tables, const St
               (std::filesystem::path(options.out) / "report.html").c_str());
 }
 
-Result<> study(const StudyOptions& options, const Common& common) {
+Result<> study(StudyOptions options, const Common& common) {
+  if (options.quick) {
+    if (options.simulation.lidar.empty()) options.simulation.lidar = "vlp-16";
+    options.keyframes = {std::string(to_string(KeyframeSelection::adaptive))};
+  }
   const auto start = std::chrono::steady_clock::now();
   const Result<RunConfig> config = configured(common, options.simulation);
   if (!config) return tl::unexpected(config.error());
@@ -94,6 +99,9 @@ void add_study(Program& program) {
       "Mesh (PLY, OBJ, STL, DAE, GLB); default: the generated world of the configuration, zab");
   command.add_option("--routes", options->routes, "routes.yaml of that world");
   command.add_option("--out", options->out, "Directory to write").required();
+  command.add_flag(
+      "--quick", options->quick,
+      "To see that all works: the policy adaptive alone, and vlp-16 unless --lidar names another");
   add_simulation_options(command, options->simulation);
   command
       .add_option("--keyframes", options->keyframes,

@@ -25,7 +25,7 @@ endif()
 # works on compile faster on their own.
 option(ADIT_UNITY_BUILD "Compile the files of a library or a test program eight at a time" OFF)
 
-option(ADIT_WARNINGS_AS_ERRORS "Refuse code that the compiler warns of" ON)
+option(ADIT_WARNINGS_AS_ERRORS "Refuse code that the compiler warns of: for developers, whose compiler is known" OFF)
 # Flags of adit's own targets; nothing here reaches programs that link to adit.
 foreach(flags adit_flags adit_test_flags)
   add_library(${flags} INTERFACE)
@@ -115,6 +115,23 @@ function(adit_module NAME)
   if(ADIT_BUILD_TESTS AND tests)
     adit_test_program(adit_${NAME}_test PREFIX ${NAME}. SOURCES ${tests} LIBRARIES adit::${NAME} ${ARG_TEST_LIBRARIES})
   endif()
+endfunction()
+
+# adit_shared_library(modules...): `adit`, which holds all modules. Its users need what its headers include, nothing else.
+function(adit_shared_library)
+  add_library(adit SHARED ${PROJECT_SOURCE_DIR}/cmake/shared.cpp)
+  target_link_libraries(adit PRIVATE ${ARGN} PUBLIC Eigen3::Eigen)
+  # All of every archive; CMake 3.25's WHOLE_ARCHIVE would take those twice that depend on one another.
+  list(TRANSFORM ARGN REPLACE "(.+)" "$<TARGET_FILE:\\1>" OUTPUT_VARIABLE archives)
+  list(JOIN archives "," archives)
+  target_link_options(adit PRIVATE -Wl,--whole-archive,${archives},--no-whole-archive)
+  target_include_directories(adit PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
+                                         $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(adit PUBLIC cxx_std_20)
+  # Until 1.0 every minor version may break.
+  set_target_properties(adit PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  # Calls within the library stay within it, as in the static ones.
+  target_link_options(adit PRIVATE -Wl,-Bsymbolic-functions -Wl,--no-undefined)
 endfunction()
 
 if(ADIT_BUILD_TESTS)

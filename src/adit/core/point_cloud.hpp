@@ -15,13 +15,17 @@ namespace adit {
 /// Points in metres. The owner says in which frame. `intensities` and `time_offsets_ns` are each empty or as
 /// long as `points`. A time offset is the point's own time minus the stamp of the scan that holds the cloud.
 struct PointCloud {
-  std::vector<Eigen::Vector3f> points;
-  std::vector<float> intensities;
-  std::vector<std::int32_t> time_offsets_ns;
+  std::vector<Eigen::Vector3f> points;        ///< Metres.
+  std::vector<float> intensities;             ///< In the unit of the sensor.
+  std::vector<std::int32_t> time_offsets_ns;  ///< Nanoseconds from the scan's stamp.
 
+  /// The number of points.
   [[nodiscard]] std::size_t size() const { return points.size(); }
+  /// Whether there is no point.
   [[nodiscard]] bool empty() const { return points.empty(); }
+  /// Whether points have times of their own.
   [[nodiscard]] bool has_times() const { return !time_offsets_ns.empty(); }
+  /// Throws ContractViolation where the arrays differ in length.
   void check() const {
     ADIT_CHECK(intensities.empty() || intensities.size() == points.size(),
                "one intensity per point, or none at all");

@@ -10,7 +10,7 @@ namespace adit {
 
 /// What went wrong with the data: one line that names the file (or item), the place in it, and the remedy.
 struct Error {
-  std::string message;
+  std::string message;  ///< The line.
 };
 
 /// Either a value or an Error; it cannot be dropped unseen.
@@ -18,6 +18,7 @@ struct Error {
 template <class T = void>
 using Result = tl::expected<T, Error>;
 
+/// An error with that line, to be returned.
 [[nodiscard]] inline tl::unexpected<Error> fail(std::string message) {
   return tl::unexpected<Error>(Error{std::move(message)});
 }

@@ -11,11 +11,12 @@ namespace adit {
 
 /// Estimated poses with the true poses at the same stamps; the three arrays are equally long.
 struct AssociatedPoses {
-  std::vector<Stamp> stamps;
+  std::vector<Stamp> stamps;      ///< Of the estimates.
   std::vector<Pose> estimate;     ///< T_odom_body (or whatever frame the estimate lives in).
   std::vector<Pose> truth;        ///< T_world_body, interpolated to the estimate's stamp.
   std::size_t num_unmatched = 0;  ///< Estimates outside the truth's span, or inside a gap of it.
 
+  /// The number of pairs.
   [[nodiscard]] std::size_t size() const { return stamps.size(); }
 };
 

@@ -10,16 +10,17 @@
 
 namespace adit {
 
+/// Errors of the positions of one trajectory, metres.
 struct AteResult {
-  std::vector<Stamp> stamps;
+  std::vector<Stamp> stamps;       ///< Of the poses that have a truth.
   std::vector<double> errors_m;    ///< Distance between estimated and true position, one per stamp.
   std::vector<Vector3> positions;  ///< The aligned estimate, in the world frame of the truth, one per stamp.
   Pose T_world_estimate;           ///< The alignment used.
-  double max_m = 0.0;
-  double rmse_m = 0.0;
-  double mean_m = 0.0;
-  double median_m = 0.0;
-  std::size_t num_unmatched = 0;  ///< Estimated poses for which there was no truth.
+  double max_m = 0.0;              ///< The largest error.
+  double rmse_m = 0.0;             ///< The root of their mean square.
+  double mean_m = 0.0;             ///< Their mean.
+  double median_m = 0.0;           ///< Their median.
+  std::size_t num_unmatched = 0;   ///< Estimated poses for which there was no truth.
 };
 
 /// ATE of one trajectory after its own SE(3) alignment (Umeyama, no scale). Fails as `associate` does.

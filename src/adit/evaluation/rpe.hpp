@@ -11,13 +11,13 @@ namespace adit {
 
 /// One entry per segment. Per cent and degrees per metre follow by dividing by the segment's length.
 struct RpeResult {
-  std::vector<double> translation_errors_m;
-  std::vector<double> rotation_errors_rad;
-  double segment_m = 0.0;
-  double translation_rmse_m = 0.0;
-  double translation_median_m = 0.0;
-  double rotation_rmse_rad = 0.0;
-  double rotation_median_rad = 0.0;
+  std::vector<double> translation_errors_m;  ///< Size of the translation of each error.
+  std::vector<double> rotation_errors_rad;   ///< Its angle.
+  double segment_m = 0.0;                    ///< Length of the segments along the true path.
+  double translation_rmse_m = 0.0;           ///< Root of the mean square of the translations.
+  double translation_median_m = 0.0;         ///< Their median.
+  double rotation_rmse_rad = 0.0;            ///< Root of the mean square of the angles.
+  double rotation_median_rad = 0.0;          ///< Their median.
 };
 
 /// For each pose i, j is the first pose that lies `segment_m` further along the TRUE path; the error of the

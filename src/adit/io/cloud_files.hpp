@@ -15,6 +15,7 @@
 
 namespace adit {
 
+/// Formats of clouds.
 enum class CloudFormat { pcd, ply, kitti };
 /// With its point: ".bin" for KITTI.
 [[nodiscard]] std::string_view extension_of(CloudFormat format);
@@ -31,8 +32,8 @@ Result<std::optional<TimeUnit>> parse_time_unit(std::string_view text);
 
 /// What a cloud reader found. Points with a NaN or infinite coordinate are left out and counted.
 struct CloudFile {
-  PointCloud cloud;
-  std::size_t num_skipped_nan = 0;
+  PointCloud cloud;                 ///< In the frame and unit of the file.
+  std::size_t num_skipped_nan = 0;  ///< Points without finite coordinates.
   /// PCD's VIEWPOINT, the pose of the sensor: p_world = viewpoint * p. None for the identity, which is what
   /// writers put there that do not know it, and for formats without one.
   std::optional<Pose> viewpoint;

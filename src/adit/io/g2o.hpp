@@ -14,9 +14,10 @@
 
 namespace adit {
 
+/// What a file holds.
 struct G2oFile {
-  std::variant<PoseGraph, PoseGraph2> graph;
-  std::vector<std::size_t> edge_lines;  ///< Line of each edge in the file, from 1.
+  std::variant<PoseGraph, PoseGraph2> graph;  ///< In space or in the plane.
+  std::vector<std::size_t> edge_lines;        ///< Line of each edge in the file, from 1.
   std::vector<std::string>
       notes;  ///< What was skipped or added: tags with counts, vertices without a line of their own.
 };
@@ -32,11 +33,13 @@ struct G2oFile {
 /// same robot); every other edge is a loop. The information matrix is read as written, 21 (6) numbers of its
 /// upper triangle row by row, and not checked: `indefinite_edges` does that.
 [[nodiscard]] Result<G2oFile> read_g2o(std::istream& stream, const std::string& name);
+/// The same of a file.
 [[nodiscard]] Result<G2oFile> read_g2o(const std::filesystem::path& path);
 
 /// Vertices, then edges, numbers as short as can be read back exactly. Edge kinds follow from the keys when
 /// read back.
 void write_g2o(std::ostream& stream, const PoseGraph& graph);
+/// The same in the plane.
 void write_g2o(std::ostream& stream, const PoseGraph2& graph);
 
 /// Several graphs in one, e.g. one file per robot: nodes with equal keys become one (the first file's pose

@@ -24,6 +24,7 @@ namespace adit {
 /// not eight numbers, a number that is not finite, a quaternion off unit length by more than 1 %, stamps not
 /// ascending, no pose.
 Result<Trajectory> parse_tum(std::string_view text);
+/// The same of a file.
 Result<Trajectory> read_tum(const std::filesystem::path& path);
 
 /// Stamps with nine decimals, the other numbers in shortest form that reads back exactly.

@@ -12,20 +12,25 @@
 
 namespace adit {
 
+/// What adit brings.
 enum class OdometryMethod { plane_icp, kinematic_icp, kiss_icp };
+/// All of them.
 inline constexpr std::array kOdometryMethods{OdometryMethod::plane_icp, OdometryMethod::kinematic_icp,
                                              OdometryMethod::kiss_icp};
 /// "plane-icp", "kinematic-icp", "kiss-icp".
 [[nodiscard]] std::string_view to_string(OdometryMethod method);
 
+/// A method, and the settings of each.
 struct OdometryConfig {
-  OdometryMethod method = OdometryMethod::plane_icp;
-  KissIcpConfig kiss_icp;
-  KinematicIcpConfig kinematic_icp;
-  PlaneIcpConfig plane_icp;
+  OdometryMethod method = OdometryMethod::plane_icp;  ///< Which one runs.
+  KissIcpConfig kiss_icp;                             ///< Of kiss-icp.
+  KinematicIcpConfig kinematic_icp;                   ///< Of kinematic-icp.
+  PlaneIcpConfig plane_icp;                           ///< Of plane-icp.
 
+  /// Whether the method refuses recordings without wheels.
   [[nodiscard]] bool needs_wheels() const { return method == OdometryMethod::kinematic_icp; }
 };
+/// method, kiss_icp.*, kinematic_icp.*, plane_icp.*.
 [[nodiscard]] Fields fields_of(OdometryConfig& config);
 
 /// The odometry that the configuration names. Throws ContractViolation when the configuration is outside its

@@ -8,15 +8,17 @@
 
 namespace adit {
 
+/// How false loops are found.
 struct GncConfig {
   double inlier_probability =
-      0.999;             ///< Share of true loops whose chi2 (unhalved) is below chi2inv(this, dof).
-  double mu_step = 1.4;  ///< Factor on the control parameter from one outer iteration to the next.
-  int max_outer_iterations = 100;
+      0.999;                       ///< Share of true loops whose chi2 (unhalved) is below chi2inv(this, dof).
+  double mu_step = 1.4;            ///< Factor on the control parameter from one outer iteration to the next.
+  int max_outer_iterations = 100;  ///< Updates of weights, at most.
   bool plain =
       false;  ///< One graduated search from least squares with all loops, as in the paper: to compare.
-  OptimizerConfig optimizer;
+  OptimizerConfig optimizer;  ///< Of each solution.
 };
+/// The same, and optimizer.*.
 inline Fields fields_of(GncConfig& c) {
   Fields fields = {
       {"inlier_probability", &c.inlier_probability, "", 0.5, 0.999999,

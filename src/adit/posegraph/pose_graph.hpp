@@ -15,6 +15,7 @@ namespace adit {
 /// The kind of an edge, stated by its creator and never guessed from keys: odometry edges are trusted (known
 /// inliers), loops may be false.
 enum class EdgeKind { odometry, loop };
+/// odometry, loop.
 [[nodiscard]] std::string_view to_string(EdgeKind kind);
 
 /// Poses to be estimated (nodes) and measured relative poses (edges), in space (`PoseGraph`) or in the plane
@@ -24,26 +25,31 @@ enum class EdgeKind { odometry, loop };
 /// Gauge: the node with the smallest key of each connected component is its anchor and keeps its pose.
 template <class P>
 struct BasicPoseGraph {
+  /// Of one edge.
   using Information = Eigen::Matrix<double, P::kDof, P::kDof>;
+  /// A pose to be estimated.
   struct Node {
     std::uint64_t key = 0;  ///< Unique. Keyframes use `graph_key`.
     P pose;                 ///< T_world_node: the guess that solvers start from.
   };
+  /// A measured relative pose.
   struct Edge {
     std::size_t from = 0;  ///< Index into `nodes`, not a key.
     std::size_t to = 0;    ///< Different from `from`.
     P T_from_to;           ///< The measurement.
     Information information =
-        Information::Identity();  ///< Inverse covariance of [translation; rotation], full.
-    EdgeKind kind = EdgeKind::odometry;
+        Information::Identity();         ///< Inverse covariance of [translation; rotation], full.
+    EdgeKind kind = EdgeKind::odometry;  ///< Trusted, or a loop.
   };
-  std::vector<Node> nodes;
-  std::vector<Edge> edges;
+  std::vector<Node> nodes;  ///< In any order.
+  std::vector<Edge> edges;  ///< In any order.
 
   /// Throws ContractViolation when an edge names a node that does not exist, or joins a node to itself.
   void check() const;
 };
+/// In space.
 using PoseGraph = BasicPoseGraph<Pose>;
+/// In the plane.
 using PoseGraph2 = BasicPoseGraph<Pose2>;
 
 /// The connected components of a graph, numbered in the order of their anchors' keys.

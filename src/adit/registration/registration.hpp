@@ -32,15 +32,16 @@ struct Registration {
   /// Smallest eigenvalue of the translational part of the point-to-plane Hessian per correspondence: 0 when
   /// the clouds can slide along an axis (smooth tunnel), 1/3 when all directions are held alike.
   double weak_axis = 0.0;
-  Vector3 weak_direction = Vector3::Zero();  ///< That axis in frame a, unit length; zero when unknown.
-  LoopVerdict verdict = LoopVerdict::rejected;
-  std::string reason;  ///< One sentence: why.
+  Vector3 weak_direction = Vector3::Zero();     ///< That axis in frame a, unit length; zero when unknown.
+  LoopVerdict verdict = LoopVerdict::rejected;  ///< Whether T_a_b can be relied on.
+  std::string reason;                           ///< One sentence: why.
 };
 
 /// The pose of b in the frame of a, without a guess. Both clouds in metres, each in the frame of its sensor
 /// or of its robot's base; a cloud without usable points is rejected with a reason, never an error.
 [[nodiscard]] Registration register_features(const Features& a, const Features& b,
                                              const RegistrationConfig& config);
+/// The same of clouds, whose features are computed first.
 [[nodiscard]] Registration register_clouds(const PointCloud& a, const PointCloud& b,
                                            const RegistrationConfig& config);
 

@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "adit/simulation/raycaster.hpp"
 
+#ifdef ADIT_EMBREE_4
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -77,13 +81,6 @@ EmbreeScene embree_scene(RTCDevice device, const TriangleMesh& mesh, EdgeRule ed
   return scene;
 }
 
-RTCIntersectContext context_of(RTCIntersectContextFlags flags) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = flags;
-  return context;
-}
-
 // In place: a query returned by value would be copied right after it was written, which stalls (a sixth of
 // all time).
 void aim(RTCRayHit& query, const Ray& ray, float max_distance) {
@@ -122,26 +119,96 @@ struct Query {
     geometries.fill(RTC_INVALID_GEOMETRY_ID);
     instances.fill(RTC_INVALID_GEOMETRY_ID);
   }
-
-  [[nodiscard]] RTCRayHitNp with(RayBlock& block) {
-    RTCRayHitNp out;
-    out.ray = {block.origins.x.data(),
-               block.origins.y.data(),
-               block.origins.z.data(),
-               near.data(),
-               block.directions.x.data(),
-               block.directions.y.data(),
-               block.directions.z.data(),
-               times.data(),
-               far.data(),
-               masks.data(),
-               flags.data(),
-               flags.data()};
-    out.hit = {normals.x.data(), normals.y.data(), normals.z.data(),  u.data(),
-               v.data(),         triangles.data(), geometries.data(), {instances.data()}};
-    return out;
-  }
 };
+
+#ifdef ADIT_EMBREE_4
+
+RTCIntersectArguments arguments_of(RTCRayQueryFlags flags) {
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = flags;
+  return arguments;
+}
+
+void intersect(RTCScene scene, RTCRayHit& query) {
+  RTCIntersectArguments arguments = arguments_of(RTC_RAY_QUERY_FLAG_INCOHERENT);
+  rtcIntersect1(scene, &query, &arguments);
+}
+
+constexpr std::size_t kPacket = 16;
+
+/// Rays `begin` to `end` of the block; what lies beyond is repeated, and masked.
+void fill(RTCRayHit16& packet, const RayBlock& block, const Query& query, std::size_t begin,
+          std::size_t end) {
+  for (std::size_t k = 0; k < kPacket; ++k) {
+    const std::size_t i = std::min(begin + k, end - 1);
+    packet.ray.org_x[k] = block.origins.x[i];
+    packet.ray.org_y[k] = block.origins.y[i];
+    packet.ray.org_z[k] = block.origins.z[i];
+    packet.ray.dir_x[k] = block.directions.x[i];
+    packet.ray.dir_y[k] = block.directions.y[i];
+    packet.ray.dir_z[k] = block.directions.z[i];
+    packet.ray.tnear[k] = 0.0F;
+    packet.ray.tfar[k] = query.far[i];
+    packet.ray.time[k] = 0.0F;
+    packet.ray.mask[k] = ~0U;
+    packet.ray.flags[k] = 0;
+    packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+  }
+}
+
+/// Embree 4 has no streams of rays.
+void intersect(RTCScene scene, RayBlock& block, Query& query) {
+  RTCIntersectArguments arguments = arguments_of(RTC_RAY_QUERY_FLAG_COHERENT);
+  for (std::size_t begin = 0; begin < block.size; begin += kPacket) {
+    const std::size_t end = std::min(begin + kPacket, block.size);
+    RTCRayHit16 packet;
+    fill(packet, block, query, begin, end);
+    alignas(64) std::array<int, kPacket> valid{};
+    std::fill_n(valid.begin(), end - begin, -1);
+    rtcIntersect16(valid.data(), scene, &packet, &arguments);
+    for (std::size_t i = begin; i < end; ++i) {
+      query.far[i] = packet.ray.tfar[i - begin];
+      query.triangles[i] = packet.hit.primID[i - begin];
+      query.geometries[i] = packet.hit.geomID[i - begin];
+    }
+  }
+}
+
+#else
+
+RTCIntersectContext context_of(RTCIntersectContextFlags flags) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = flags;
+  return context;
+}
+
+void intersect(RTCScene scene, RTCRayHit& query) {
+  RTCIntersectContext context = context_of(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  rtcIntersect1(scene, &context, &query);
+}
+
+RTCRayHitNp stream_of(RayBlock& block, Query& query) {
+  RTCRayHitNp out;
+  out.ray = {block.origins.x.data(),    block.origins.y.data(),    block.origins.z.data(),
+             query.near.data(),         block.directions.x.data(), block.directions.y.data(),
+             block.directions.z.data(), query.times.data(),        query.far.data(),
+             query.masks.data(),        query.flags.data(),        query.flags.data()};
+  out.hit = {query.normals.x.data(),  query.normals.y.data(),  query.normals.z.data(),
+             query.u.data(),          query.v.data(),          query.triangles.data(),
+             query.geometries.data(), {query.instances.data()}};
+  return out;
+}
+
+void intersect(RTCScene scene, RayBlock& block, Query& query) {
+  RTCRayHitNp rays = stream_of(block, query);
+  RTCIntersectContext context = context_of(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  rtcIntersectNp(scene, &context, &rays, static_cast<unsigned>(block.size));
+}
+
+#endif
 
 // The planes of the triangles that a block of rays met.
 struct PlaneBlock {
@@ -230,8 +297,7 @@ Result<Raycaster> Raycaster::build(const TriangleMesh& mesh, EdgeRule edges) {
 RayHit Raycaster::cast(const Ray& ray, float max_distance) const {
   RTCRayHit query;
   aim(query, ray, max_distance);
-  RTCIntersectContext context = context_of(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-  rtcIntersect1(scene_->embree.get(), &context, &query);
+  intersect(scene_->embree.get(), query);
   return scene_->hit_of(query, ray);
 }
 
@@ -250,9 +316,7 @@ float Raycaster::distance(const Eigen::Vector3f& point, float max_distance) cons
 
 void Raycaster::cast(RayBlock& block, float max_distance) const {
   Query query(max_distance);
-  RTCRayHitNp rays = query.with(block);
-  RTCIntersectContext context = context_of(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
-  rtcIntersectNp(scene_->embree.get(), &context, &rays, static_cast<unsigned>(block.size));
+  intersect(scene_->embree.get(), block, query);
   PlaneBlock planes;
   for (std::size_t i = 0; i < block.size; ++i) {
     const bool hit = query.geometries[i] != RTC_INVALID_GEOMETRY_ID;

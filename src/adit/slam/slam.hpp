@@ -20,6 +20,7 @@
 
 namespace adit {
 
+/// A session and what it took.
 struct SlamRun {
   Session session;  ///< Its provenance says what ran; the caller fills in command and inputs.
   std::vector<std::uint64_t> bytes_sent;  ///< Per robot of the session.
@@ -35,12 +36,14 @@ struct SlamRun {
 
 /// What a person says of two robots, by name, against the test.
 struct Ruling {
+  /// Which of the two.
   enum class Kind : std::uint8_t {
     veto,     ///< Their loops join nothing; they may still share a map through other robots.
     confirm,  ///< They are joined by the best alignment that was found, as long as cycles with others close.
   };
-  Kind kind = Kind::veto;
-  std::string a, b;
+  Kind kind = Kind::veto;  ///< What is said.
+  std::string a;           ///< One robot.
+  std::string b;           ///< The other.
 };
 
 /// Maps every robot, lets each meet every other, and solves for the joint maps. With the default

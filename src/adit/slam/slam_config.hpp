@@ -11,6 +11,7 @@
 
 namespace adit {
 
+/// All policies.
 inline constexpr std::array kKeyframeSelections{KeyframeSelection::adaptive, KeyframeSelection::all,
                                                 KeyframeSelection::tunnel_filter,
                                                 KeyframeSelection::tunnel_filter_keep};
@@ -21,17 +22,18 @@ inline constexpr std::array kKeyframeSelections{KeyframeSelection::adaptive, Key
 /// the paper and, as it says, tuned to the site; the defaults here are tuned to the preset zab, and
 /// `adaptive` does not read them.
 struct SlamConfig {
-  KeyframeSelection keyframes = KeyframeSelection::adaptive;
-  bool check_sensors = true;  ///< See robot/sensor_checks.hpp.
-  RobotSlamConfig robot;
-  AgentConfig loops;
-  BackEndConfig back_end;
-  LoopbackConfig bus;
+  KeyframeSelection keyframes = KeyframeSelection::adaptive;  ///< The policy.
+  bool check_sensors = true;                                  ///< See robot/sensor_checks.hpp.
+  RobotSlamConfig robot;                                      ///< Mapping of one robot.
+  AgentConfig loops;                                          ///< Search and test of loops where robots meet.
+  BackEndConfig back_end;                                     ///< The joint solution.
+  LoopbackConfig bus;                                         ///< What messages between robots suffer.
 
-  SlamConfig();
+  SlamConfig();  ///< The defaults.
   /// `loops` under the keyframe policy: adaptive robots test merges, the paper's do not.
   [[nodiscard]] AgentConfig agent() const;
 };
+/// The keys have no prefix of their own.
 Fields fields_of(SlamConfig& config);
 
 }  // namespace adit
