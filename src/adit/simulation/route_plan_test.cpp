@@ -139,6 +139,20 @@ TEST(DrivableFloor, KeepsAwayFromWallsAndDrops) {
   EXPECT_NEAR(floor->area_m2(), (30 - 2 * need) * (12 - 2 * need) - (10 + 2 * need) * (4 + 2 * need), 25.0);
 }
 
+TEST(DrivableFloor, HoldsTheRoutesThatAGeneratedWorldComesWith) {
+  WorldConfig world_config;
+  world_config.preset = "metro";
+  world_config.facet_factor = 4.0;
+  const Result<World> world = make_world(world_config);
+  ASSERT_TRUE(world) << world.error().message;
+  const Result<Raycaster> raycaster = Raycaster::build(world->mesh, EdgeRule::watertight);
+  const Result<DrivableFloor> floor = drivable_floor(world->mesh, *raycaster, {});
+  ASSERT_TRUE(floor) << floor.error().message;
+  for (const Route& route : world->routes)
+    for (const Vector3& p : route.waypoints)
+      EXPECT_TRUE(floor->cell_at(p)) << route.name << ' ' << p.transpose();
+}
+
 TEST(DrivableFloor, OfARoomFacesEitherWay) {
   TriangleMesh mesh = test::room({0, 0, 0}, {30, 6, 3});
   for (Eigen::Vector3i& t : mesh.triangles) std::swap(t[1], t[2]);
