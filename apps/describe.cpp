@@ -79,7 +79,7 @@ std::string choice_cases(const CommandHelp& command) {
   std::string cases;
   for (const OptionHelp& option : command.options) {
     if (option.name.empty() || option.choices.empty()) continue;
-    cases += format("    {}' {}') words='{}' ;;\n", command.name.empty() ? "*" : "'" + command.name,
+    cases += format("    {} {}') words='{}' ;;\n", command.name.empty() ? "*'" : "'" + command.name,
                     option.name, joined(option.choices));
   }
   return cases;

@@ -99,7 +99,9 @@ TEST_F(Georeferenced, MapsAndPosesLeaveInTheTargetFrame) {
   expect_done("convert " + in("s") + " " + in("poses.tum"));
   for (const std::string robot : {"ahead", "behind"}) {
     const Trajectory true_path = truth(robot);
-    for (const StampedPose& pose : read_tum(in("poses_" + robot + ".tum")).value()) {
+    const Result<Trajectory> poses = read_tum(in("poses_" + robot + ".tum"));
+    ASSERT_TRUE(poses) << poses.error().message;
+    for (const StampedPose& pose : *poses) {
       const Pose T_grid_base = kT_grid_world * pose_at(true_path, pose.stamp).value();
       EXPECT_LT((pose.T_world_body.translation() - T_grid_base.translation()).norm(), 0.3) << robot;
     }
@@ -116,8 +118,9 @@ TEST_F(Georeferenced, MapsAndPosesLeaveInTheTargetFrame) {
   expect_done("convert " + in("s") + " " + in("map.ply"));
   EXPECT_NE(get_file(in("map.ply")).find("comment EPSG:25833; add the offset 403000 5720000 0\n"),
             std::string::npos);
-  const PointCloud cloud = read_cloud(in("map.ply")).value();
-  EXPECT_LT((cloud.points.front().cast<double>() + Vector3(403'000, 5'720'000, 0) -
+  const Result<PointCloud> cloud = read_cloud(in("map.ply"));
+  ASSERT_TRUE(cloud) << cloud.error().message;
+  EXPECT_LT((cloud->points.front().cast<double>() + Vector3(403'000, 5'720'000, 0) -
              kT_grid_world * truth("ahead").front().T_world_body.translation())
                 .norm(),
             300.0);
