@@ -78,7 +78,7 @@ std::optional<Pose> MovingPose::at(Stamp stamp) const {
   return T_a_b;
 }
 
-FrameTracks::FrameTracks(std::string base, std::vector<std::string> followed)
+FrameTracks::FrameTracks(const std::string& base, std::vector<std::string> followed)
     : base_(FrameTree::bare(base)), followed_(std::move(followed)) {}
 
 bool FrameTracks::is_of_robot(const std::string& parent, const std::string& child) const {

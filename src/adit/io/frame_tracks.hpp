@@ -42,7 +42,7 @@ class FrameTracks {
  public:
   /// `base`: the robot's frame, "" where it is not known; `followed`: the sensors' frames. Only links above
   /// these are kept over time.
-  FrameTracks(std::string base, std::vector<std::string> followed);
+  FrameTracks(const std::string& base, std::vector<std::string> followed);
 
   /// Of /tf_static, all before those of `add`: they hold for all times and go before those of /tf.
   void add_static(const std::vector<ros::TransformMessage>& links);

@@ -26,8 +26,6 @@ constexpr double kRough = 0.1;        ///< Metres above what wheels climb that s
 constexpr double kSmallestPart = 4.0;  ///< Square metres: smaller parts of the floor are not told of.
 constexpr double kLargestFloor = 3e7;  ///< Samples of it.
 constexpr float kFarAway = 1e6F;       ///< Metres: no mesh is as large.
-constexpr std::size_t kLookOuts =
-    256;                         ///< Places in a part of the floor from which rays are cast all around.
 constexpr double kLeaks = 0.15;  ///< A part of the floor is outside where more of its rays meet nothing.
 
 /// A floor sample with free space above, and how it hangs together with those beside it.
@@ -84,27 +82,19 @@ Grounds with_headroom(const std::vector<FloorSample>& samples, const Raycaster& 
   return grounds;
 }
 
-/// The grounds of one column are neighbours in the list, which is sorted.
-std::pair<std::uint32_t, std::uint32_t> range_of(const std::vector<Ground>& grounds, FloorColumn column) {
-  const auto found = std::ranges::equal_range(grounds, column, {}, &Ground::column);
-  return {static_cast<std::uint32_t>(found.begin() - grounds.begin()),
-          static_cast<std::uint32_t>(found.end() - grounds.begin())};
-}
-
 /// The ground beside `from` in that direction that is nearest in height and no steeper than the robot climbs.
 std::uint32_t next_ground(const std::vector<Ground>& grounds, std::uint32_t from, std::size_t direction,
                           const RouteConfig& config) {
   const auto [dx, dy] = kNeighbours[direction];
   const Ground& ground = grounds[from];
-  const auto [begin, end] = range_of(grounds, {ground.column.x + dx, ground.column.y + dy});
   double nearest =
       std::hypot(dx, dy) * config.cell_m * std::tan(config.max_slope_deg * kDegree) + config.max_step_m;
   std::uint32_t best = FloorCell::kNone;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const double rise = std::abs(grounds[i].position.z() - ground.position.z());
+  for (const Ground& other : in_column(grounds, {ground.column.x + dx, ground.column.y + dy})) {
+    const double rise = std::abs(other.position.z() - ground.position.z());
     if (rise > nearest) continue;
     nearest = rise;
-    best = i;
+    best = static_cast<std::uint32_t>(&other - grounds.data());
   }
   return best;
 }
@@ -359,14 +349,13 @@ Error too_narrow(const std::vector<Ground>& grounds, const RouteConfig& config) 
 std::string place_text(const Vector3& p) { return format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z()); }
 
 std::optional<std::uint32_t> DrivableFloor::cell_at(const Vector3& p) const {
-  const auto column = std::ranges::equal_range(cells, column_of(p, cell_m), {}, &FloorCell::column);
   std::optional<std::uint32_t> best;
   double nearest = 1.0;
-  for (auto cell = column.begin(); cell != column.end(); ++cell) {
-    const double rise = std::abs(cell->position.z() - p.z());
+  for (const FloorCell& cell : in_column(cells, column_of(p, cell_m))) {
+    const double rise = std::abs(cell.position.z() - p.z());
     if (rise > nearest) continue;
     nearest = rise;
-    best = static_cast<std::uint32_t>(cell - cells.begin());
+    best = static_cast<std::uint32_t>(&cell - cells.data());
   }
   return best;
 }

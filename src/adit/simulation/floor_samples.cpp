@@ -84,9 +84,4 @@ std::vector<FloorSample> floor_samples(const TriangleMesh& mesh, double cell) {
   return samples;
 }
 
-std::span<const FloorSample> samples_in(const std::vector<FloorSample>& samples, FloorColumn column) {
-  const auto [begin, end] = std::ranges::equal_range(samples, column, {}, &FloorSample::column);
-  return {begin, end};
-}
-
 }  // namespace adit

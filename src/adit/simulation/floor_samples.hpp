@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <compare>
 #include <cstddef>
 #include <span>
@@ -31,8 +32,11 @@ struct FloorSample {
 /// 60 degrees is a wall. The mesh must pass `check_mesh`.
 [[nodiscard]] std::vector<FloorSample> floor_samples(const TriangleMesh& mesh, double cell);
 
-/// Those of one column; `samples` are as floor_samples returns them.
-[[nodiscard]] std::span<const FloorSample> samples_in(const std::vector<FloorSample>& samples,
-                                                      FloorColumn column);
+/// The elements of one column, of a list that is sorted by their columns.
+template <class Element>
+[[nodiscard]] std::span<const Element> in_column(const std::vector<Element>& sorted, FloorColumn column) {
+  return {std::ranges::lower_bound(sorted, column, {}, &Element::column),
+          std::ranges::upper_bound(sorted, column, {}, &Element::column)};
+}
 
 }  // namespace adit

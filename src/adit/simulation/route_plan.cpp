@@ -176,8 +176,8 @@ double covered_share(const RouteNetwork& network, const std::vector<Walk>& walks
   std::vector<std::uint32_t> passed;
   for (const Walk& walk : walks) passed.insert(passed.end(), walk.begin(), walk.end());
   std::ranges::sort(passed);
-  const auto repeated = std::ranges::unique(passed);
-  return static_cast<double>(passed.size() - repeated.size()) / static_cast<double>(network.places.size());
+  const auto num_passed = std::unique(passed.begin(), passed.end()) - passed.begin();
+  return static_cast<double>(num_passed) / static_cast<double>(network.places.size());
 }
 
 }  // namespace
