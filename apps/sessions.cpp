@@ -57,11 +57,12 @@ void print_pairs(const Session& session) {
 Control kept_control(const std::vector<Georeference>& earlier) {
   Control kept;
   for (const Georeference& map : earlier) {
-    if (map.crs != earlier.front().crs) {
-      print_notes("slam",
-                  {format("the sessions are in two coordinate systems, '{}' and '{}', so that the new "
-                          "one is in none; adit georeference sets one",
-                          earlier.front().crs, map.crs)});
+    if (map.crs != earlier.front().crs || (map.crs.empty() && &map != &earlier.front())) {
+      print_notes(
+          "slam",
+          {format("the maps are in coordinate systems that may differ, '{}' and '{}', so that the new "
+                  "session is in none; adit georeference sets one",
+                  earlier.front().crs, map.crs)});
       return {};
     }
     kept.crs = map.crs;

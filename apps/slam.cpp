@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "adit/slam/slam.hpp"
 
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -79,6 +80,9 @@ Result<Job> job_again(const SlamOptions& options, const Common& common) {
   }
   const Result<> set = parse_config(fields_of(job.config), job.provenance.configuration);
   if (!set) return fail(options.rerun + ": configuration", set.error());
+  if (std::filesystem::exists(std::filesystem::path(options.rerun).parent_path() / "georeference.toml"))
+    print_notes("slam", {format("{} is georeferenced; that is not repeated: adit georeference does it",
+                                options.rerun)});
   if (header->version != version())
     print_notes("slam", {format("{} was made by adit {}, and this is {}: results may differ", options.rerun,
                                 header->version, version())});

@@ -45,7 +45,7 @@ std::vector<Pose2> poses_from<Pose2>(const PoseArray& array) {
 // ---- graphs ----------------------------------------------------------------------------------------------
 
 using KeyArray = py::array_t<std::uint64_t, py::array::c_style | py::array::forcecast>;
-using IndexArray = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+using IndexArray = py::array_t<std::int64_t, py::array::c_style>;
 using MatrixArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// The arrays that describe a graph, in and out.

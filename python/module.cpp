@@ -12,7 +12,9 @@ namespace adit::python {
 namespace {
 
 std::string setting_text(const py::handle& value) {
+  if (py::hasattr(value, "dtype")) return setting_text(value.attr("item")());  // a scalar of numpy
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
+  if (value.is_none()) throw py::type_error("a setting is a number, a text or a bool, not None");
   return py::str(value);
 }
 

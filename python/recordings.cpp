@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -84,11 +85,27 @@ std::vector<T> per_point(const py::object& values, std::size_t num_points, const
   return {array.data(), array.data() + array.size()};
 }
 
+/// Nanoseconds. Seconds, as floating-point numbers, and times that are not offsets are refused.
+std::vector<std::int32_t> offsets_of(const py::object& values, std::size_t num_points) {
+  if (values.is_none()) return {};
+  const py::array array = py::array::ensure(values);
+  if (!array || (array.dtype().kind() != 'i' && array.dtype().kind() != 'u'))
+    throw py::value_error("time_offsets: integers are needed, nanoseconds after the stamp");
+  std::vector<std::int32_t> offsets;
+  for (const std::int64_t offset : per_point<std::int64_t>(array, num_points, "time_offsets")) {
+    if (offset < std::numeric_limits<std::int32_t>::min() ||
+        offset > std::numeric_limits<std::int32_t>::max())
+      throw py::value_error("time_offsets: nanoseconds after the stamp, at most two seconds, are needed");
+    offsets.push_back(static_cast<std::int32_t>(offset));
+  }
+  return offsets;
+}
+
 Scan scan_of(std::int64_t stamp, const PointArray& points, const py::object& intensities,
              const py::object& time_offsets) {
   Scan scan{{stamp}, cloud_of(points)};
   scan.cloud.intensities = per_point<float>(intensities, scan.cloud.size(), "intensities");
-  scan.cloud.time_offsets_ns = per_point<std::int32_t>(time_offsets, scan.cloud.size(), "time_offsets");
+  scan.cloud.time_offsets_ns = offsets_of(time_offsets, scan.cloud.size());
   return scan;
 }
 

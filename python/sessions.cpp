@@ -190,10 +190,15 @@ struct OpenedSession {
 };
 
 PointArray saved_points(const OpenedSession& s, const std::string& robot, double voxel) {
-  const std::size_t index = index_of(s.saved.robots, robot);
-  const PlacedSession placed = value_of(read_placed_session(s.path));
-  const PlacedRobot& robot_of = placed.robots.at(index);
-  return array_of(merged_cloud(*robot_of.map, robot_of.T_world_keyframe, voxel).points);
+  (void)index_of(s.saved.robots, robot);  // says which robots there are
+  const PointCloud cloud = without_gil([&] {
+    const PlacedSession placed = value_of(read_placed_session(s.path));
+    const auto own =
+        std::ranges::find_if(placed.robots, [&](const PlacedRobot& one) { return one.map->name == robot; });
+    // A robot without keyframes has no map.
+    return own == placed.robots.end() ? PointCloud() : merged_cloud(*own->map, own->T_world_keyframe, voxel);
+  });
+  return array_of(cloud.points);
 }
 
 py::object evaluated(const OpenedSession& s, const std::map<std::string, Path>& truths) {

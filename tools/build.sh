@@ -12,7 +12,7 @@ folder=build/$preset
 started=$SECONDS
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-if [ ! -f "$folder/build.ninja" ] || [ -n "${CMAKE_ARGS:-}" ]; then
+if [ ! -f "$folder/build.ninja" ] || [ CMakePresets.json -nt "$folder/build.ninja" ] || [ -n "${CMAKE_ARGS:-}" ]; then
   # shellcheck disable=SC2086  # several arguments in one variable
   cmake --preset "$preset" ${CMAKE_ARGS:-} >"$log" 2>&1 || { cat "$log" >&2; exit 1; }
 fi

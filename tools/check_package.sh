@@ -13,8 +13,9 @@ packages=build/package/packages
 compgen -G "$packages/*.deb" >/dev/null || { echo "check_package: no packages in $packages; run make package" >&2; exit 1; }
 root=${1:-build/package/root}
 suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
-mirror=${ADIT_MIRROR:-$(awk '/^(deb |URIs:)/ { for (i = 2; i <= NF; i++) if ($i ~ /^http/) { print $i; exit } }' \
-  /etc/apt/sources.list /etc/apt/sources.list.d/debian* 2>/dev/null)}
+sources() { cat /etc/apt/sources.list /etc/apt/sources.list.d/debian* 2>/dev/null || true; }
+mirror=${ADIT_MIRROR:-$(sources | awk '/^(deb |URIs:)/ { for (i = 2; i <= NF; i++) if ($i ~ /^http/) { print $i; exit } }')}
+[ -n "$mirror" ] || { echo "check_package: no Debian mirror in /etc/apt; set ADIT_MIRROR" >&2; exit 1; }
 if [ ! -x "$root/usr/bin/apt-get" ]; then
   mkdir -p "$root"
   debootstrap --variant=minbase "$suite" "$root" "$mirror" >"$root.log" 2>&1 || { tail -5 "$root.log" >&2; exit 1; }

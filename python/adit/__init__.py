@@ -4,7 +4,8 @@
 
 Arrays are numpy's. Poses are 4 x 4 matrices T_a_b, p_a = T_a_b p_b; stamps are integer nanoseconds; points are (n, 3),
 metres. What adit refuses raises adit.Error with its one line: the file, the place and the remedy; an argument that
-cannot be right raises ValueError. Long calls let other threads run, and Ctrl-C ends them.
+cannot be right raises ValueError. Odometry, registration, SLAM and solving let other
+threads run, and Ctrl-C ends them.
 """
 
 from . import _adit

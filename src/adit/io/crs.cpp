@@ -44,6 +44,12 @@ double metres_per_unit(PJ_CONTEXT* context, const PJ* crs) {
   return factor;
 }
 
+/// Of the heights that stand beside a plane; 1 where none do.
+double metres_per_height(PJ_CONTEXT* context, const PJ* crs) {
+  if (proj_get_type(crs) != PJ_TYPE_COMPOUND_CRS) return 1.0;
+  return metres_per_unit(context, ProjObject(proj_crs_get_sub_crs(context, crs, 1), &proj_destroy).get());
+}
+
 std::string local_wkt(std::string name) {
   std::erase_if(name, [](char c) { return c == '"' || static_cast<unsigned char>(c) < ' '; });
   return format("LOCAL_CS[\"{}\",UNIT[\"metre\",1]]", name);
@@ -72,7 +78,8 @@ Result<std::string> crs_wkt(const std::string& crs) {
         format("'{}' is no plane system (with eastings and northings); give a projected one, such as "
                "EPSG:25833",
                crs));
-  if (std::abs(metres_per_unit(context.get(), plane.get()) - 1.0) > 1e-12)
+  if (std::abs(metres_per_unit(context.get(), plane.get()) - 1.0) > 1e-12 ||
+      std::abs(metres_per_height(context.get(), found.get()) - 1.0) > 1e-12)
     return fail(
         format("'{}' is not in metres; maps are: give a system in metres, and control points in it", crs));
   const std::array<const char*, 2> options = {"MULTILINE=NO", nullptr};

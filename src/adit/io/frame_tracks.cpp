@@ -87,9 +87,11 @@ bool FrameTracks::is_of_robot(const std::string& parent, const std::string& chil
 
 void FrameTracks::add_static(const std::vector<ros::TransformMessage>& links) {
   for (const ros::TransformMessage& link : links) {
-    tree_.add(link.frame, link.child, link.pose.T_world_body);
-    tracks_.insert_or_assign(FrameTree::bare(link.child),
-                             Track{FrameTree::bare(link.frame), {link.pose}, true});
+    const std::string parent = FrameTree::bare(link.frame);
+    const std::string child = FrameTree::bare(link.child);
+    if (parent == child) continue;
+    tree_.add(parent, child, link.pose.T_world_body);
+    tracks_.insert_or_assign(child, Track{parent, {link.pose}, true});
   }
 }
 

@@ -146,6 +146,7 @@ TEST(Crs, IsWrittenAsWktOrRefused) {
   EXPECT_ERROR(crs_wkt("EPSG:999999"), "knows no coordinate system");
   EXPECT_ERROR(crs_wkt("EPSG:4326"), "no plane system");
   EXPECT_ERROR(crs_wkt("EPSG:2263"), "not in metres");
+  EXPECT_ERROR(crs_wkt("EPSG:32633+6360"), "not in metres");  // its heights
 }
 
 }  // namespace

@@ -29,9 +29,11 @@ std::vector<std::string> names_in(std::string text) {
 /// What is missing of the description; empty when nothing is.
 std::vector<std::string> missing_in(const JointDriveConfig& drive) {
   std::vector<std::string> missing;
-  const bool steers = !drive.steering.empty();
-  if (drive.left.empty() && (!steers || drive.right.empty())) missing.emplace_back("left");
-  if (drive.right.empty() && !steers) missing.emplace_back("right");
+  const bool steers = !names_in(drive.steering).empty();
+  const bool has_left = !names_in(drive.left).empty();
+  const bool has_right = !names_in(drive.right).empty();
+  if (!has_left && (!steers || !has_right)) missing.emplace_back("left");
+  if (!has_right && !steers) missing.emplace_back("right");
   if (!(drive.wheel_radius > 0.0)) missing.emplace_back("wheel_radius");
   if (!steers && !(drive.track_width > 0.0)) missing.emplace_back("track_width");
   if (steers && !(drive.wheelbase > 0.0)) missing.emplace_back("wheelbase");

@@ -62,6 +62,7 @@ std::vector<Vector3> smoothed_way(const DrivableFloor& floor, std::vector<Vector
 
 /// Points about a metre apart, both ends included.
 std::vector<Vector3> at_equal_distances(const std::vector<Vector3>& way) {
+  if (way.size() < 2) return way;
   std::vector<double> passed{0.0};
   for (std::size_t i = 1; i < way.size(); ++i) passed.push_back(passed.back() + (way[i] - way[i - 1]).norm());
   const double parts = std::max(1.0, std::round(passed.back() / kWaypointSpacing));

@@ -21,7 +21,7 @@ struct PlannedRoute {
 struct RoutePlan {
   std::vector<PlannedRoute> robots;
   double floor_m2 = 0.0;           ///< On which the robot can stand and get everywhere.
-  double covered = 0.0;            ///< Share of it, 0 to 1, that lies along the routes.
+  double covered = 0.0;            ///< Share of the network's places, 0 to 1, that routes pass.
   std::vector<std::string> notes;  ///< What the user should know of the mesh, one line each.
 };
 

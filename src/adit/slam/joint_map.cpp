@@ -109,7 +109,10 @@ JointMap joint_map_of(const PlacedSession& session) {
 
 Result<OutputFrame> target_frame(const Georeference& map) {
   return crs_wkt(map.crs).map([&](const std::string& wkt) {
-    return OutputFrame{map.T_target_map, map.crs.empty() ? "the target frame" : map.crs, wkt};
+    std::string name = map.crs.empty() ? "the target frame" : map.crs;
+    std::ranges::replace_if(
+        name, [](unsigned char c) { return c < ' '; }, ' ');  // for lines of headers
+    return OutputFrame{map.T_target_map, std::move(name), wkt};
   });
 }
 
