@@ -116,7 +116,7 @@ template <class T>
   return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-using StampArray = py::array_t<std::int64_t, py::array::c_style>;  // of integers only: seconds are no stamps
+using StampArray = py::array_t<std::int64_t, py::array::c_style>;
 using PoseArray = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// (n, 4, 4), T_a_b of each pose.

@@ -18,6 +18,15 @@ namespace {
 
 // ---- trajectories ----------------------------------------------------------------------------------------
 
+/// Nanoseconds are integers; seconds, as floating-point numbers, are refused.
+py::array integers_in(const py::object& values, const char* what) {
+  py::array array = py::array::ensure(values);
+  const bool is_integral = array && (array.dtype().kind() == 'i' || array.dtype().kind() == 'u');
+  if (!is_integral && (!array || array.size() > 0))
+    throw py::value_error(std::string(what) + ": integers are needed, in nanoseconds");
+  return array;
+}
+
 Trajectory trajectory_of(const StampArray& stamps, const PoseArray& array) {
   const std::vector<Pose> poses = poses_of(array);
   if (stamps.ndim() != 1 || static_cast<std::size_t>(stamps.size()) != poses.size())
@@ -53,8 +62,8 @@ Rows positions_in(const Trajectory& trajectory) {
 
 void add_trajectory(py::module_& m) {
   py::class_<Path>(m, "Trajectory")
-      .def(py::init([](const StampArray& stamps, const PoseArray& poses) {
-             return Path{trajectory_of(stamps, poses)};
+      .def(py::init([](const py::object& stamps, const PoseArray& poses) {
+             return Path{trajectory_of(integers_in(stamps, "stamps").cast<StampArray>(), poses)};
            }),
            py::arg("stamps"), py::arg("poses"))
       .def("__len__", [](const Path& path) { return path.poses.size(); })
@@ -85,12 +94,10 @@ std::vector<T> per_point(const py::object& values, std::size_t num_points, const
   return {array.data(), array.data() + array.size()};
 }
 
-/// Nanoseconds. Seconds, as floating-point numbers, and times that are not offsets are refused.
+/// Nanoseconds; times that are not offsets are refused.
 std::vector<std::int32_t> offsets_of(const py::object& values, std::size_t num_points) {
   if (values.is_none()) return {};
-  const py::array array = py::array::ensure(values);
-  if (!array || (array.dtype().kind() != 'i' && array.dtype().kind() != 'u'))
-    throw py::value_error("time_offsets: integers are needed, nanoseconds after the stamp");
+  const py::array array = integers_in(values, "time_offsets");
   std::vector<std::int32_t> offsets;
   for (const std::int64_t offset : per_point<std::int64_t>(array, num_points, "time_offsets")) {
     if (offset < std::numeric_limits<std::int32_t>::min() ||

@@ -89,6 +89,21 @@ class Trajectories(unittest.TestCase):
         with self.assertRaises(ValueError):
             adit.Trajectory([1], [np.full((4, 4), np.nan)])
 
+    def test_seconds_are_no_stamps(self):
+        for seconds in ([1.0, 2.0], np.array([1.0, 2.0])):
+            with self.assertRaisesRegex(ValueError, "nanoseconds"):
+                adit.Trajectory(seconds, [pose(), pose()])
+        with self.assertRaisesRegex(ValueError, "nanoseconds"):
+            adit.Scan(0, np.zeros((3, 3)), time_offsets=np.linspace(0, 0.1, 3))
+        with self.assertRaisesRegex(ValueError, "two seconds"):
+            adit.Scan(0, np.zeros((3, 3)), time_offsets=np.array([0, 1, 10**18]))
+
+    def test_a_setting_is_a_scalar(self):
+        quick = {"robot.odometry.plane_icp.voxel_size": np.float64(0.5)}
+        self.assertIsInstance(adit.Odometry(config=quick), adit.Odometry)
+        with self.assertRaises(TypeError):
+            adit.Odometry(config={"robot.odometry.method": None})
+
     def test_ate_is_that_of_the_definition(self):
         truth = circle()
         noise = np.random.default_rng(2).normal(scale=0.1, size=(200, 3))

@@ -60,6 +60,13 @@ TEST(FrameTracks, AChainIsInterpolatedLinkByLink) {
   EXPECT_LT(distance(*back.at(after_start(0.5)), moving.at(after_start(0.5))->inverse()), 1e-12);
 }
 
+TEST(FrameTracks, ALinkFromAFrameToItselfSaysNothing) {
+  FrameTracks tracks("base_link", {"lidar"});
+  tracks.add_static({test::link("base_link", "lidar", kHead), test::link("lidar", "lidar", Pose())});
+  const MovingPose T_base_lidar = tracks.along({"base_link", "lidar"});
+  EXPECT_LT(distance(*T_base_lidar.at(after_start(0.0)), kHead), 1e-12);
+}
+
 TEST(FrameTracks, WhatCarriesTheRobotIsLeftOut) {
   const FrameTracks tracks = mast();
   EXPECT_EQ(tracks.tree().frames(),

@@ -202,6 +202,9 @@ TEST(JointOdometry, WhatTheDescriptionLacksIsNamed) {
   JointDriveConfig drive = two_wheels();
   drive.track_width = 0.0;
   EXPECT_ERROR(JointOdometry::create(drive), "missing: recording.drive.track_width");
+  JointDriveConfig nameless = drive;
+  nameless.left = ",";
+  EXPECT_ERROR(JointOdometry::create(nameless), "missing: recording.drive.left, recording.drive.track_width");
   drive.steering = "s";
   EXPECT_ERROR(JointOdometry::create(drive), "missing: recording.drive.wheelbase");
   EXPECT_ERROR(
