@@ -194,6 +194,8 @@ Result<> convert(const ConvertOptions& options, const Common& common) {
     const Result<RunConfig> config = configured(common);
     return config ? convert_session(options, config->maps) : tl::unexpected(config.error());
   }
+  if (!options.frame.empty())
+    usage_error("--frame is for what is written of a session, and " + in + " is none");
   if (from == Kind::recording && (to == Kind::recording || to == Kind::trajectory)) {
     const Result<RunConfig> config = configured(common);
     if (!config) return tl::unexpected(config.error());

@@ -181,6 +181,7 @@ TEST_F(Georeferenced, WhatCannotBePlacedIsRefusedAndNothingWritten) {
   expect_refused("convert " + in("s") + " " + in("map.las") + " --frame target", 1,
                  "adit georeference sets one");
   expect_refused("georeference " + in("s"), 2, "--control is required");
+  expect_refused("convert " + in("s/map.ply") + " " + in("x.pcd") + " --frame target", 2, "is none");
   expect_refused("georeference " + in("s") + " --control " + in("points.csv") + " --crs EPSG:4326", 1,
                  "no plane system");
 }
