@@ -104,9 +104,12 @@ Result<> evaluate_cloud(const EvaluateOptions& options, const SightConfig& confi
   const Result<TrueSurface> surface = read_surface(options.mesh);
   if (!surface) return tl::unexpected(surface.error());
   std::vector<Eigen::Vector3f> eyes;
-  for (const Trajectory& truth : *truths) {
+  for (std::size_t i = 0; i < truths->size(); ++i) {
+    const Trajectory& truth = (*truths)[i];
+    // Where a trajectory says when the map was made, that stretch counts.
+    const Trajectory& mapped = trajectories->empty() ? truth : (*trajectories)[i];
     const Vector3 sensor(0.0, 0.0, config.sensor_height_m);
-    const auto own = eyes_of(truth, truth.front().stamp, truth.back().stamp, sensor);
+    const auto own = eyes_of(truth, mapped.front().stamp, mapped.back().stamp, sensor);
     eyes.insert(eyes.end(), own.begin(), own.end());
   }
   if (trajectories->empty()) print_notes("evaluate", {"the cloud is taken to be in the frame of the mesh"});

@@ -30,7 +30,8 @@ Result<> merge_command(const MergeOptions& options, const Common& common) {
       slam_on(std::move(saved->fleets), {}, saved->job.config.slam, rulings_of(options.rulings));
   if (!run) return tl::unexpected(run.error());
   print_notes("merge", run->notes);
-  return finish_session(std::move(*run), std::move(saved->job), *out, options.out, common.json, *control);
+  return finish_session(std::move(*run), std::move(saved->job), *out, options.out, common.json, *control,
+                        "merge");
 }
 
 }  // namespace

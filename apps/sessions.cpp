@@ -54,12 +54,12 @@ void print_pairs(const Session& session) {
 }
 
 /// The points that earlier sessions kept.
-Control kept_control(const std::vector<Georeference>& earlier) {
+Control kept_control(const std::vector<Georeference>& earlier, const std::string& command) {
   Control kept;
   for (const Georeference& map : earlier) {
     if (map.crs != earlier.front().crs || (map.crs.empty() && &map != &earlier.front())) {
       print_notes(
-          "slam",
+          command,
           {format("the maps are in coordinate systems that may differ, '{}' and '{}', so that the new "
                   "session is in none; adit georeference sets one",
                   earlier.front().crs, map.crs)});
@@ -71,9 +71,10 @@ Control kept_control(const std::vector<Georeference>& earlier) {
   return kept;
 }
 
-Result<> georeference_written(const std::string& path, const Control& control, bool json) {
+Result<> georeference_written(const std::string& path, const Control& control, bool json,
+                              const std::string& command) {
   if (control.points.empty()) return {};
-  const Result<std::vector<Georeference>> maps = georeference_session(path, control, "slam");
+  const Result<std::vector<Georeference>> maps = georeference_session(path, control, command);
   if (!maps)
     return fail(
         format("{} was written, without a georeference: {}; adit georeference {} --control FILE sets one",
@@ -171,7 +172,7 @@ void print_georeferences(const std::vector<Georeference>& maps) {
 }
 
 Result<> finish_session(SlamRun run, Job job, OutputDir& out, const std::string& path, bool json,
-                        const Control& control) {
+                        const Control& control, const std::string& command) {
   Result<> done = write_slam(out.path(), run, std::move(job));
   if (done) done = out.commit();
   if (!done) return done;
@@ -181,8 +182,8 @@ Result<> finish_session(SlamRun run, Job job, OutputDir& out, const std::string&
     print_robots(run);
     print_pairs(run.session);
   }
-  const Control given = control.points.empty() ? kept_control(run.georeferences) : control;
-  const Result<> georeferenced = georeference_written(path, given, json);
+  const Control given = control.points.empty() ? kept_control(run.georeferences, command) : control;
+  const Result<> georeferenced = georeference_written(path, given, json, command);
   const Result<> complete = without_failures(run, path);
   if (complete || georeferenced) return complete ? georeferenced : complete;
   return fail(complete.error().message + "; " + georeferenced.error().message);

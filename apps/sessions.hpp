@@ -52,7 +52,8 @@ void print_georeferences(const std::vector<Georeference>& maps);
 /// Writes the session and prints what was found. It is georeferenced by `control`, or by the points that
 /// earlier sessions kept. That this failed, or that robots could not be mapped, is an error all the same,
 /// printed last.
+/// `command` begins its notes.
 Result<> finish_session(SlamRun run, Job job, OutputDir& out, const std::string& path, bool json,
-                        const Control& control);
+                        const Control& control, const std::string& command);
 
 }  // namespace adit::app

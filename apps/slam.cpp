@@ -104,7 +104,7 @@ Result<> run_job(Job job, const RunConfig& reading, const std::vector<std::strin
       slam_on(std::move(saved), std::move(inputs->recordings), job.config.slam, rulings_of(options.rulings));
   if (!run) return tl::unexpected(run.error());
   print_notes("slam", run->notes);
-  return finish_session(std::move(*run), std::move(job), *out, to, json, *control);
+  return finish_session(std::move(*run), std::move(job), *out, to, json, *control, "slam");
 }
 
 Result<> go_on(const SlamOptions& options, const Common& common) {

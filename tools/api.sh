@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 command -v doxygen >/dev/null || { echo "api: install the Debian package doxygen" >&2; exit 1; }
 mkdir -p build
 log=build/api.log
-doxygen docs/Doxyfile 2>"$log"
+doxygen docs/Doxyfile 2>"$log" || { tail "$log" >&2; exit 1; }
 mapfile -t headers < <(grep -v '^#' tools/api_headers.txt)
 found=0
 for header in "${headers[@]}"; do

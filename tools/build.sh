@@ -12,9 +12,11 @@ folder=build/$preset
 started=$SECONDS
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
-if [ ! -f "$folder/build.ninja" ] || [ CMakePresets.json -nt "$folder/build.ninja" ] || [ -n "${CMAKE_ARGS:-}" ]; then
+# Ninja configures again by itself, but not where the presets have changed.
+if ! cmp -s CMakePresets.json "$folder/CMakePresets.json" || [ -n "${CMAKE_ARGS:-}" ]; then
   # shellcheck disable=SC2086  # several arguments in one variable
   cmake --preset "$preset" ${CMAKE_ARGS:-} >"$log" 2>&1 || { cat "$log" >&2; exit 1; }
+  cp CMakePresets.json "$folder"
 fi
 if [ -t 1 ]; then
   NINJA_STATUS='build: %f of %t, %es  ' ninja -C "$folder" "$@"

@@ -70,11 +70,11 @@ Bag beginning_of(Bag bag, double seconds) {
   if (bag.messages.empty()) return bag;
   constexpr std::size_t kOfEach = 3;  // a sensor may begin late
   const Stamp first = bag.messages.front().log_time;
-  std::vector<std::size_t> num_kept(bag.topics.size());
+  std::vector<std::size_t> num_before(bag.topics.size());
   std::erase_if(bag.messages, [&](const BagMessage& message) {
     const bool is_early = to_seconds(message.log_time - first) <= seconds;
-    return !is_early && num_kept[message.topic]++ >= kOfEach &&
-           !bag.topics[message.topic].name.ends_with("_static");
+    const bool is_first = num_before[message.topic]++ < kOfEach;
+    return !is_early && !is_first && !bag.topics[message.topic].name.ends_with("_static");
   });
   return bag;
 }

@@ -42,10 +42,11 @@ BagTopics find_topics(const Bag& bag, const std::string& under) {
   for (std::size_t i = 0; i < bag.topics.size(); ++i) {
     const auto& [name, type, encoding] = bag.topics[i];
     if (encoding != "cdr" && encoding != "ros1") continue;
-    if (type == ros::kTransforms && (is_called(name, "tf") || is_called(name, "tf_static"))) {
+    const bool is_static = name.ends_with("tf_static");
+    if (type == ros::kTransforms && (is_static || is_called(name, "tf"))) {
       const bool is_shared = name == "/tf" || name == "/tf_static";
       if (is_shared || is_under(name, under))
-        (is_called(name, "tf") ? topics.transforms : topics.static_transforms).push_back(i);
+        (is_static ? topics.static_transforms : topics.transforms).push_back(i);
     }
     if (!is_under(name, under)) continue;
     if (type == ros::kJointState) topics.joints.push_back(i);

@@ -31,11 +31,11 @@ bool is_world(const std::string& frame) {
   return std::ranges::find(kWorlds, name) != kWorlds.end();
 }
 
-/// Of poses that stay the first and the last are enough.
+/// Of poses that stay the first and the last are enough. Stamps may go back: MovingPose puts them in order.
 void append_pose(Trajectory& poses, const StampedPose& pose) {
   const std::size_t num = poses.size();
-  if (num > 0 && pose.stamp <= poses.back().stamp) return;
-  if (num > 1 && is_same(poses[num - 1].T_world_body, pose.T_world_body) &&
+  if (num > 1 && pose.stamp > poses[num - 1].stamp && poses[num - 1].stamp > poses[num - 2].stamp &&
+      is_same(poses[num - 1].T_world_body, pose.T_world_body) &&
       is_same(poses[num - 2].T_world_body, pose.T_world_body)) {
     poses.back().stamp = pose.stamp;
     return;
@@ -58,6 +58,10 @@ std::optional<Pose> link_at(const Trajectory& poses, Stamp stamp) {
 
 MovingPose::MovingPose(std::vector<Link> links) {
   for (Link& link : links) {
+    std::ranges::stable_sort(link.poses, {}, &StampedPose::stamp);
+    link.poses.erase(std::unique(link.poses.begin(), link.poses.end(),
+                                 [](const auto& a, const auto& b) { return a.stamp == b.stamp; }),
+                     link.poses.end());
     const bool moves = std::ranges::any_of(link.poses, [&](const StampedPose& pose) {
       return differ(link.poses.front().T_world_body, pose.T_world_body);
     });

@@ -67,6 +67,17 @@ TEST(FrameTracks, ALinkFromAFrameToItselfSaysNothing) {
   EXPECT_LT(distance(*T_base_lidar.at(after_start(0.0)), kHead), 1e-12);
 }
 
+// One message whose clock was not set yet does not freeze the link.
+TEST(FrameTracks, StampsMayGoBack) {
+  FrameTracks tracks("base_link", {"lidar"});
+  tracks.add({link_at("base_link", "lidar", after_start(1e6), mast_at(0.0))});
+  for (int i = 0; i <= 10; ++i)
+    tracks.add({link_at("base_link", "lidar", after_start(0.1 * i), mast_at(0.1 * i))});
+  const MovingPose T_base_lidar = tracks.along({"base_link", "lidar"});
+  ASSERT_TRUE(T_base_lidar.moves());
+  EXPECT_LT(distance(*T_base_lidar.at(after_start(0.5)), mast_at(0.5)), 1e-9);
+}
+
 TEST(FrameTracks, WhatCarriesTheRobotIsLeftOut) {
   const FrameTracks tracks = mast();
   EXPECT_EQ(tracks.tree().frames(),

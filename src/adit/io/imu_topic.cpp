@@ -26,7 +26,6 @@ Result<> ImuReader::add(const BagMessage& message) {
   const Result<ros::ImuMessage> imu = decoded(bag_, message, ros::decode_imu);
   if (!imu) return fail(format("IMU, message {}", num_messages_), imu.error());
   if (num_messages_++ == 0) {
-    track_.frame = imu->frame;
     track_.covariance = imu->covariance;
   }
   const ImuSample& sample = imu->sample;

@@ -14,8 +14,7 @@
 namespace adit {
 
 struct ImuTrack {
-  std::vector<ImuSample> samples;  ///< Strictly ascending; empty where the IMU cannot be used.
-  std::string frame;
+  std::vector<ImuSample> samples;    ///< Strictly ascending; empty where the IMU cannot be used.
   ImuCovariance covariance;          ///< As the first message states it.
   std::vector<std::string> remarks;  ///< What was left out and why, a sentence each with its remedy.
 };

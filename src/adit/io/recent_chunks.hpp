@@ -37,17 +37,24 @@ class RecentChunks {
 
   Records find(std::size_t chunk) {
     const std::scoped_lock lock(mutex_);
-    const auto known = std::ranges::find(recent_, chunk, &std::pair<std::size_t, Records>::first);
-    return known == recent_.end() ? nullptr : known->second;
+    const auto known = place_of(chunk);
+    if (known == recent_.end()) return nullptr;
+    std::rotate(known, known + 1, recent_.end());
+    return recent_.back().second;
   }
   void keep(std::size_t chunk, Records records) {
     const std::scoped_lock lock(mutex_);
+    if (place_of(chunk) != recent_.end()) return;  // another thread was faster
     recent_.emplace_back(chunk, std::move(records));
     if (recent_.size() > kMost) recent_.pop_front();
   }
 
+  std::deque<std::pair<std::size_t, Records>>::iterator place_of(std::size_t chunk) {
+    return std::ranges::find(recent_, chunk, &std::pair<std::size_t, Records>::first);
+  }
+
   std::mutex mutex_;
-  std::deque<std::pair<std::size_t, Records>> recent_;
+  std::deque<std::pair<std::size_t, Records>> recent_;  ///< The one used last at the back.
 };
 
 }  // namespace adit

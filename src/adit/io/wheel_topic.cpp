@@ -74,7 +74,6 @@ class OdometryReader final : public AscendingReader {
     if (!ascends(pose->pose.stamp)) return {};
     take_covariance(track_.covariance, pose->covariance, track_.poses.empty());
     track_.poses.push_back(pose->pose);
-    track_.child = pose->child;
     return {};
   }
   Result<PoseTrack> finish() override {
@@ -105,7 +104,6 @@ class TwistReader final : public AscendingReader {
       T_odom_body = before.T_world_body * Pose::exp(0.5 * dt * (last_ + twist->twist));
     }
     track_.poses.push_back({twist->stamp, T_odom_body});
-    track_.child = twist->frame;
     last_ = twist->twist;
     return {};
   }

@@ -16,8 +16,7 @@
 namespace adit {
 
 struct PoseTrack {
-  Trajectory poses;   ///< T_odom_body, stamps strictly ascending.
-  std::string child;  ///< Frame of the body; "" where the messages do not name it.
+  Trajectory poses;  ///< T_odom_body, stamps strictly ascending.
   WheelCovariance covariance = {};
   std::vector<std::string> warnings = {};  ///< What was left out or bridged, a sentence each.
 };
