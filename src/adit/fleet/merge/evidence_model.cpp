@@ -20,18 +20,17 @@ struct Origin {
 
 constexpr std::string_view kChosen = "chosen: the rate that is aimed at";
 constexpr std::string_view kOfForty = "1410 false and 130 true hypotheses of 40 worlds (decision 0048)";
-constexpr std::string_view kTrueOfFive = "true pairs of five tuning worlds (decision 0043)";
+constexpr std::string_view kTrueOfEighteen = "38 true pairs of 18 field worlds (decision 0059)";
 constexpr std::string_view kWalksOfFifteen =
     "106 first steps of look-alikes on 15 maps of five tuning worlds (decision 0043)";
 constexpr std::string_view kJudgement = "judgement: no site was counted (decision 0043)";
 constexpr std::string_view kLining = "half of 20 m of fresh lining (decision 0041)";
 constexpr std::string_view kVehicle = "chosen: the length of a vehicle";
-constexpr std::string_view kThings = "16 worlds (decision 0041)";
 constexpr std::string_view kOfScans = "pairs of scans of the tuning worlds (decision 0010)";
 constexpr std::string_view kOfWalls = "three tuning worlds (decision 0015)";
 
 constexpr std::array kOrigins = {
-    Origin{"fleet.agreement_if_true", kTrueOfFive, "2026-11-25"},
+    Origin{"fleet.agreement_if_true", kTrueOfEighteen, "2026-11-27"},
     Origin{"fleet.least_chance", "places 3 m apart see in part the same (decision 0043)", "2026-11-25"},
     Origin{"fleet.copied", kOfForty, "2026-11-25"},
     Origin{"fleet.copy_goes_on", kJudgement, "2026-11-25"},
@@ -47,7 +46,7 @@ constexpr std::array kOrigins = {
     Origin{"same_object_m", kVehicle, "2026-11-24"},
     Origin{"structure_reach_m", kLining, "2026-11-24"},
     Origin{"thing_reach_m", kVehicle, "2026-11-24"},
-    Origin{"changes_at_worst_per_km", kThings, "2026-11-24"},
+    Origin{"changes_at_worst_per_km", "true pairs of zab and mine worlds (decision 0059)", "2026-11-27"},
     Origin{"things_per_km", kOfForty, "2026-11-25"},
     Origin{"things_elsewhere_per_km", kOfForty, "2026-11-25"},
     Origin{"things_speak_at_most", "chosen: they come and go (decision 0043)", "2026-11-25"},

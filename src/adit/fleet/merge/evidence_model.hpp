@@ -17,7 +17,7 @@ namespace adit {
 
 /// What all robots of a fleet share, because the evidence of several is added up: constants, no settings.
 struct FleetEvidence {
-  double agreement_if_true = 0.95;
+  double agreement_if_true = 0.92;
   double least_chance = 0.2;
   double copied = 0.002;
   double copy_goes_on = 0.95;
@@ -40,7 +40,7 @@ struct EvidenceModel {
   double same_object_m = 5.0;
   double structure_reach_m = 10.0;
   double thing_reach_m = 5.0;
-  double changes_at_worst_per_km = 20.0;
+  double changes_at_worst_per_km = 30.0;
   double things_per_km = 75.0;
   double things_elsewhere_per_km = 117.0;
   double things_speak_at_most = 1.0;
