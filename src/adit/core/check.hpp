@@ -14,6 +14,7 @@ class ContractViolation : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
+/// Throws ContractViolation with the place, `message` and the condition that does not hold. For ADIT_CHECK.
 [[noreturn]] inline void fail_check(const char* condition, const char* message, const char* file, int line) {
   throw ContractViolation(std::string(file) + ":" + std::to_string(line) + ": " + message + " (" + condition +
                           ")");

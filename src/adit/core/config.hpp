@@ -35,14 +35,16 @@ struct EnumTarget {
   std::function<void(std::size_t)> set;    ///< To the value whose name is Field::choices[index].
 };
 
+/// Where the value of a field lies, by its type. The value must outlive the field.
 using FieldTarget = std::variant<double*, int*, bool*, std::uint64_t*, std::string*, EnumTarget>;
 
+/// One setting of a configuration: its key, its value, and what the value may be.
 struct Field {
-  std::string key;     ///< "voxel_size"; with the module's prefix "kiss_icp.voxel_size".
-  FieldTarget target;  ///< Points into the struct that `fields_of` was given.
-  std::string unit;    ///< "m", "deg", "" ...
-  double min = 0.0;    ///< Inclusive range of a number.
-  double max = 0.0;
+  std::string key;                        ///< "voxel_size"; with the module's prefix "kiss_icp.voxel_size".
+  FieldTarget target;                     ///< Points into the struct that `fields_of` was given.
+  std::string unit;                       ///< "m", "deg", "" ...
+  double min = 0.0;                       ///< Inclusive range of a number.
+  double max = 0.0;                       ///< As `min`. Texts and bools have no range.
   std::string meaning;                    ///< One line.
   std::vector<std::string> choices = {};  ///< Allowed values of a text; empty: any.
 
@@ -51,6 +53,7 @@ struct Field {
     return std::holds_alternative<std::string*>(target) || std::holds_alternative<EnumTarget>(target);
   }
 };
+/// In the order in which files and tables list them.
 using Fields = std::vector<Field>;
 
 /// A field that is one of `values`, spelled as `to_string` of the enumeration spells them.

@@ -12,6 +12,7 @@ namespace adit {
 /// path halving). Source: Tarjan, van Leeuwen, "Worst-case analysis of set union algorithms" (JACM 1984).
 class DisjointSets {
  public:
+  /// `n` groups of one number each.
   explicit DisjointSets(std::size_t n) : parent_(n) {
     std::iota(parent_.begin(), parent_.end(), std::size_t{0});
   }

@@ -13,11 +13,15 @@ template <class Real>
 class BasicLargeBuffer {
  public:
   BasicLargeBuffer() = default;
+  /// Begins at a cache line, from 2 MB on at a huge page. Throws std::bad_alloc.
   explicit BasicLargeBuffer(std::size_t size);
 
-  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] std::size_t size() const { return size_; }  ///< In numbers, not in bytes.
+  /// The first number; null where the size is 0.
+  ///@{
   [[nodiscard]] Real* data() { return data_.get(); }
   [[nodiscard]] const Real* data() const { return data_.get(); }
+  ///@}
 
  private:
   struct Free {
@@ -26,6 +30,7 @@ class BasicLargeBuffer {
   std::unique_ptr<Real[], Free> data_;
   std::size_t size_ = 0;
 };
+/// Of double precision.
 using LargeBuffer = BasicLargeBuffer<double>;
 
 }  // namespace adit

@@ -10,6 +10,7 @@ namespace adit {
 
 /// How many threads all parallel loops of the process may use, 1 or more. Results never depend on it.
 void set_num_threads(int num_threads);
+/// The limit that holds: at most the processors that the process may use, however many were set.
 [[nodiscard]] int num_threads();
 
 /// Calls `body(begin, end)` for consecutive parts of [0, n) of `grain` items each (the last one shorter), on

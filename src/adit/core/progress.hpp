@@ -36,7 +36,9 @@ class ProgressObserver {
   /// The steps of a phase should take about equally long: the time left is estimated from them.
   /// @returns an id other than 0 that no phase still running has.
   virtual PhaseId begin(std::string_view name, std::size_t total, PhaseId parent) = 0;
+  /// So many more steps of a phase that `begin` named are done.
   virtual void advance(PhaseId phase, std::size_t steps) = 0;
+  /// The phase is over, be it done or given up. Called once for every `begin`.
   virtual void end(PhaseId phase) noexcept = 0;
 
   /// Whether the work is to stop. Polled often: an atomic load, not more.
@@ -56,14 +58,16 @@ void throw_if_cancelled();
 /// What a thread reports to: an observer and the phase it works for. Copied into the threads of parallel
 /// loops.
 struct ProgressContext {
-  ProgressObserver* observer = nullptr;
-  PhaseId phase = 0;
+  ProgressObserver* observer = nullptr;  ///< Outlives the context. Null: nobody is told.
+  PhaseId phase = 0;                     ///< New phases begin inside of it; 0: they are inside of none.
 };
+/// That of the calling thread; without an observer where none is in scope.
 [[nodiscard]] ProgressContext progress_context();
 
 /// Makes `context` this thread's own until the end of the scope.
 class ProgressScope {
  public:
+  /// The context that held before comes back at the end.
   explicit ProgressScope(const ProgressContext& context);
   ~ProgressScope();
   ProgressScope(const ProgressScope&) = delete;
@@ -76,12 +80,15 @@ class ProgressScope {
 /// From here to the end of the scope, this thread and the parallel loops that it starts report to `observer`.
 class ObserverScope : public ProgressScope {
  public:
+  /// `observer` must outlive the scope. Phases inside of it are inside of no other.
   explicit ObserverScope(ProgressObserver& observer) : ProgressScope({&observer, 0}) {}
 };
 
 /// A phase of the work: begins with the object, ends with it. Nothing happens where no observer is in scope.
 class Phase {
  public:
+  /// Begins at the observer in scope, inside the phase in scope.
+  /// @param name what is done, for people.
   /// @param total number of steps; 0 if unknown.
   explicit Phase(std::string_view name, std::size_t total = 0);
   ~Phase();

@@ -30,6 +30,7 @@ struct JointDriveConfig {
   double axle_x = 0.0;        ///< Of the axle that does not steer, in the base frame, metres.
 };
 
+/// The keys of RecordingConfig::drive. They point into `c`, which must outlive them.
 [[nodiscard]] inline Fields fields_of(JointDriveConfig& c) {
   return {
       {"left", &c.left, "", 0, 0,
@@ -58,7 +59,8 @@ struct RecordingConfig {
   std::string imu =
       {};  ///< Topic of the IMU, where a file has several. "": the only one; "none": do without.
   std::string imu_mount = {};  ///< As `mount`, of the IMU.
-  std::string tf = {};  ///< Topics of the links between frames, apart by commas. "": /tf and /tf_static.
+  /// Topics of the links between frames, apart by commas. "": all that are called tf or tf_static.
+  std::string tf = {};
   JointDriveConfig drive = {};  ///< Where `wheel` is of joints.
   std::string truth = {};  ///< Topic of ground truth. "": the only one whose name says so; "none": without.
   /// Unit of the times of points, "s", "ms", "us" or "ns". "": as found (io/packed_cloud.hpp).
@@ -72,6 +74,7 @@ struct RecordingConfig {
       false;  ///< A bag has a robot in every namespace that has clouds (namespaces_of, io/bag_topics.hpp).
 };
 
+/// Keys without a prefix, those of `drive` with "drive.". They point into `c`, which must outlive them.
 [[nodiscard]] inline Fields fields_of(RecordingConfig& c) {
   Fields fields = {
       {"mount", &c.mount, "m, deg", 0, 0,

@@ -18,9 +18,10 @@
 
 namespace adit {
 
+/// Where a body was at a time.
 struct StampedPose {
-  Stamp stamp;
-  Pose T_world_body;
+  Stamp stamp;        ///< By the clock of whatever states the pose.
+  Pose T_world_body;  ///< Which world and which body, the trajectory's owner says.
 };
 /// Stamps strictly ascending.
 using Trajectory = std::vector<StampedPose>;
@@ -35,21 +36,21 @@ using Trajectory = std::vector<StampedPose>;
 /// per-point times are offsets from it (adit's simulator stamps the end of the sweep, so its offsets are
 /// negative or zero).
 struct Scan {
-  Stamp stamp;
-  PointCloud cloud;
+  Stamp stamp;       ///< Recording::scan_stamps has the same.
+  PointCloud cloud;  ///< Metres; with times only where the sensor gave them.
 };
 
 /// Wheel odometry between two scans, in the base frame, with the covariance of its error in the tangent of
 /// T_base0_base1 (right perturbation, [translation; rotation]).
 struct WheelDelta {
-  Duration duration{};
-  Pose T_base0_base1;
-  Matrix6 covariance = Matrix6::Identity() * 1e-4;
+  Duration duration{};                              ///< From the first scan to the second.
+  Pose T_base0_base1;                               ///< The base at the second scan in the base at the first.
+  Matrix6 covariance = Matrix6::Identity() * 1e-4;  ///< m^2, rad^2
 };
 
 /// One measurement of an IMU, in the IMU's own frame.
 struct ImuSample {
-  Stamp stamp;
+  Stamp stamp;                                 ///< Of the measurement, as the message states it.
   Vector3 angular_velocity = Vector3::Zero();  ///< Radians per second.
   Vector3 specific_force = Vector3::Zero();    ///< Metres per second squared; at rest +9.81 upwards.
 };
@@ -75,15 +76,16 @@ struct SensedMotion {
   /// first one at or after its end. Empty without an IMU, and where its samples are too far apart or do not
   /// reach that far.
   std::vector<ImuSample> imu = {};
-  Pose T_base_imu = {};
+  Pose T_base_imu = {};  ///< As in Recording; without meaning where `imu` is empty.
 };
 
 /// A stretch in which a simulated sensor did not measure what it should.
 struct SensorFault {
   std::string sensor;  ///< "wheels", "imu"
   std::string kind;    ///< "slip", "silent", ... as the sensor's model names them.
-  Stamp begin;
-  Stamp end;
+  Stamp begin;         ///< The first moment that counts.
+  Stamp end;           ///< The first moment that does not.
+  /// Slip: metres too far per metre; spin: m/s too fast; jump: metres; 0 for other kinds.
   double amount = 0.0;
 };
 
@@ -99,15 +101,16 @@ struct Recording {
   std::vector<Stamp> scan_stamps;                      ///< Strictly ascending.
   std::function<Result<Scan>(std::size_t)> read_scan;  ///< Thread-safe; scan i has stamp scan_stamps[i].
   Trajectory wheel;                                    ///< T_wheelodom_base; empty when there are no wheels.
-  WheelCovariance wheel_covariance;
-  std::vector<ImuSample> imu;    ///< Strictly ascending; empty when there is no IMU.
-  Pose T_base_imu;               ///< The mount of the IMU.
-  std::string imu_mount_source;  ///< As mount_source; "" when there is no IMU.
-  std::string imu_name;          ///< The IMU's model, "" when unknown.
-  ImuCovariance imu_covariance;
-  std::vector<SensorFault> faults;  ///< Of simulated sensors, by begin.
-  Trajectory truth;                 ///< T_world_base; empty when unknown.
+  WheelCovariance wheel_covariance;                    ///< Of `wheel`; zero where its messages state none.
+  std::vector<ImuSample> imu;                          ///< Strictly ascending; empty when there is no IMU.
+  Pose T_base_imu;                                     ///< The mount of the IMU.
+  std::string imu_mount_source;                        ///< As mount_source; "" when there is no IMU.
+  std::string imu_name;                                ///< The IMU's model, "" when unknown.
+  ImuCovariance imu_covariance;                        ///< As the first message of `imu` states it.
+  std::vector<SensorFault> faults;                     ///< Of simulated sensors, by begin.
+  Trajectory truth;                                    ///< T_world_base; empty when unknown.
 
+  /// `read_scan` takes numbers below this.
   [[nodiscard]] std::size_t num_scans() const { return scan_stamps.size(); }
 };
 
@@ -120,13 +123,15 @@ struct Recording {
 [[nodiscard]] std::vector<ImuSample> imu_between(const std::vector<ImuSample>& imu, Stamp begin, Stamp end,
                                                  Duration longest_gap);
 
+/// What the pose of an OdometryStep rests on.
 enum class StepStatus {
-  ok,
+  ok,      ///< The scan was registered. The pose is the scan's answer.
   no_map,  ///< The first scan: no map yet to register to. The pose is the start or the wheels' prediction.
   too_few_points,  ///< Fewer points or correspondences than needed. The pose is the prediction.
   degenerate,      ///< The geometry leaves a direction open; along it the pose is the prediction.
   diverged,        ///< The solver left the trust region around the prediction. The pose is the prediction.
 };
+/// The enumerator as it is spelled above.
 [[nodiscard]] std::string_view to_string(StepStatus status);
 
 /// The uncertainty of the motion since the last scan that entered the map, as it was predicted.
@@ -140,8 +145,8 @@ struct PredictedMotion {
 
 /// The answer of an odometry to one scan.
 struct OdometryStep {
-  Stamp stamp;
-  Pose T_odom_base;
+  Stamp stamp;       ///< Of the scan.
+  Pose T_odom_base;  ///< At the stamp. The frame is the method's own, fixed at its first scan.
   Matrix6 information = Matrix6::Zero();  ///< Of T_odom_base, right perturbation; zero along open directions.
   /// What was known of the motion before the scan was looked at, where the method states it.
   std::optional<PredictedMotion> predicted = {};
@@ -152,24 +157,24 @@ struct OdometryStep {
   std::optional<Vector3> up = {};  ///< Against gravity, unit length, base frame; where an IMU has felt it.
   /// Where the wheels are not believed: the metres that they counted and the robot did not drive.
   std::optional<double> slip = {};
-  StepStatus status = StepStatus::no_map;
-  int num_correspondences = 0;
-  int iterations = 0;
+  StepStatus status = StepStatus::no_map;  ///< Whether the scan or a prediction gave T_odom_base.
+  int num_correspondences = 0;             ///< Points with a partner in the map, in the last iteration.
+  int iterations = 0;                      ///< Of the solver; 0 where it did not start.
   bool is_guess = false;  ///< No prediction was reliable: several starts were tried, the best fit was taken.
 };
 
 /// Immutable once made. `cloud` is in the base frame of this keyframe, deskewed and thinned.
 struct Keyframe {
-  KeyframeId id;
-  Stamp stamp;
-  Pose T_odom_base;
-  std::shared_ptr<const PointCloud> cloud;
+  KeyframeId id;                            ///< Its robot and its place in that robot's map.
+  Stamp stamp;                              ///< Of the scan that it was made of.
+  Pose T_odom_base;                         ///< By odometry alone: solutions do not change it.
+  std::shared_ptr<const PointCloud> cloud;  ///< Shared by all copies of the keyframe.
 };
 
 /// "We may have been here before": query is the newer or asking keyframe.
 struct LoopCandidate {
-  KeyframeId query;
-  KeyframeId match;
+  KeyframeId query;       ///< The newer one, or that of the robot that searches.
+  KeyframeId match;       ///< The one that looks like it, of the same robot or another.
   double yaw = 0.0;       ///< First guess: heading of `query` in the frame of `match`, radians.
   double distance = 1.0;  ///< Descriptor distance, 0 (same) to 1.
 };
@@ -177,23 +182,25 @@ struct LoopCandidate {
 /// Two scans whose LoopClosure::weak_axis is below this are free to slide along one another.
 inline constexpr double kWeakAxis = 0.01;
 
+/// Whether a registration is believed. Whether it may join maps is decided later.
 enum class LoopVerdict { accepted, rejected };
+/// "accepted" or "rejected", as in loops.csv.
 [[nodiscard]] std::string_view to_string(LoopVerdict verdict);
 
 /// A registered candidate, accepted or not, with its evidence. `from < to`.
 struct LoopClosure {
-  KeyframeId from;
-  KeyframeId to;
-  Pose T_from_to;
+  KeyframeId from;                            ///< The frame of T_from_to: the base at this keyframe.
+  KeyframeId to;                              ///< The keyframe that T_from_to places there.
+  Pose T_from_to;                             ///< By registration of the clouds.
   Matrix6 information = Matrix6::Identity();  ///< Of T_from_to, right perturbation.
-  double place_distance = 1.0;
-  int num_inliers = 0;
+  double place_distance = 1.0;                ///< LoopCandidate::distance of the candidate.
+  int num_inliers = 0;  ///< Matches of features that agree with the global registration.
   /// Share of the points of one cloud that have a neighbour in the other; the smaller of both ways, 0 to 1.
   double overlap = 0.0;
   /// Smallest eigenvalue of the normalised translational information, 0 (open) to 1/3.
   double weak_axis = 0.0;
-  LoopVerdict verdict = LoopVerdict::rejected;
-  std::string reason;  ///< One sentence: why.
+  LoopVerdict verdict = LoopVerdict::rejected;  ///< Of the registration alone.
+  std::string reason;                           ///< One sentence: why.
 
   /// Along a smooth tube: the measurement does not fix the position along it.
   [[nodiscard]] bool is_free_to_slide() const { return weak_axis < kWeakAxis; }

@@ -20,6 +20,7 @@ enum class RefusalKind : std::uint8_t {
   taken_back,        ///< Merges with further robots contradict it.
   unknown,           ///< No decision gave one.
 };
+/// All of them, in the order above.
 inline constexpr std::array kRefusalKinds{
     RefusalKind::no_loop,      RefusalKind::too_little,    RefusalKind::rival,
     RefusalKind::other_tunnel, RefusalKind::changed_place, RefusalKind::changed_or_other,

@@ -17,21 +17,28 @@ namespace adit {
   x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
   return x ^ (x >> 31U);
 }
+/// Of two numbers, whose order matters.
 [[nodiscard]] constexpr std::uint64_t mix64(std::uint64_t a, std::uint64_t b) { return mix64(mix64(a) ^ b); }
 
 /// A seeded random generator that gives the same numbers on every machine and compiler (the standard
 /// library's distributions do not). xoshiro256++ of Blackman and Vigna.
 class Rng {
  public:
+  /// What `operator()` returns, by the name that the standard library asks for.
   using result_type = std::uint64_t;
 
+  /// Every seed gives another sequence; 0 is as good as others.
   explicit Rng(std::uint64_t seed) {
     for (std::uint64_t& word : state_) word = seed = mix64(seed);
   }
 
+  /// The range of `operator()`: all numbers of 64 bits.
+  ///@{
   static constexpr result_type min() { return 0; }
   static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
+  ///@}
 
+  /// The next number of the sequence. All its bits are random.
   result_type operator()() {
     const std::uint64_t out = rotl(state_[0] + state_[3], 23) + state_[0];
     const std::uint64_t t = state_[1] << 17U;
@@ -46,6 +53,7 @@ class Rng {
 
   /// In [0, 1).
   double uniform() { return static_cast<double>((*this)() >> 11U) * 0x1.0p-53; }
+  /// In [low, high), but for rounding, which may give `high`.
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// In {0, ..., n - 1}; n > 0.
   std::uint64_t below(std::uint64_t n) {

@@ -30,6 +30,7 @@ using Int4 [[gnu::vector_size(16)]] = std::int32_t;
 /// Not `using`: GCC 12 then drops the size.
 template <class T, std::size_t N>
 struct Unaligned {
+  /// The vector, aligned as a single T is.
   typedef T Type  // NOLINT(modernize-use-using)
       __attribute__((vector_size(N * sizeof(T)), aligned(alignof(T)), may_alias));
 };

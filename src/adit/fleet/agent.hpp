@@ -22,6 +22,7 @@
 namespace adit {
 
 struct AgentConfig {
+  /// Not a field of its own: SlamConfig::agent derives it from the keyframe selection.
   MergePolicy policy = MergePolicy::adaptive;
   PlaceIndexConfig place;
   RegistrationConfig registration;  ///< Read under MergePolicy::paper alone, like the next.

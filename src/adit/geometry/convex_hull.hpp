@@ -17,7 +17,7 @@ enum class HullShape { point, segment, planar, solid };
 
 /// The convex hull of a cloud.
 struct ConvexHull {
-  HullShape shape = HullShape::point;
+  HullShape shape = HullShape::point;  ///< How many dimensions the vertices span.
   /// The extreme points, as indices into the cloud, ascending. Points inside a face or an edge are left out,
   /// so that a wall counts the same however densely it was sampled.
   std::vector<std::uint32_t> vertices;

@@ -18,8 +18,8 @@ namespace adit {
 
 /// A body that moved by T_start_end within `duration` (positive) and moves on with the same twist.
 struct ConstantVelocity {
-  Pose T_start_end;
-  Duration duration{};
+  Pose T_start_end;     ///< The body at the end in the body at the start.
+  Duration duration{};  ///< From start to end.
 
   /// The pose of the body `offset` after a moment, in the body's frame at that moment: exp(offset / duration
   /// * log(T_start_end)).
@@ -40,9 +40,11 @@ struct SweepMotion {
 /// for an error of at most 3e-6 of the range (0.3 mm at 100 m), far below the noise of any sensor.
 class SweepTransform {
  public:
+  /// The first three rows of a pose's matrix: [R, t].
   using Matrix34 = Eigen::Matrix<float, 3, 4>;
+  /// The transform at one moment of the sweep.
   struct Knot {
-    Matrix34 value;
+    Matrix34 value;  ///< T_body_sensor: from the sensor at that moment to the body at the stamp.
     Matrix34 slope;  ///< Change to the next knot.
   };
 

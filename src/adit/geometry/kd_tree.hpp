@@ -16,15 +16,15 @@ namespace adit {
 
 /// A point that a search found: its index in the cloud that the index was built from.
 struct Neighbor {
-  std::uint32_t index = 0;
+  std::uint32_t index = 0;        ///< Counts all points of that cloud, finite or not.
   float squared_distance = 0.0F;  ///< Square metres.
   bool operator==(const Neighbor&) const = default;
 };
 
 /// The nearest point, and a lower bound of the distance of all others.
 struct NearestAlone {
-  std::uint32_t index = 0;
-  float squared_distance = 0.0F;
+  std::uint32_t index = 0;               ///< As in Neighbor, like the next.
+  float squared_distance = 0.0F;         ///< Square metres.
   float others_squared_distance = 0.0F;  ///< The search's bound where no second point is nearer.
   bool operator==(const NearestAlone&) const = default;
 };
@@ -36,6 +36,7 @@ struct NearestAlone {
 class KdTree {
  public:
   KdTree() = default;
+  /// Copies what it needs of `points`. An empty cloud makes a tree in which nothing is found.
   explicit KdTree(const std::vector<Eigen::Vector3f>& points);
 
   /// The nearest point no farther than `max_distance` metres; none when there is none.

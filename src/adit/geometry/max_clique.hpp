@@ -9,6 +9,7 @@
 
 namespace adit {
 
+/// Vertices of a graph, each two of which have an edge.
 struct Clique {
   std::vector<std::uint32_t> vertices;  ///< Ascending.
   bool optimal = true;                  ///< No larger clique exists. False: the budget ran out first.

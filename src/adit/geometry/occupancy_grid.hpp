@@ -17,12 +17,14 @@
 
 namespace adit {
 
+/// How fine the grid is and what stands in a robot's way.
 struct OccupancyConfig {
   double resolution_m = 0.1;
   double lowest_m = 0.2;
   double highest_m = 1.8;
   double reach_m = 10.0;
 };
+/// Keys without a prefix. They point into `c`, which must outlive them.
 inline Fields fields_of(OccupancyConfig& c) {
   return {{"resolution_m", &c.resolution_m, "m", 0.01, 10.0, "edge of a cell"},
           {"lowest_m", &c.lowest_m, "m", 0.01, 10.0, "what is lower above the floor is driven over"},
@@ -31,15 +33,16 @@ inline Fields fields_of(OccupancyConfig& c) {
            "horizontal distance from the sensor up to which a scan counts"}};
 }
 
+/// What scans said of a cell. `unknown`: none looked there.
 enum class CellState : std::uint8_t { unknown, free, occupied };
 
 /// Row by row from the smallest y, each from the smallest x.
 struct OccupancyGrid {
-  double resolution_m = 0.0;
+  double resolution_m = 0.0;                         ///< Edge of a cell. Cells begin at multiples of it.
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< Corner of the first cell, world frame, metres.
-  std::size_t width = 0;
-  std::size_t height = 0;
-  std::vector<CellState> cells;
+  std::size_t width = 0;                             ///< Cells along x.
+  std::size_t height = 0;                            ///< Cells along y.
+  std::vector<CellState> cells;                      ///< width * height of them.
 
   /// Unknown outside of the grid.
   [[nodiscard]] CellState at(double x, double y) const;
@@ -49,7 +52,7 @@ struct OccupancyGrid {
 struct PlacedScan {
   std::shared_ptr<const PointCloud> cloud_base;  ///< Base frame: z = 0 on the floor that the robot stands on.
   Vector3 viewpoint = Vector3::Zero();           ///< The sensor, base frame.
-  Pose T_world_base;
+  Pose T_world_base;                             ///< Where the robot stood; z of the world is up.
 };
 
 /// Each scan is a look around: in every direction of half a degree cells are free up to the nearest obstacle,

@@ -12,9 +12,10 @@ namespace adit {
 
 /// A box of any orientation: centre and axes in `T_world_box`, lengths of its edges along x, y, z of the box.
 struct OrientedBox {
-  Pose T_world_box;
+  Pose T_world_box;                   ///< Its translation is the middle of the box.
   Vector3 extents = Vector3::Zero();  ///< Metres, descending.
 
+  /// Cubic metres.
   [[nodiscard]] double volume() const { return extents.prod(); }
 };
 

@@ -17,14 +17,17 @@ namespace adit {
 /// that no earlier search found. Whatever is symmetric in a pair (a covariance, a pair feature) is thus
 /// computed once for both.
 struct NeighborPairs {
+  /// A range of `neighbors`.
   struct Row {
-    std::uint32_t begin = 0;
-    std::uint32_t end = 0;
+    std::uint32_t begin = 0;  ///< Of the first.
+    std::uint32_t end = 0;    ///< Behind the last.
   };
-  std::vector<Row> rows;  ///< One per point, in any order of `neighbors`.
-  std::vector<Neighbor> neighbors;
+  std::vector<Row> rows;            ///< One per point, in any order of `neighbors`.
+  std::vector<Neighbor> neighbors;  ///< Each pair once. Those of a row are side by side.
 
+  /// As many as were searched, with neighbours or without.
   [[nodiscard]] std::size_t num_points() const { return rows.size(); }
+  /// The neighbours of point `i` that stand in its own row; with others the pair stands in theirs.
   [[nodiscard]] std::span<const Neighbor> row(std::size_t i) const {
     return std::span(neighbors).subspan(rows[i].begin, rows[i].end - rows[i].begin);
   }

@@ -17,6 +17,7 @@
 
 namespace adit {
 
+/// Where the sensor stood, and how clearly the clouds say so.
 struct SensorOrigin {
   Vector3 position;     ///< In the clouds' frame, metres, to about 2 mm.
   double contrast = 0;  ///< Sharpness here over the largest 0.2 m away, in the least clear of the clouds.

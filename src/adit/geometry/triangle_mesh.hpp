@@ -14,9 +14,10 @@ namespace adit {
 /// A triangle soup with shared vertices, metres. A triangle's corners run counter-clockwise as seen from free
 /// space, so that (b - a) x (c - a) points to where robots drive. The owner says in which frame.
 struct TriangleMesh {
-  std::vector<Eigen::Vector3f> vertices;
+  std::vector<Eigen::Vector3f> vertices;   ///< Some may be in no triangle.
   std::vector<Eigen::Vector3i> triangles;  ///< Indices into `vertices`.
 
+  /// Whether there is no triangle; vertices do not count.
   [[nodiscard]] bool empty() const { return triangles.empty(); }
 };
 
@@ -32,7 +33,7 @@ void append(TriangleMesh& mesh, const TriangleMesh& part);
 
 /// Triangles meet in edges; in a closed surface every edge belongs to exactly two.
 struct EdgeStatistics {
-  std::size_t num_edges = 0;
+  std::size_t num_edges = 0;         ///< Pairs of vertices that are an edge of any triangle.
   std::size_t num_boundary = 0;      ///< Edges of one triangle: the rim of a hole.
   std::size_t num_over_shared = 0;   ///< Edges of three triangles or more.
   std::size_t num_inconsistent = 0;  ///< Edges that two triangles run through in the same direction.

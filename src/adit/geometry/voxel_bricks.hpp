@@ -14,12 +14,14 @@ namespace adit {
 /// share few cache lines; bricks that hold anything are found by hashing.
 class VoxelBricks {
  public:
-  static constexpr std::uint32_t kBrickVoxels = 64;
+  static constexpr std::uint32_t kBrickVoxels = 64;  ///< 4 x 4 x 4.
 
   /// Reads voxels near one another; valid until the bricks change.
   class Reader {
    public:
+    /// `bricks` must outlive the reader.
     explicit Reader(const VoxelBricks& bricks) : bricks_(bricks) {}
+    /// The voxel's number. Keeps the brick at hand for the next voxel.
     [[nodiscard]] std::uint32_t operator()(VoxelKey key) {
       if (const VoxelKey brick = brick_of(key); brick != brick_) {
         brick_ = brick;
@@ -37,6 +39,7 @@ class VoxelBricks {
 
   /// The position of a voxel's number, for `operator[]`; valid until `clear` sets the voxel to 0.
   [[nodiscard]] std::uint32_t position_of(VoxelKey key);
+  /// The number at a position that `position_of` gave, to be read or set.
   [[nodiscard]] std::uint32_t& operator[](std::uint32_t position) { return values_[position]; }
   /// Sets the voxel's number to 0.
   void clear(VoxelKey key);

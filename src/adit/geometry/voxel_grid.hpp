@@ -17,9 +17,10 @@ namespace adit {
 /// The three indices of a voxel (floor of coordinate / edge) in one word, 21 bits each, so that the key of a
 /// neighbour is a sum. Indices reach from -2^20 to 2^20 - 1: 100 km in each direction at an edge of 0.1 m.
 struct VoxelKey {
-  std::uint64_t value = 0;
+  std::uint64_t value = 0;  ///< x in the lowest bits, then y, then z; each with 2^20 added.
 
   auto operator<=>(const VoxelKey&) const = default;
+  /// The key of three indices, which must be within the range above.
   [[nodiscard]] static VoxelKey of(int x, int y, int z) {
     return {biased(x) | (biased(y) << 21U) | (biased(z) << 42U)};
   }
@@ -32,6 +33,7 @@ struct VoxelKey {
   [[nodiscard]] static constexpr VoxelKey none() { return {~std::uint64_t{0}}; }
   /// Fibonacci hashing: multiplication by 2^64 / golden ratio; the upper bits count.
   [[nodiscard]] std::uint64_t hash() const { return value * 0x9e3779b97f4a7c15ULL; }
+  /// The three numbers that `of` was given.
   [[nodiscard]] Eigen::Vector3i indices() const {
     return {unbiased(value), unbiased(value >> 21U), unbiased(value >> 42U)};
   }
@@ -52,6 +54,7 @@ class VoxelGrid {
     ADIT_CHECK(voxel_size > 0.0 && std::isfinite(voxel_size), "a voxel has a positive edge");
   }
 
+  /// The edge, metres, as a float.
   [[nodiscard]] float voxel_size() const { return size_; }
   /// Nothing for NaN, infinity and points beyond the index range of VoxelKey.
   [[nodiscard]] std::optional<VoxelKey> key_of(const Eigen::Vector3f& p) const {
@@ -77,7 +80,9 @@ class VoxelTable {
   /// Room for `expected` voxels before the first growth.
   explicit VoxelTable(std::size_t expected = 16);
 
+  /// How many voxels have a number.
   [[nodiscard]] std::size_t size() const { return size_; }
+  /// The voxel's number, if it has one.
   [[nodiscard]] std::optional<std::uint32_t> find(VoxelKey key) const {
     const Slot& slot = slots_[position_of(key)];
     if (slot.key == VoxelKey::none()) return {};

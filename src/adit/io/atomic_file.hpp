@@ -25,11 +25,14 @@ Result<> write_bytes(const std::filesystem::path& path, std::string_view bytes);
 /// A file written piece by piece. Without `commit` nothing appears at `path`.
 class AtomicFile {
  public:
+  /// Fails where the folder is missing or cannot be written to, or `path` is a folder.
   static Result<AtomicFile> create(const std::filesystem::path& path);
+  /// Leaves `other` with nothing to commit or to remove.
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&& other) = delete;
   ~AtomicFile();
 
+  /// Takes bytes as they are. What fails here, `commit` reports.
   [[nodiscard]] std::ostream& stream() { return stream_; }
   /// Flushes, syncs and renames. Fails if any write before it failed (disk full); the old file is then
   /// untouched.
@@ -51,7 +54,9 @@ class AtomicFile {
 /// user's.
 class OutputDir {
  public:
+  /// Fails where the parent folder is missing, `path` is a file, or what is there may not be replaced.
   static Result<OutputDir> create(const std::filesystem::path& path, const std::string& kind = "session");
+  /// Leaves `other` with nothing to commit or to remove.
   OutputDir(OutputDir&& other) noexcept;
   OutputDir& operator=(OutputDir&& other) = delete;
   ~OutputDir();

@@ -18,12 +18,14 @@
 
 namespace adit {
 
+/// A name under which messages of one type were recorded.
 struct BagTopic {
-  std::string name;
+  std::string name;      ///< As recorded, mostly with a slash at the front: "/husky1/points".
   std::string type;      ///< "sensor_msgs/msg/PointCloud2"; "" where the file does not say.
   std::string encoding;  ///< "cdr" or "ros1"
 };
 
+/// What the index knows of a message.
 struct BagMessage {
   std::size_t topic = 0;    ///< Index into Bag::topics.
   Stamp log_time;           ///< When it was recorded.
@@ -32,8 +34,8 @@ struct BagMessage {
 
 /// The index is in memory, messages are read when asked for.
 struct Bag {
-  std::string storage;  ///< "mcap", "sqlite3" or "ros1"
-  std::size_t num_files = 1;
+  std::string storage;               ///< "mcap", "sqlite3" or "ros1"
+  std::size_t num_files = 1;         ///< More than one where a recording was split.
   std::uint64_t num_bytes = 0;       ///< Of the files.
   std::string profile;               ///< Of MCAP: "ros2"; else "".
   std::size_t num_chunks = 0;        ///< Of MCAP.
@@ -66,6 +68,7 @@ template <class Decode>
 ///    none. Files that were compressed as a whole (.db3.zstd) are an error with the remedy.
 /// Messages that were compressed one by one (zstd, compression mode MESSAGE of rosbag2) are expanded.
 [[nodiscard]] Result<Bag> open_bag(const std::filesystem::path& path);
+/// Of an MCAP file, wherever its bytes come from. Errors name the byte, not the file.
 [[nodiscard]] Result<Bag> open_mcap_bag(ByteSource source);
 
 /// Whether the name is that of a file of a bag.

@@ -12,10 +12,13 @@
 
 namespace adit {
 
+/// Who is to see which messages.
 class BagPass {
  public:
+  /// Takes one message; an error ends the pass.
   using Visit = std::function<Result<>(const BagMessage&)>;
 
+  /// Only the number of topics is taken from `bag`.
   explicit BagPass(const Bag& bag) : visits_(bag.topics.size()) {}
   /// `visit` is called with the messages of these topics (indices into Bag::topics), in order.
   void add(const std::vector<std::size_t>& topics, const Visit& visit);

@@ -41,6 +41,7 @@ namespace adit {
 /// there. The unit of point times is `config.point_times`, or what the first scan shows (packed_cloud.hpp).
 [[nodiscard]] Result<Recording> read_recording(const std::filesystem::path& path,
                                                const RecordingConfig& config = {});
+/// Of a bag that is open. The recording keeps it to read scans. Errors name no file.
 [[nodiscard]] Result<Recording> read_recording(Bag bag, const RecordingConfig& config = {});
 /// Of an MCAP file.
 [[nodiscard]] Result<Recording> read_recording(ByteSource source, const RecordingConfig& config = {});

@@ -16,12 +16,14 @@ namespace adit {
 /// Indices into Bag::topics.
 using TopicIndices = std::vector<std::size_t>;
 
+/// The topics of one robot by what they hold. Topics in other encodings than CDR and that of ROS 1 are in
+/// none.
 struct BagTopics {
-  TopicIndices points;
-  TopicIndices wheel;  ///< nav_msgs/Odometry; or another one of wheels, where it was asked for by name.
-  TopicIndices truth;
-  TopicIndices imu;
-  TopicIndices transforms;         ///< Links that may move, /tf.
+  TopicIndices points;      ///< PointCloud2, or CustomMsg of Livox.
+  TopicIndices wheel;       ///< nav_msgs/Odometry; or another one of wheels, where it was asked for by name.
+  TopicIndices truth;       ///< nav_msgs/Odometry that is called ground truth, or was asked for as such.
+  TopicIndices imu;         ///< sensor_msgs/Imu
+  TopicIndices transforms;  ///< Links that may move, /tf.
   TopicIndices static_transforms;  ///< /tf_static
   TopicIndices twists;             ///< TwistStamped that is not used: measured, or only commanded.
   TopicIndices joints;             ///< JointState that is not used.

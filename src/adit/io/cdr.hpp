@@ -21,12 +21,14 @@ class CdrWriter {
  public:
   CdrWriter() : bytes_("\0\1\0\0", 4) {}
 
+  /// Aligned to its size. Returns the writer, like `text` and `blob`, for one call after the other.
   template <class T>
   CdrWriter& number(T value) {
     while ((bytes_.size() - 4) % sizeof(T) != 0) bytes_ += '\0';
     append_little_endian(bytes_, value);
     return *this;
   }
+  /// The length with a zero at the end, the text, the zero.
   CdrWriter& text(std::string_view value) {
     number(static_cast<std::uint32_t>(value.size() + 1));
     bytes_.append(value);
@@ -39,6 +41,7 @@ class CdrWriter {
     bytes_.append(value);
     return *this;
   }
+  /// The whole message. Ends the writer.
   [[nodiscard]] std::string take() { return std::move(bytes_); }
 
  private:
@@ -55,6 +58,7 @@ enum class MessageEncoding {
 /// are zero or empty, and `ok` is false: check it once, at the end.
 class MessageReader {
  public:
+  /// `bytes`, a whole message, must outlive the reader and the texts that it returns.
   explicit MessageReader(std::string_view bytes, MessageEncoding encoding = MessageEncoding::cdr)
       : encoding_(encoding) {
     if (encoding == MessageEncoding::ros1) {
@@ -68,6 +72,7 @@ class MessageReader {
     body_ = bytes.substr(4);
   }
 
+  /// The next one, in CDR from where it is aligned.
   template <class T>
   [[nodiscard]] T number() {
     if (encoding_ == MessageEncoding::cdr) offset_ = (offset_ + sizeof(T) - 1) / sizeof(T) * sizeof(T);
@@ -77,11 +82,13 @@ class MessageReader {
     if (order_ != std::endian::native) std::ranges::reverse(raw);
     return std::bit_cast<T>(raw);
   }
+  /// Part of the message, without the zero at its end.
   [[nodiscard]] std::string_view text() {
     std::string_view value = take(number<std::uint32_t>());
     if (value.ends_with('\0')) value.remove_suffix(1);
     return value;
   }
+  /// A sequence of bytes; part of the message.
   [[nodiscard]] std::string_view blob() { return take(number<std::uint32_t>()); }
   /// What has not been read; in CDR from the next byte on that is aligned to four.
   [[nodiscard]] std::string_view rest() {
@@ -89,8 +96,11 @@ class MessageReader {
     ok_ = ok_ && offset_ <= body_.size();
     return ok_ ? body_.substr(offset_) : std::string_view();
   }
+  /// Of the numbers. Of ROS 1 always little.
   [[nodiscard]] std::endian order() const { return order_; }
+  /// Whether the message held all that was read.
   [[nodiscard]] bool ok() const { return ok_; }
+  /// As the reader was told.
   [[nodiscard]] MessageEncoding encoding() const { return encoding_; }
   /// Behind the last value, for messages about damage.
   [[nodiscard]] std::size_t offset() const { return offset_ + (encoding_ == MessageEncoding::cdr ? 4 : 0); }

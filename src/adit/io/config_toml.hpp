@@ -19,6 +19,7 @@ namespace adit {
 /// wrong type or out of range with what is allowed, each with its line. On failure the fields before it may
 /// have been set.
 Result<> parse_config(const Fields& fields, std::string_view toml);
+/// The same of a file, which errors name.
 Result<> load_config(const std::filesystem::path& path, const Fields& fields);
 
 /// A file that is a list: every table of the array `name`, written [[name]], sets the fields that `entry`

@@ -14,9 +14,10 @@ namespace adit {
 /// The cells as one row. A cell with a comma, a quote or a line break is put in quotes, its quotes doubled.
 [[nodiscard]] std::string csv_row(const std::vector<std::string>& cells);
 
+/// A row of a text and where it stands.
 struct CsvRow {
-  std::vector<std::string> cells;
-  std::size_t line = 1;  ///< Where the row starts in the text, counted from 1.
+  std::vector<std::string> cells;  ///< Without the quotes around them; blanks are kept.
+  std::size_t line = 1;            ///< Where the row starts in the text, counted from 1.
 };
 /// All rows but empty lines. "\r\n" ends a row too, and the last row may lack its end. Fails, with the line,
 /// on a quote that is not closed and on text after a closing quote.

@@ -16,13 +16,15 @@
 
 namespace adit {
 
+/// A mount and how it is known.
 struct FolderMount {
-  Pose T_base_lidar;
+  Pose T_base_lidar;       ///< The identity where it is assumed.
   Pose T_lidar_cloud;      ///< From the frame of the files to that of scans.
   std::string source;      ///< See Recording::mount_source.
   std::string assumption;  ///< "" when nothing was assumed.
 };
 
+/// Whether the folder has wheel odometry. It is of the base, so an assumed mount will not do with it.
 enum class Wheels { absent, present };
 
 /// The mount in the order that scan_folder.hpp gives. `clouds` are the files in order; a few of them are

@@ -23,8 +23,10 @@ class MovingPose {
     Trajectory poses;         ///< At least one.
     bool is_inverse = false;  ///< Walked from the child to its parent.
   };
+  /// `links` in their order from the one frame to the other, each with its poses in any order.
   explicit MovingPose(std::vector<Link> links);
 
+  /// Whether a link ever leaves its first pose by more than 1 mm or 0.2 mrad.
   [[nodiscard]] bool moves() const;
   /// Interpolated; none outside the span of a link that moves, and in a silence of more than half a second
   /// in which it moved.
@@ -46,6 +48,7 @@ class FrameTracks {
 
   /// Of /tf_static, all before those of `add`: they hold for all times and go before those of /tf.
   void add_static(const std::vector<ros::TransformMessage>& links);
+  /// Of /tf. A child that is known, from /tf_static or under another parent, keeps its link.
   void add(const std::vector<ros::TransformMessage>& links);
 
   /// Links that move as they were first.

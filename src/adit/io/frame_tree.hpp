@@ -14,6 +14,7 @@
 
 namespace adit {
 
+/// Frames and the links between them.
 class FrameTree {
  public:
   /// A frame id as it is compared: without the leading slash that ROS 1 allowed.
@@ -23,8 +24,9 @@ class FrameTree {
   /// tf2. A link from a frame to itself is left out.
   void add(std::string_view frame, std::string_view child, const Pose& T_frame_child);
 
+  /// How one frame lies in another.
   struct Chain {
-    Pose T_a_b;
+    Pose T_a_b;                       ///< The product of all links between them.
     std::vector<std::string> frames;  ///< From a to b, both included.
   };
   /// The transform between two frames, whichever of them is nearer to the root. Fails when no links connect

@@ -13,6 +13,7 @@
 
 namespace adit {
 
+/// What an IMU's topic holds.
 struct ImuTrack {
   std::vector<ImuSample> samples;    ///< Strictly ascending; empty where the IMU cannot be used.
   ImuCovariance covariance;          ///< As the first message states it.

@@ -25,6 +25,7 @@
 
 namespace adit {
 
+/// The odometry that joints give.
 struct JointTrack {
   Trajectory poses;                   ///< T_odom_base, the first the identity.
   std::vector<std::string> warnings;  ///< A sentence each.

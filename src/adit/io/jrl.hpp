@@ -18,24 +18,27 @@ namespace adit {
 /// What the file says of a measurement. For judging results only: no solver may read it.
 enum class JrlLabel { unlabelled, inlier, outlier };
 
+/// The pose graph of a log, and what belongs to it. P: Pose or Pose2.
 template <class P>
 struct JrlGraph {
+  /// A measurement of a node's pose in the world.
   struct Prior {
-    std::size_t node = 0;
-    P T_world_node;
+    std::size_t node = 0;                                 ///< Index into `graph.nodes`.
+    P T_world_node;                                       ///< As measured.
     typename BasicPoseGraph<P>::Information information;  ///< As of an edge from the world to the node.
   };
-  BasicPoseGraph<P> graph;
-  std::vector<Prior> priors;
+  BasicPoseGraph<P> graph;                 ///< Without the priors.
+  std::vector<Prior> priors;               ///< By robot, each robot's in the order of the file.
   std::vector<std::size_t> robot_of_node;  ///< Index into `JrlFile::robots`, one per node.
   std::vector<std::optional<P>> truth;     ///< T_world_node, one per node. For judging only.
   std::vector<JrlLabel> labels;            ///< One per edge. For judging only.
 };
 
+/// A log, read or to be written.
 struct JrlFile {
-  std::string name;                 ///< Of the data set.
-  std::vector<std::string> robots;  /// Their letters, in the order of the file.
-  std::variant<JrlGraph<Pose>, JrlGraph<Pose2>> content;
+  std::string name;                                       ///< Of the data set.
+  std::vector<std::string> robots;                        ///< Their letters, in the order of the file.
+  std::variant<JrlGraph<Pose>, JrlGraph<Pose2>> content;  ///< By the kind of its poses.
   std::vector<std::string> edge_places;  ///< "measurements.a[3].measurements[0]", one per edge.
   std::vector<std::string> notes;        ///< What was left out, assumed or composed.
 };
@@ -54,6 +57,7 @@ struct JrlFile {
 /// definite. A factor that two robots repeat exactly counts once.
 /// Source: github.com/DanMcGann/jrl, version 1.1.1, format/ and src/Parser.cpp.
 [[nodiscard]] Result<JrlFile> read_jrl(const std::filesystem::path& path);
+/// The same of bytes in memory. Errors name `name`.
 [[nodiscard]] Result<JrlFile> parse_jrl(const std::string& bytes, const std::string& name);
 
 /// The graph of one or several robots as such a log: loops are the potential outliers. The robot of a node is

@@ -14,6 +14,7 @@
 
 namespace adit {
 
+/// What adit writes of a point.
 struct LasPoint {
   Vector3 position;             ///< Metres, in the frame of `crs_wkt`.
   std::uint16_t intensity = 0;  ///< Scaled to 16 bits.

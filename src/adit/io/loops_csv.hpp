@@ -11,6 +11,7 @@
 
 namespace adit {
 
+/// The text of the file, rows ordered by the ends of the loops.
 [[nodiscard]] std::string loops_csv(const Session& session);
 
 /// Reads what any version wrote. Fails, with the line, on another header, on a row of another length and on

@@ -17,6 +17,7 @@ Result<> check_fits_mcap(const Recording& recording);
 /// Writes all of a recording; scans are read one after the other, a step of a phase each. The file appears
 /// whole or not at all. Fails when a scan cannot be read or there is no scan.
 Result<> write_recording(const std::filesystem::path& path, const Recording& recording);
+/// The same to a stream, which on failure holds part of it. Errors name no file.
 Result<> write_recording(std::ostream& out, const Recording& recording);
 
 }  // namespace adit

@@ -19,23 +19,24 @@ namespace adit::mcap {
 
 /// Where a message lies: in a chunk (offset in its uncompressed records) or in the file itself.
 struct MessageRef {
-  std::uint16_t channel_id = 0;
-  Stamp log_time;
+  std::uint16_t channel_id = 0;      ///< In Contents::channels.
+  Stamp log_time;                    ///< When it was recorded.
   std::optional<std::size_t> chunk;  ///< Index into the reader's chunks.
-  std::uint64_t offset = 0;
+  std::uint64_t offset = 0;          ///< Of the record's head.
 };
 
 /// What a file holds, without the messages themselves.
 struct Contents {
-  Header header;
-  std::map<std::uint16_t, Schema> schemas;
-  std::map<std::uint16_t, Channel> channels;
-  std::vector<Metadata> metadata;
-  std::vector<ChunkIndex> chunks;
-  std::vector<MessageRef> messages;  ///< By log time; equal times in file order.
-  std::string torn;                  ///< Where the file breaks off and why; "" where it is whole.
+  Header header;                              ///< Both texts may be empty.
+  std::map<std::uint16_t, Schema> schemas;    ///< By id.
+  std::map<std::uint16_t, Channel> channels;  ///< By id. All that messages refer to are there.
+  std::vector<Metadata> metadata;             ///< Whole records, in the order of the file or its index.
+  std::vector<ChunkIndex> chunks;             ///< In the order of the file or its index.
+  std::vector<MessageRef> messages;           ///< By log time; equal times in file order.
+  std::string torn;                           ///< Where the file breaks off and why; "" where it is whole.
 };
 
+/// A file that is open, with its index in memory.
 class Reader {
  public:
   /// Errors name the byte offset: no MCAP file, damaged summary, checksums that differ. Of a file that ends
@@ -43,6 +44,7 @@ class Reader {
   /// none is an error.
   static Result<Reader> open(ByteSource source);
 
+  /// Found once, by `open`.
   [[nodiscard]] const Contents& contents() const { return contents_; }
   /// May be called from any thread. The chunks read last are kept, so reading in order expands each chunk
   /// once.

@@ -15,6 +15,7 @@ namespace adit::mcap {
 /// Everything goes to `out`, in order; errors of the stream are the caller's to check after `finish`.
 class Writer {
  public:
+  /// Writes the start of the file. `out` must outlive the writer.
   Writer(std::ostream& out, const Header& header);
 
   /// Returns the new schema's id.
@@ -24,6 +25,7 @@ class Writer {
                             std::uint16_t schema_id);
   /// Writes the messages, one or more, as one chunk. Channels must have been added.
   void write_chunk(const std::vector<Message>& messages);
+  /// Between chunks; the summary will say where.
   void write_metadata(const Metadata& metadata);
   /// Writes summary and footer; nothing may follow.
   void finish();

@@ -23,20 +23,26 @@ Result<Pose> parse_mount(std::string_view text);
 [[nodiscard]] std::string mount_text(const Pose& T_base_lidar);
 
 /// The mount that the configuration gives, none when it leaves it to the recording.
+///@{
 Result<std::optional<Pose>> mount_of(const RecordingConfig& config);
 
 Result<std::optional<Pose>> imu_mount_of(const RecordingConfig& config);
+///@}
 
 /// Puts a mount given by the user into `recording`, in place of what was known or assumed of it.
+///@{
 void set_mount(Recording& recording, const Pose& T_base_lidar);
 void set_imu_mount(Recording& recording, const Pose& T_base_imu);
+///@}
 
 /// The source of a mount that the user gave.
 inline constexpr std::string_view kMountGiven = "given by the user";
 
 /// The start of an assumption about the mount.
+///@{
 inline constexpr std::string_view kMountAssumption = "mount: ";
 inline constexpr std::string_view kImuMountAssumption = "mount of the IMU: ";
+///@}
 
 /// What to do when nothing says where the IMU sits; ends sentences.
 inline constexpr std::string_view kImuMountRemedy =

@@ -13,10 +13,12 @@
 
 namespace adit {
 
+/// How fine the tree is, and which returns count.
 struct OctomapConfig {
   double resolution_m = 0.2;  ///< Edge of a cell, metres.
   double reach_m = 20.0;      ///< Metres from the sensor.
 };
+/// Keys without a prefix. They point into `c`, which must outlive them.
 inline Fields fields_of(OctomapConfig& c) {
   return {{"resolution_m", &c.resolution_m, "m", 0.01, 10.0, "edge of a cell of the .bt"},
           {"reach_m", &c.reach_m, "m", 1.0, 300.0, "distance from the sensor up to which a return counts"}};

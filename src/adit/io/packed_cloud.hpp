@@ -18,8 +18,11 @@
 
 namespace adit {
 
+/// How a number is stored; the names end in its bits.
 enum class ScalarType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+/// In bytes.
 [[nodiscard]] std::size_t size_of(ScalarType type);
+/// Whether it is stored as a floating-point number of either size.
 [[nodiscard]] bool is_float(ScalarType type);
 
 /// The number at `bytes`, which must hold size_of(type) bytes.
@@ -33,23 +36,27 @@ void append_little_endian(std::string& bytes, T value);
 
 /// Point i's value of the field lies at offset + i * stride.
 struct PackedField {
-  ScalarType type = ScalarType::float32;
-  std::size_t offset = 0;
-  std::size_t stride = 0;
+  ScalarType type = ScalarType::float32;  ///< Of each value.
+  std::size_t offset = 0;                 ///< Of point 0, in bytes from the start of PackedCloud::bytes.
+  std::size_t stride = 0;                 ///< Bytes from a point's value to the next point's.
 };
 
+/// Where in some bytes the numbers of a cloud lie.
 struct PackedCloud {
-  std::string_view bytes;
-  std::size_t num_points = 0;
-  std::endian order = std::endian::little;
-  std::optional<Stamp> stamp;  ///< Of the scan, where known: the origin of absolute point times.
+  std::string_view bytes;                   ///< Of somebody else, who keeps them until the cloud is unpacked.
+  std::size_t num_points = 0;               ///< Those that are not finite included.
+  std::endian order = std::endian::little;  ///< Of all fields.
+  std::optional<Stamp> stamp;               ///< Of the scan, where known: the origin of absolute point times.
+  /// Coordinates in the unit of the file. `unpack` needs all three.
+  ///@{
   std::optional<PackedField> x;
   std::optional<PackedField> y;
   std::optional<PackedField> z;
-  std::optional<PackedField> intensity;
+  ///@}
+  std::optional<PackedField> intensity;     ///< In any unit, which is kept.
   std::optional<PackedField> reflectivity;  ///< The intensity where there is none.
-  std::optional<PackedField> time;
-  std::optional<TimeUnit> time_unit = {};  ///< Of point times; none: as `unpack` finds it.
+  std::optional<PackedField> time;          ///< Of each point: from the stamp, or absolute.
+  std::optional<TimeUnit> time_unit = {};   ///< Of point times; none: as `unpack` finds it.
 };
 
 /// Takes the field when its name is one that clouds use (see pcd.hpp) and its place is still free.

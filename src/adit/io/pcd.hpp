@@ -22,6 +22,7 @@ namespace adit {
 /// the header line or the byte offset.
 Result<CloudFile> read_pcd(std::string_view bytes, std::optional<TimeUnit> time_unit = {});
 
+/// How points are written, by the words of the header line DATA.
 enum class PcdData { ascii, binary, binary_compressed };
 
 /// The bytes of a PCD 0.7 file with fields x y z F4, and where the cloud has them intensity F4 and t I4

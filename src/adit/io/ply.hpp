@@ -27,6 +27,7 @@ Result<TriangleMesh> read_ply_mesh(std::string_view bytes);
 /// Whether the header announces faces, so that the file is a mesh rather than a cloud.
 [[nodiscard]] bool ply_has_faces(std::string_view bytes);
 
+/// How numbers are written, by the words of the header line `format`.
 enum class PlyData { ascii, binary_little_endian, binary_big_endian };
 
 /// The bytes of a PLY file with float x, y, z, and where the cloud has them float intensity and int t

@@ -19,6 +19,7 @@ namespace adit {
 /// thread.
 class RecentChunks {
  public:
+  /// An expanded chunk; lives on with its users when others take its place here.
   using Records = std::shared_ptr<const std::string>;
 
   /// Those of `chunk`, which `read` (from nothing to Result<std::string>) gives where they are not at hand.

@@ -14,7 +14,7 @@ namespace adit {
 /// Opens
 ///  - FILE.mcap, FILE.db3, FILE.bag, FOLDER of a bag: see bag_recording.hpp;
 ///  - FOLDER: a folder of clouds, see scan_folder.hpp;
-///  - FOLDER@even, FOLDER@odd, FOLDER@FIRST:STEP: part of the scans, so that one drive can serve as two
+///  - `FOLDER@even`, `FOLDER@odd`, `FOLDER@FIRST:STEP`: part of the scans, so that one drive can serve as two
 ///  robots.
 ///    The recording's name then ends in the part: "nclt_even".
 /// Anything else is an error that lists these. `config` overrides what the input says of itself.

@@ -19,9 +19,12 @@
 
 namespace adit {
 
+/// The frame of the clouds in a folder: the LiDAR's, or the robot's.
 enum class CloudFrame { lidar, base };
+/// "lidar" or "base".
 [[nodiscard]] std::string_view to_string(CloudFrame frame);
 
+/// The keys of the file. What it leaves out keeps its default.
 struct RecordingToml {
   std::string robot;  ///< "": not said.
   std::string lidar;
@@ -29,10 +32,12 @@ struct RecordingToml {
   CloudFrame frame = CloudFrame::lidar;
   std::string assumed;
 };
+/// The keys of the file. They point into `file`, which must outlive them.
 [[nodiscard]] Fields fields_of(RecordingToml& file);
 
 /// A missing file is not an error: all is left unsaid.
 Result<RecordingToml> read_recording_toml(const std::filesystem::path& path);
+/// Writes all keys. The file appears whole or not at all.
 Result<> write_recording_toml(const std::filesystem::path& path, RecordingToml content);
 
 }  // namespace adit

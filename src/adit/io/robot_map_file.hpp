@@ -14,12 +14,14 @@
 
 namespace adit {
 
+/// The bytes of the file, in adit's own layout.
 [[nodiscard]] std::string robot_map_bytes(const RobotMap& map);
 /// Fails on bytes of a layout that it does not know, that end early or are damaged.
 [[nodiscard]] Result<RobotMap> parse_robot_map(std::string_view bytes);
 
 /// The file appears whole or not at all.
 Result<> write_robot_map(const std::filesystem::path& path, const RobotMap& map);
+/// Fails like parse_robot_map. Errors name the file.
 Result<RobotMap> read_robot_map(const std::filesystem::path& path);
 
 }  // namespace adit

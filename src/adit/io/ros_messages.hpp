@@ -16,6 +16,8 @@
 
 namespace adit::ros {
 
+/// The message types that adit knows, as ROS 2 names them.
+///@{
 inline constexpr std::string_view kPointCloud2 = "sensor_msgs/msg/PointCloud2";
 inline constexpr std::string_view kOdometry = "nav_msgs/msg/Odometry";
 inline constexpr std::string_view kTwist = "geometry_msgs/msg/TwistStamped";
@@ -23,6 +25,7 @@ inline constexpr std::string_view kJointState = "sensor_msgs/msg/JointState";
 inline constexpr std::string_view kImu = "sensor_msgs/msg/Imu";
 inline constexpr std::string_view kTransforms = "tf2_msgs/msg/TFMessage";
 inline constexpr std::string_view kPath = "nav_msgs/msg/Path";
+///@}
 inline constexpr std::string_view kMarkers = "visualization_msgs/msg/MarkerArray";  ///< As from Humble on.
 
 /// The CustomMsg of Livox's drivers (decode_livox).
@@ -36,10 +39,10 @@ inline constexpr std::string_view kMarkers = "visualization_msgs/msg/MarkerArray
 
 /// A cloud in the frame named.
 struct CloudMessage {
-  std::string frame;
-  Scan scan;
+  std::string frame;                       ///< Of the points, as the header names it.
+  Scan scan;                               ///< With the stamp of the header; points in metres.
   std::optional<TimeUnit> time_unit = {};  ///< As in CloudFile, like the next.
-  bool has_usual_time_unit = true;
+  bool has_usual_time_unit = true;         ///< Seconds of floats, nanoseconds of integers.
 };
 /// The stamp's seconds must fit 32 bits: see `fits_ros`.
 [[nodiscard]] std::string encode_cloud(const Scan& scan, std::string_view frame);
@@ -55,25 +58,29 @@ Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding enco
 
 /// T_frame_child at a time.
 struct TransformMessage {
-  std::string frame;
-  std::string child;
-  StampedPose pose;
+  std::string frame;  ///< The parent.
+  std::string child;  ///< A pose of this frame in the parent.
+  StampedPose pose;   ///< T_frame_child and its stamp.
 };
 /// A pose with the covariances that its message states; its twist is not read, and written as zero.
 struct OdometryMessage : TransformMessage {
-  WheelCovariance covariance = {};
+  WheelCovariance covariance = {};  ///< As they stand in the message.
 };
+/// In CDR. The stamp must fit: see `fits_ros`.
 [[nodiscard]] std::string encode_odometry(const OdometryMessage& odometry);
+/// Fails when the message ends early, or its pose is not finite or its quaternion not of length 1.
 Result<OdometryMessage> decode_odometry(std::string_view message,
                                         MessageEncoding encoding = MessageEncoding::cdr);
+/// In CDR. The stamps must fit: see `fits_ros`.
 [[nodiscard]] std::string encode_transforms(const std::vector<TransformMessage>& transforms);
+/// Fails like decode_odometry, for any of the poses.
 Result<std::vector<TransformMessage>> decode_transforms(std::string_view message,
                                                         MessageEncoding encoding = MessageEncoding::cdr);
 
 /// A twist of the body in its own frame: metres per second, radians per second.
 struct TwistMessage {
-  Stamp stamp;
-  std::string frame;
+  Stamp stamp;                      ///< Of the header.
+  std::string frame;                ///< Of the header.
   Vector6 twist = Vector6::Zero();  ///< [linear; angular]
 };
 /// Fails when the message ends early or a number is not finite.
@@ -82,37 +89,40 @@ Result<TwistMessage> decode_twist(std::string_view message, MessageEncoding enco
 /// Angles (radians) or lengths (metres) of joints and their velocities; either may be empty, or shorter than
 /// the names.
 struct JointStateMessage {
-  Stamp stamp;
-  std::vector<std::string> names;
-  std::vector<double> positions;
-  std::vector<double> velocities;
+  Stamp stamp;                     ///< Of the header.
+  std::vector<std::string> names;  ///< Of the joints.
+  std::vector<double> positions;   ///< In the order of the names.
+  std::vector<double> velocities;  ///< The same, per second.
 };
 /// Numbers are handed on as they are. Fails when the message ends early.
 Result<JointStateMessage> decode_joint_state(std::string_view message,
                                              MessageEncoding encoding = MessageEncoding::cdr);
 
+/// A nav_msgs/Path in CDR, of one pose or more in `frame`. The stamps must fit: see `fits_ros`.
 [[nodiscard]] std::string encode_path(std::string_view frame, const Trajectory& poses);
 
 /// Separate line segments: points 2i and 2i + 1 are the ends of one.
 struct LinesMarker {
-  std::string frame;
-  std::string name;  ///< Namespace: viewers switch markers on and off by it.
-  Stamp stamp;
+  std::string frame;                ///< Of the points.
+  std::string name;                 ///< Namespace: viewers switch markers on and off by it.
+  Stamp stamp;                      ///< Must fit: see `fits_ros`.
   std::array<float, 4> color = {};  ///< Red, green, blue, opacity; 0 to 1.
   double width = 0.0;               ///< Metres.
-  std::vector<Vector3> points;
+  std::vector<Vector3> points;      ///< Metres.
 };
+/// A MarkerArray in CDR, whose markers stay until others of their names and numbers replace them.
 [[nodiscard]] std::string encode_markers(const std::vector<LinesMarker>& markers);
 
 /// One measurement of an IMU, as sensor_msgs/msg/Imu defines it: a covariance of zeros is unknown, one whose
 /// first element is -1 says that its quantity was not measured.
 struct ImuMessage {
-  std::string frame;
-  ImuSample sample;
+  std::string frame;                                                ///< Of the IMU, as the header names it.
+  ImuSample sample;                                                 ///< With the stamp of the header.
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< As it stands, of any length.
   Matrix3 orientation_covariance = Matrix3::Zero();                 ///< rad^2
-  ImuCovariance covariance;
+  ImuCovariance covariance;                                         ///< Of the sample.
 };
+/// In CDR. The stamp must fit: see `fits_ros`.
 [[nodiscard]] std::string encode_imu(const ImuMessage& imu);
 /// Numbers are handed on as they are, also those that are not finite. Fails when the message ends early.
 Result<ImuMessage> decode_imu(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
@@ -123,11 +133,13 @@ inline constexpr double kUnmeasured = -1.0;
 
 /// What nearly every message starts with.
 struct MessageHeader {
-  Stamp stamp;
-  std::string frame;
+  Stamp stamp;        ///< Of what the message tells, not of its arrival.
+  std::string frame;  ///< "" where it is of no use.
 };
+/// Reads no further than the header. Fails when the message is too short for one.
 Result<MessageHeader> decode_header(std::string_view message,
                                     MessageEncoding encoding = MessageEncoding::cdr);
+/// That of decode_header, which fails for it.
 Result<Stamp> decode_stamp(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
 /// ROS keeps seconds in 32 bits, up to 2038; MCAP none before 0.
 [[nodiscard]] bool fits_ros(Stamp stamp);

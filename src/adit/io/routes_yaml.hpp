@@ -18,9 +18,10 @@
 
 namespace adit {
 
+/// A world and the routes in it.
 struct RoutesFile {
   std::filesystem::path world;  ///< As written in the file; relative to it. Empty when the file names none.
-  std::vector<Route> routes;
+  std::vector<Route> routes;    ///< In the order of the file.
 };
 
 /// Errors name line and column: unknown or repeated keys, a missing name, two robots of one name, a name that
@@ -30,6 +31,7 @@ Result<RoutesFile> parse_routes(const std::string& yaml);
 /// Reads the file; a relative `world` comes back resolved against the folder of `path`.
 Result<RoutesFile> read_routes(const std::filesystem::path& path);
 
+/// As YAML, with what `parse_routes` reads back.
 [[nodiscard]] std::string routes_text(const RoutesFile& routes);
 /// Writes the file, whole or not at all. `world` is written as given.
 Result<> write_routes(const std::filesystem::path& path, const RoutesFile& routes);

@@ -34,8 +34,8 @@ namespace adit {
 
 /// Which scans of the folder to take: first, first + step, first + 2 step ...
 struct ScanSelection {
-  std::size_t first = 0;
-  std::size_t step = 1;
+  std::size_t first = 0;  ///< Counted from 0, in the order of the scans.
+  std::size_t step = 1;   ///< 1 or more.
 };
 
 /// What is known of the clouds of a folder.

@@ -14,10 +14,13 @@ namespace adit {
 /// Steps through the lines of a text, numbered from 1; "\n" and "\r\n" both end one.
 class LineReader {
  public:
+  /// `text` must outlive the reader and its lines.
   explicit LineReader(std::string_view text) : text_(text) {}
   /// False at the end of the text.
   bool next();
+  /// That to which `next` went, without its end.
   [[nodiscard]] std::string_view line() const { return line_; }
+  /// Of that line; 0 before the first `next`.
   [[nodiscard]] std::size_t number() const { return number_; }
   /// Where the next line starts.
   [[nodiscard]] std::size_t offset() const { return offset_; }

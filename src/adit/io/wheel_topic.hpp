@@ -15,9 +15,10 @@
 
 namespace adit {
 
+/// The poses that a topic gives.
 struct PoseTrack {
-  Trajectory poses;  ///< T_odom_body, stamps strictly ascending.
-  WheelCovariance covariance = {};
+  Trajectory poses;                        ///< T_odom_body, stamps strictly ascending.
+  WheelCovariance covariance = {};         ///< Zero where the type of message states none.
   std::vector<std::string> warnings = {};  ///< What was left out or bridged, a sentence each.
 };
 

@@ -14,10 +14,12 @@
 
 namespace adit {
 
+/// What goes wrong with the messages.
 struct LoopbackConfig {
   double loss = 0.0;  ///< Share of messages that never arrive.
   std::uint64_t seed = 1;
 };
+/// Keys without a prefix. They point into `c`, which must outlive them.
 inline Fields fields_of(LoopbackConfig& c) {
   return {{"loss", &c.loss, "", 0.0, 0.95, "share of messages that the loopback bus loses"},
           {"seed", &c.seed, "", 0.0, 1.8e19, "seed of the losses"}};
@@ -27,6 +29,7 @@ inline Fields fields_of(LoopbackConfig& c) {
 /// passes.
 class LoopbackBus {
  public:
+  /// Without agents: they `join`.
   explicit LoopbackBus(const LoopbackConfig& config = {}) : config_(config) {}
 
   /// The agent must outlive the bus.
@@ -36,6 +39,7 @@ class LoopbackBus {
   /// or on which an agent fails, is dropped and noted in `failures`; nobody else is affected.
   Result<> meet(RobotId a, RobotId b);
 
+  /// Of all messages of a robot, encoded, those that were lost included.
   [[nodiscard]] std::uint64_t bytes_sent(RobotId robot) const;
   /// Messages that were lost on purpose, could not be decoded or made an agent fail.
   [[nodiscard]] int num_lost() const { return num_lost_; }

@@ -18,18 +18,22 @@ namespace adit::wire {
 static_assert(std::endian::native == std::endian::little,
               "the wire is little-endian, as all machines that adit runs on");
 
+/// Appends values, little-endian and without gaps.
 class Writer {
  public:
+  /// A number or an enumerator, in as many bytes as it has in memory.
   template <class T>
   void scalar(T value) {
     const auto* begin = reinterpret_cast<const std::byte*>(&value);
     bytes_.insert(bytes_.end(), begin, begin + sizeof(T));
   }
+  /// How many items, in 32 bits, then each by its `put`.
   template <class T>
   void vector(const std::vector<T>& items) {
     scalar(static_cast<std::uint32_t>(items.size()));
     for (const T& item : items) put(*this, item);
   }
+  /// All that was written. Ends the writer.
   std::vector<std::byte> take() { return std::move(bytes_); }
 
  private:
@@ -39,7 +43,9 @@ class Writer {
 /// Reads until the bytes end; from then on every value is zero and `ok` is false.
 class Reader {
  public:
+  /// `bytes` must outlive the reader.
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  /// The next number or enumerator; enumerators are not checked.
   template <class T>
   T scalar() {
     T value{};
@@ -52,6 +58,7 @@ class Reader {
     at_ += sizeof(T);
     return value;
   }
+  /// Appends the items, each by its `get`. Refuses more than `max_items`, and more than there are bytes left.
   template <class T>
   void vector(std::vector<T>& items, std::size_t max_items = std::numeric_limits<std::size_t>::max()) {
     const auto size = scalar<std::uint32_t>();
@@ -59,9 +66,13 @@ class Reader {
     if (size > max_items || size > bytes_.size() - at_) return refuse();
     for (std::uint32_t i = 0; i < size && ok_; ++i) get(*this, items.emplace_back());
   }
+  /// For a value that cannot be: `ok` is false from now on.
   void refuse() { ok_ = false; }
+  /// Whether all values so far were whole and none was refused.
   [[nodiscard]] bool ok() const { return ok_; }
+  /// How many bytes were read.
   [[nodiscard]] std::size_t at() const { return at_; }
+  /// Whether all bytes were read: a whole message has none behind its last value.
   [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
 
  private:
