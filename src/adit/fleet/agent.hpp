@@ -21,6 +21,7 @@
 
 namespace adit {
 
+/// How a robot searches for loops with itself and with others, and tests them.
 struct AgentConfig {
   /// Not a field of its own: SlamConfig::agent derives it from the keyframe selection.
   MergePolicy policy = MergePolicy::adaptive;
@@ -31,6 +32,7 @@ struct AgentConfig {
   int candidates_per_peer = 8;
   AdaptiveConfig adaptive;  ///< Read under MergePolicy::adaptive alone.
 
+  /// That of the policy: `adaptive.registration`, or `registration`.
   [[nodiscard]] const RegistrationConfig& registration_in_use() const {
     return policy == MergePolicy::adaptive ? adaptive.registration : registration;
   }
@@ -39,6 +41,9 @@ struct AgentConfig {
     return policy == MergePolicy::adaptive ? adaptive.submap : SubmapConfig{.reach_m = 0.0};
   }
 };
+/// Keys of `place`, `registration` and `adaptive` begin with these names; those of `loop_noise` are
+/// loop_translation and loop_rotation_deg. `policy` has none: it follows the keyframe policy
+/// (SlamConfig::agent).
 Fields fields_of(AgentConfig& config);
 
 /// One robot of the fleet: messages in, messages out; no thread, socket or clock. It knows what its own robot
@@ -64,8 +69,10 @@ Fields fields_of(AgentConfig& config);
 /// It stores no clouds of others: they are asked for, registered or compared, and forgotten.
 class Agent {
  public:
+  /// Shares `map`, which has to be complete: keyframes that it gets later are not known to others.
   Agent(std::shared_ptr<const RobotMap> map, const AgentConfig& config);
 
+  /// That of its map.
   [[nodiscard]] RobotId id() const { return map_->id; }
   /// Looks for places of its own map to which the robot came back, and checks what it finds as it does with
   /// peers. Under MergePolicy::adaptive, once; call it before the first meeting.
@@ -86,6 +93,7 @@ class Agent {
   [[nodiscard]] const FleetGraph& known() const { return ledger_.known(); }
   /// All loops and merge checks, by whoever found them, as messages.
   [[nodiscard]] std::vector<MessageBody> findings() const { return ledger_.findings(); }
+  /// The joint solution of all that it knows now. Agents that know the same get the same, to the last bit.
   [[nodiscard]] FleetSolution solve(const BackEndConfig& config) const {
     return adit::solve(known(), config);
   }
@@ -94,6 +102,7 @@ class Agent {
   FleetEstimate::Step update_estimate(const BackEndConfig& config) {
     return estimate_.update(known(), config);
   }
+  /// As of the last `update_estimate`; empty before the first.
   [[nodiscard]] const FleetEstimate& estimate() const { return estimate_; }
 
   /// Bytes of features and surfaces of its own keyframes, which it can compute again.

@@ -13,8 +13,10 @@ namespace adit {
 
 /// What a new keyframe needs.
 enum class KeyframeRule { distance, distance_angle, time };
+/// All rules.
 inline constexpr std::array kKeyframeRules{KeyframeRule::distance, KeyframeRule::distance_angle,
                                            KeyframeRule::time};
+/// distance, distance_angle, time.
 [[nodiscard]] std::string_view to_string(KeyframeRule rule);
 
 /// When a scan becomes a keyframe. The paper: after 0.5 m of odometry.
@@ -24,6 +26,7 @@ struct KeyframePolicyConfig {
   double angle_deg = 10.0;
   double period_s = 1.0;
 };
+/// The keys are the names of the fields.
 [[nodiscard]] Fields fields_of(KeyframePolicyConfig& config);
 
 /// Chooses keyframes from the stream of odometry steps of one robot.

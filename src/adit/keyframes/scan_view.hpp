@@ -25,6 +25,7 @@ struct ConfirmConfig {
                              ///< what a pedestrian walks meanwhile.
   double clear_share = 0.02;  ///< 1 degree of error across the ray, as for windows at their edge.
 };
+/// The keys are the names of the fields.
 [[nodiscard]] Fields fields_of(ConfirmConfig& config);
 
 /// Points are metres in the base frame of the scan, deskewed. Angles count from the base frame's axes, about

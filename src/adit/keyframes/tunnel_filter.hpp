@@ -15,6 +15,7 @@ struct TunnelFilterConfig {
   double width_threshold_m = 20.0;
   double max_range_m = 30.0;
 };
+/// The keys are the names of the fields.
 inline Fields fields_of(TunnelFilterConfig& c) {
   return {{"width_threshold_m", &c.width_threshold_m, "m", 0.0, 1000.0,
            "a keyframe whose box has a second-largest extent below this is tunnel-like"},
@@ -22,9 +23,10 @@ inline Fields fields_of(TunnelFilterConfig& c) {
            "points farther than this from the robot are cropped first; 0: no cropping"}};
 }
 
+/// What the box of a keyframe's cloud says of the place.
 struct TunnelVerdict {
   Vector3 extents = Vector3::Zero();  ///< Of the oriented box of the (cropped) cloud, metres, descending.
-  bool tunnel_like = false;
+  bool tunnel_like = false;           ///< The second extent is below `width_threshold_m`.
 };
 
 /// Measures the oriented box of one keyframe's cloud, in its base frame, and calls it tunnel-like when the

@@ -16,9 +16,12 @@ namespace adit {
 
 /// Which keyframes a query is compared with: those with the nearest ring keys, or all.
 enum class PlaceSearch { ring_key, brute_force };
+/// Both ways.
 inline constexpr std::array kPlaceSearches{PlaceSearch::ring_key, PlaceSearch::brute_force};
+/// ring_key, brute_force.
 [[nodiscard]] std::string_view to_string(PlaceSearch search);
 
+/// Which keyframes are searched, and how similar a match has to be.
 struct PlaceIndexConfig {
   /// Swarm-SLAM's similarity of 0.9, the system that the paper follows (the paper leaves its value open; Scan
   /// Context's own is 0.13).
@@ -27,6 +30,7 @@ struct PlaceIndexConfig {
   int exclude_recent = 50;
   PlaceSearch search = PlaceSearch::ring_key;
 };
+/// The keys are the names of the fields.
 [[nodiscard]] Fields fields_of(PlaceIndexConfig& config);
 
 /// "Have we been here before?": the contexts of many keyframes of one or several robots.
@@ -53,6 +57,7 @@ class PlaceIndex {
   [[nodiscard]] std::vector<LoopCandidate> best_matches(KeyframeId query, const ScanContext& context,
                                                         RobotId of, std::size_t num_matches) const;
 
+  /// Keyframes of all robots, those with an empty context among them.
   [[nodiscard]] std::size_t size() const;
 
  private:

@@ -28,6 +28,7 @@ struct ScanContextConfig {
   /// sensors look up at would make one place look like two.
   double max_elevation_deg = 90.0;
 };
+/// The keys are the names of the fields.
 inline Fields fields_of(ScanContextConfig& c) {
   return {{"num_rings", &c.num_rings, "", 1, 200, "rings of the polar grid"},
           {"num_sectors", &c.num_sectors, "", 3, 720, "sectors of the polar grid"},
@@ -42,8 +43,8 @@ inline Fields fields_of(ScanContextConfig& c) {
 /// `describe`, `from_heights` or `decode`. Cells are kept as the unit vectors of the columns (sectors) and
 /// the columns' norms, which is all that a comparison needs; `height` gives the cell back.
 struct ScanContext {
-  int num_rings = 0;
-  int num_sectors = 0;
+  int num_rings = 0;                ///< 0: default-made.
+  int num_sectors = 0;              ///< 0: default-made.
   std::vector<float> unit_columns;  ///< Sector by sector, `num_rings` cells each, nearest ring first.
   std::vector<float>
       norms;  ///< Of each sector's heights; 0: nothing seen there, and its unit column is zero.
@@ -91,6 +92,7 @@ struct ContextMatch {
 /// One byte per cell (heights in steps of a 255th of the greatest), for messages: 1.2 kB with the default
 /// grid. `decode` gives heights back to 0.2 % of the greatest. Errors: a truncated or malformed buffer.
 [[nodiscard]] std::vector<std::uint8_t> encode(const ScanContext& context);
+/// The context that `encode` was given, but for rounding; fails as said there.
 [[nodiscard]] Result<ScanContext> decode(std::span<const std::uint8_t> bytes);
 
 }  // namespace adit

@@ -19,9 +19,11 @@ class SeenSurface {
  public:
   /// Ranges of the surfaces in and around one direction, metres; empty where nothing was seen.
   struct Ranges {
-    float nearest = std::numeric_limits<float>::infinity();
-    float farthest = 0.0F;
+    float nearest = std::numeric_limits<float>::infinity();  ///< Infinite where nothing was seen.
+    float farthest = 0.0F;                                   ///< 0 where nothing was seen.
+    /// Whether nothing was seen.
     [[nodiscard]] bool empty() const { return farthest == 0.0F; }
+    /// Widens the interval so that it holds the other one.
     void add(const Ranges& other);
   };
 
@@ -29,16 +31,20 @@ class SeenSurface {
   /// `voxel_m`: points are one per voxel of this edge.
   SeenSurface(OrientedPoints points, const Vector3& viewpoint, double voxel_m);
 
+  /// All of them, as given.
   [[nodiscard]] const OrientedPoints& points() const { return points_; }
   /// A sample of the points, spread over all, that suffices for alignment.
   [[nodiscard]] const OrientedPoints& some() const { return some_; }
+  /// Finds indices of `points`.
   [[nodiscard]] const KdTree& tree() const { return tree_; }
+  /// Where the sensor stood, in the frame of the points, metres.
   [[nodiscard]] const Eigen::Vector3f& viewpoint() const { return viewpoint_; }
   /// Nothing was seen above and below the sensor's field of view, however near a surface ends there.
   [[nodiscard]] const Ranges& towards(const Eigen::Vector3f& direction) const;
   /// Into how many points, one per voxel, a sensor that leaves no gaps would see each of these, near the
   /// robot: what sparse and dense sensors see differ is compared by its area.
   [[nodiscard]] double thinness() const { return thinness_; }
+  /// About what this takes, tree and ranges included.
   [[nodiscard]] std::size_t num_bytes() const;
 
  private:
@@ -58,6 +64,7 @@ struct DifferingPatch {
   double num_points = 0.0;  ///< Times SeenSurface::thinness.
 };
 
+/// Points of the smallest patch that Agreement lists.
 inline constexpr std::size_t kLeastPatch = 4;
 
 /// How well two scans agree at a given relative pose, where both could see. Of each scan, only points count
@@ -72,8 +79,10 @@ struct Agreement {
   double largest_difference = std::numeric_limits<double>::infinity();
   /// All patches that are no such thing, of either direction, and those that are (changed_thing.hpp); frame
   /// of a. Patches of fewer than kLeastPatch points are left out.
+  ///@{
   std::vector<DifferingPatch> structures = {};
   std::vector<DifferingPatch> things = {};
+  ///@}
   [[nodiscard]] bool is_comparable() const { return confirmed > 0.0; }  ///< Points of both scans count.
 };
 
@@ -83,12 +92,12 @@ struct Agreement {
 
 /// A guess from odometry, corrected by the surfaces, and their agreement there.
 struct LocalFit {
-  Pose T_a_b;
-  Agreement agreement;
+  Pose T_a_b;           ///< The guess itself where no fit was accepted.
+  Agreement agreement;  ///< At that pose; not comparable where no fit was accepted.
 };
 /// Where a fit starts.
 enum class FitFrom {
-  guess,
+  guess,           ///< The pose that is given.
   along_the_path,  ///< Also up to 1.5 m ahead of the guess and behind it, along the path of b (its x axis).
 };
 /// The point-to-plane fit with the smallest difference. A difference of at most `enough` points ends the

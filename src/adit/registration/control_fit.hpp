@@ -16,7 +16,7 @@ namespace adit {
 /// Points known in two frames; vectors of one length. Errors in the source frame may depend on one another,
 /// as those of marks in a map that drifts do.
 struct ControlPairs {
-  std::vector<std::string> names;
+  std::vector<std::string> names;     ///< As errors call the points.
   std::vector<Vector3> target;        ///< Metres; may be as large as national coordinates are.
   std::vector<Vector3> target_sigma;  ///< Standard deviation along each axis, metres, more than 0.
   std::vector<Vector3> source;        ///< Metres.
@@ -24,8 +24,9 @@ struct ControlPairs {
   std::vector<bool> is_check;         ///< A check point has no say, and is judged like the others.
 };
 
+/// The motion that fits the points, how well it is known, and how each of them fits.
 struct ControlFit {
-  Pose T_target_source;
+  Pose T_target_source;                  ///< Brings source points to target points, in coordinates as given.
   Matrix6 covariance = Matrix6::Zero();  ///< Of T_target_source, right perturbation, [translation; rotation].
   std::vector<bool> used;                ///< Of each point.
   std::vector<Vector3> residuals;        ///< target - T_target_source * source of each point, metres.
@@ -33,10 +34,10 @@ struct ControlFit {
   /// the covariance of that distance: chi-square with 3 degrees of freedom. None where too few others are
   /// left to say.
   std::vector<std::optional<double>> misfits;
-  double chi2 = 0.0;   ///< Of the points in use.
-  int redundancy = 0;  ///< Numbers measured minus unknowns.
-  double scale = 1.0;  ///< Of the target frame to the source frame, by the points in use; not applied.
-  double scale_sigma = 0.0;
+  double chi2 = 0.0;         ///< Of the points in use.
+  int redundancy = 0;        ///< Numbers measured minus unknowns.
+  double scale = 1.0;        ///< Of the target frame to the source frame, by the points in use; not applied.
+  double scale_sigma = 0.0;  ///< Standard deviation of `scale`.
   /// The error of T_target_source, right perturbation, by those of the points in use: 6 x 3n, zero columns
   /// for the others. Its factor is the error of target - T_target_source * source.
   Eigen::MatrixXd gain;

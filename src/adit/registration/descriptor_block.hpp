@@ -15,20 +15,21 @@ inline constexpr std::size_t kBinPairs = (kDescriptorSize + 1) / 2;
 /// A descriptor to be compared with many blocks. Bins are at most 127, because one operand of that
 /// instruction is signed.
 struct DescriptorQuery {
+  /// Throws ContractViolation on a bin above 127 and on a squared norm above 32767.
   explicit DescriptorQuery(const Descriptor& descriptor);
 
   std::array<std::uint16_t, kBinPairs> pairs;  ///< Low byte first.
-  std::uint16_t squared_norm;
+  std::uint16_t squared_norm;                  ///< Of the bins, at most 32767.
 };
 
 /// Sixteen descriptors side by side, bin by bin.
 struct alignas(32) DescriptorBlock {
-  static constexpr std::size_t kLanes = 16;
+  static constexpr std::size_t kLanes = 16;  ///< Descriptors in a block.
 
-  std::uint8_t pairs[kBinPairs][kLanes][2] = {};
-  std::uint16_t squared_norms[kLanes] = {};
-  std::uint32_t indices[kLanes] = {};  ///< Of the descriptors, as the caller counts them.
-  std::uint32_t count = 0;             ///< Lanes in use, the first ones.
+  std::uint8_t pairs[kBinPairs][kLanes][2] = {};  ///< Bins 2 p and 2 p + 1 of lane l in pairs[p][l].
+  std::uint16_t squared_norms[kLanes] = {};       ///< Of the bins of each lane.
+  std::uint32_t indices[kLanes] = {};             ///< Of the descriptors, as the caller counts them.
+  std::uint32_t count = 0;                        ///< Lanes in use, the first ones.
 
   /// Squared norm at most 32767, as in DescriptorIndex.
   void append(const Descriptor& descriptor, std::uint32_t index);

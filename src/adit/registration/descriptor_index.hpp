@@ -18,8 +18,8 @@ namespace adit {
 
 /// The nearest descriptor and how far the second nearest is.
 struct NearestTwo {
-  std::uint32_t index = 0;
-  std::uint32_t squared_distance = 0;
+  std::uint32_t index = 0;                    ///< Of the nearest one in the list that was indexed.
+  std::uint32_t squared_distance = 0;         ///< To the nearest one.
   std::uint32_t second_squared_distance = 0;  ///< The search's bound where no second one is nearer.
   bool operator==(const NearestTwo&) const = default;
 };

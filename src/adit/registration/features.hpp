@@ -15,12 +15,13 @@ namespace adit {
 /// A fast point feature histogram (Rusu et al., ICRA 2009): three histograms of 11 bins, each summing to
 /// about 100 and rounded, so one byte per bin.
 inline constexpr int kDescriptorSize = 33;
+/// The histograms of theta, of alpha and of phi, one after the other (fpfh.hpp).
 using Descriptor = std::array<std::uint8_t, kDescriptorSize>;
 
 /// What registration needs of a cloud; compute it once per keyframe and keep it (57 bytes per point). All
 /// three vectors are equally long. Points without a reliable descriptor are left out.
 struct Features : OrientedPoints {
-  std::vector<Descriptor> descriptors;
+  std::vector<Descriptor> descriptors;  ///< What lies within `feature_radius_voxels` of each point.
 };
 
 /// Thins the cloud to one point (the mean) per voxel and describes each. `cloud` is in the frame of the

@@ -26,9 +26,10 @@ namespace adit {
 /// The descriptors of all points, and which of them are usable (at least 3 pair features). The pairs are
 /// those within the feature radius; points whose surface is not `valid` take no part.
 struct FpfhResult {
-  std::vector<Descriptor> descriptors;
-  std::vector<bool> usable;
+  std::vector<Descriptor> descriptors;  ///< One per point; zero where there is no pair feature.
+  std::vector<bool> usable;             ///< One per point.
 };
+/// `surface`: of each point. `pairs`: of these points. Throws ContractViolation where sizes differ.
 [[nodiscard]] FpfhResult compute_fpfh(const std::vector<Eigen::Vector3f>& points,
                                       const std::vector<SurfacePoint>& surface, const NeighborPairs& pairs);
 

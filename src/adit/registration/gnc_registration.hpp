@@ -20,9 +20,9 @@ namespace adit {
 /// non-convexity with the truncated least-squares cost, sum of min(|a_k - R b_k|^2, bound^2), R from a
 /// singular value decomposition in each iteration (Yang et al., RA-L 2020, eqs. 12 to 14).
 struct GncRotation {
-  Matrix3 R_a_b = Matrix3::Identity();
-  std::vector<double> weights;  ///< One per pair, 0 to 1; 1/2 and more is an inlier.
-  int iterations = 0;
+  Matrix3 R_a_b = Matrix3::Identity();  ///< Turns b_k into a_k.
+  std::vector<double> weights;          ///< One per pair, 0 to 1; 1/2 and more is an inlier.
+  int iterations = 0;  ///< At most `gnc_max_iterations`; 0 where all pairs were inliers at once.
 };
 /// None with fewer than 2 pairs, or when all inliers point in one direction, which leaves the rotation about
 /// it open. `bound` in the unit of the vectors.
@@ -35,7 +35,7 @@ struct GncRotation {
 
 /// The result of the global stage.
 struct GlobalSolution {
-  Pose T_a_b;
+  Pose T_a_b;  ///< p_a = T_a_b * p_b, to the noise of single points: not refined.
   std::vector<std::uint32_t>
       inliers;  ///< Of the correspondences, ascending: those that agree in all three axes.
 };

@@ -16,8 +16,8 @@ namespace adit {
 
 /// A point of b with its nearest point of a.
 struct PointPair {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
+  std::uint32_t a = 0;  ///< Index in cloud a.
+  std::uint32_t b = 0;  ///< Index in cloud b.
   bool operator==(const PointPair&) const = default;
 };
 
@@ -33,9 +33,10 @@ struct PointPair {
 
 /// The same to some millimetres, from fewer points: a start for `align_to_planes`.
 struct Approach {
-  Pose T_a_b;
+  Pose T_a_b;                ///< Where the steps ended.
   bool has_arrived = false;  ///< The last step was shorter than a centimetre: a minimum is near.
 };
+/// `refine_max_iterations` or too few pairs may end it before it has arrived.
 [[nodiscard]] Approach approach_planes(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,
                                        const Pose& T_a_b, const RegistrationConfig& config);
 

@@ -12,9 +12,9 @@ namespace adit {
 
 /// Point `a` of one cloud and point `b` of the other, whose surroundings look alike.
 struct Correspondence {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
-  float ratio = 1.0F;  ///< Squared descriptor distances, nearest to second nearest: small is distinctive.
+  std::uint32_t a = 0;  ///< Index of its descriptor.
+  std::uint32_t b = 0;  ///< Index of its descriptor.
+  float ratio = 1.0F;   ///< Squared descriptor distances, nearest to second nearest: small is distinctive.
   bool operator==(const Correspondence&) const = default;
 };
 

@@ -15,8 +15,11 @@ struct OrientedPoints {
   std::vector<Eigen::Vector3f> points;   ///< Metres, in the frame of the cloud.
   std::vector<Eigen::Vector3f> normals;  ///< Unit length, pointing to the origin of that frame.
 
+  /// Of the points, and so of the normals.
+  ///@{
   [[nodiscard]] std::size_t size() const { return points.size(); }
   [[nodiscard]] bool empty() const { return points.empty(); }
+  ///@}
 };
 
 }  // namespace adit

@@ -17,10 +17,11 @@ inline constexpr float kAgreeingNormals = 0.8F;
 /// Gauss-Newton's normal equations H step = -g of the plane residuals at one pose, weighted by the
 /// Geman-McClure kernel, for a right perturbation [translation; rotation].
 struct PlaneEquations {
-  Matrix6 H = Matrix6::Zero();
-  Vector6 g = Vector6::Zero();
+  Matrix6 H = Matrix6::Zero();  ///< Sum of J^T w J, J being the derivative of a residual.
+  Vector6 g = Vector6::Zero();  ///< Sum of J^T w r.
   double fit = 0.0;  ///< Sum over pairs of k^2 / (k^2 + r^2), r from the plane of a: at best 1 per pair.
-  double num_pairs = 0.0;
+  double num_pairs = 0.0;  ///< Points of b with a partner within the largest distance.
+  /// Adds those of other pairs at the same pose.
   PlaneEquations& operator+=(const PlaneEquations& other);
 };
 
@@ -39,6 +40,7 @@ class PlaneAligner {
   /// noise. `kernel`: scale k of the Geman-McClure kernel, metres.
   [[nodiscard]] PlaneEquations linearize(const Pose& T_a_b, double kernel);
 
+  /// Points of b that take part, with a partner or without.
   [[nodiscard]] std::size_t sample_size() const { return sample_size_; }
 
  private:

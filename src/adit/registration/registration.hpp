@@ -25,9 +25,9 @@ struct Registration {
   int num_inliers = 0;          ///< Of those, agreeing with the global solution.
   double overlap =
       0.0;  ///< Share of points with a neighbour in the other cloud, the smaller of both directions.
-  /// Inverse covariance of T_a_b (right perturbation, [translation; rotation]), from the point-to-plane
-  /// Hessian: zero along directions that the geometry leaves open. Zero as a whole when there is no
-  /// transform.
+  /// Inverse covariance of T_a_b (right perturbation, [translation; rotation]), from the residuals between
+  /// points and planes. Along directions that the geometry leaves open it says no more than that both scans
+  /// are of one place: some 3 m, 0.5 rad. Zero as a whole where there is no transform or too few inliers.
   Matrix6 information = Matrix6::Zero();
   /// Smallest eigenvalue of the translational part of the point-to-plane Hessian per correspondence: 0 when
   /// the clouds can slide along an axis (smooth tunnel), 1/3 when all directions are held alike.

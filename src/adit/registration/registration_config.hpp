@@ -19,6 +19,7 @@ struct ReliefConfig {
   double min_normal_cosine = 0.95;
   int min_points = 6;
 };
+/// The keys are the names of the fields.
 [[nodiscard]] Fields fields_of(ReliefConfig& config);
 
 /// How often walls that are the same, and others, are found on the same side (EqualSignShares).
@@ -33,11 +34,14 @@ struct ReliefModel {
   double changed = 0.01;
   int min_patches = 100;
 };
+/// The keys are the names of the fields.
 [[nodiscard]] Fields fields_of(ReliefModel& model);
 
 /// What is left of the consistency graph: its innermost k-core, or its maximum clique.
 enum class Pruning { k_core, clique };
+/// Both ways.
 inline constexpr std::array kPrunings{Pruning::k_core, Pruning::clique};
+/// k_core, clique.
 [[nodiscard]] std::string_view to_string(Pruning pruning);
 
 /// Parameters of KISS-Matcher (Lim et al., arXiv 2409.15615) with its published defaults, then those of the
@@ -80,6 +84,7 @@ struct RegistrationConfig {
   ReliefConfig relief;
 };
 
+/// The keys are the names of the fields; those of `relief` begin with its name.
 [[nodiscard]] Fields fields_of(RegistrationConfig& c);
 
 }  // namespace adit

@@ -22,8 +22,9 @@ namespace adit {
 /// A patch of wall in the frame of a map: the indices of its cell, and the side that it faces.
 using WallPatch = std::array<std::int32_t, 4>;
 
+/// How far apart two scans put one patch of wall.
 struct PatchOffset {
-  WallPatch patch;
+  WallPatch patch;  ///< In the frame of the map that T_map_a leads to.
   /// How far b's wall is in front of a's, towards free space; mean over the points of b.
   double metres = 0.0;
   SensorTerms by_sensors = SensorTerms::Zero();  ///< By how much the errors of the sensors change that,
@@ -40,29 +41,30 @@ struct PatchOffset {
 /// 0.5, as by chance, where no patch was seen twice.
 struct EqualSignShare {
   std::size_t num_patches = 0;  ///< Seen twice.
-  double share = 0.5;
-  double sigma = 0.5;    ///< Standard deviation of that share.
+  double share = 0.5;           ///< 0 to 1.
+  double sigma = 0.5;           ///< Standard deviation of that share.
   double noise_m = 0.0;  ///< Of the offset of one pair of scans, about its patch: one standard deviation.
 };
 
 /// The distribution of the share over stretches of one wall: normal, beside the error of counting.
 struct SameWalls {
-  double mean = 0.5;
-  double sigma = 0.0;
+  double mean = 0.5;   ///< Of the share, 0 to 1.
+  double sigma = 0.0;  ///< Standard deviation from stretch to stretch.
 };
 
 /// The distribution of the share over stretches of different walls. Its part beyond one half grows with the
 /// ratio of relief to noise, a factor that varies from stretch to stretch: the logarithm of that part is
 /// normal.
 struct OtherWalls {
-  double mean_log = 0.0;
-  double sigma_log = 0.0;
+  double mean_log = 0.0;   ///< Mean of log(share - 0.5).
+  double sigma_log = 0.0;  ///< Its standard deviation from stretch to stretch.
 };
 
 /// The shares that a robot found in its own map.
 class EqualSignShares {
  public:
   EqualSignShares() = default;
+  /// As long as nothing is measured, what `model` states counts.
   explicit EqualSignShares(const ReliefModel& model) : model_(model) {}
 
   /// The share of the robot's own walls, seen twice.
@@ -83,6 +85,7 @@ class EqualSignShares {
   [[nodiscard]] double chance_of_one_mould() const;
   /// The most that WallOffsets::evidence can be, a log likelihood ratio.
   [[nodiscard]] double most_evidence() const;
+  /// As it was given; its defaults where none was.
   [[nodiscard]] const ReliefModel& model() const { return model_; }
 
  private:
@@ -106,8 +109,10 @@ enum class Visits : std::uint8_t { one, two };
 /// `min_offset_m` have no sign.
 class WallOffsets {
  public:
+  /// `visits`: of all pairs that will be added; decides how `counted` averages.
   explicit WallOffsets(const ReliefConfig& config = {}, Visits visits = Visits::two)
       : config_(config), visits_(visits) {}
+  /// What `patch_offsets` found for one pair of scans; may be empty.
   void add(const std::vector<PatchOffset>& of_a_pair);
   /// Over the patches that two pairs or more saw. Of two visits it is the share of most stretches, their
   /// median over sides of 10 m of tunnel: a few whose walls were moved do not change it.

@@ -17,6 +17,7 @@ namespace adit {
 /// Of each sensor: constant, by incidence, and by elevation at nodes four degrees apart up to 32 degrees,
 /// linear in between.
 inline constexpr int kElevationNodesToEachSide = 8;
+/// One constant, one by incidence, and one per node of elevation.
 inline constexpr int kErrorsOfSensor = 2 + 2 * kElevationNodesToEachSide + 1;
 inline constexpr int kSensorErrors = 2 * kErrorsOfSensor;  ///< Those of a, then those of b.
 
@@ -25,15 +26,17 @@ using SensorTerms = Eigen::Matrix<double, kSensorErrors, 1>;
 
 /// A pair of points, one of each scan, on one wall. Frame of a.
 struct WallPair {
-  Eigen::Vector3f seen_by_a;
-  Eigen::Vector3f seen_by_b;
-  Eigen::Vector3f normal;  ///< Towards free space.
+  Eigen::Vector3f seen_by_a;  ///< The point of a nearest to that of b, metres.
+  Eigen::Vector3f seen_by_b;  ///< The point of b where the fit puts it, metres.
+  Eigen::Vector3f normal;     ///< Towards free space.
 };
 
 /// Adds up the terms of pairs of points of two scans.
 class SensorTermsOf {
  public:
+  /// Keeps the viewpoints, and the z axes as the upward axes of the robots.
   SensorTermsOf(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b);
+  /// Adds those of one pair, times `weight`, to `sum`.
   void add(const WallPair& pair, double weight, SensorTerms& sum) const;
 
  private:
@@ -48,26 +51,26 @@ class SensorTermsOf {
 
 /// Offsets of patches of wall, metres, and what moves them beside relief; a row for each.
 struct OffsetSystem {
-  Eigen::VectorXd metres;
-  Eigen::Matrix<double, Eigen::Dynamic, kSensorErrors> by_sensors;
-  Eigen::Matrix<double, Eigen::Dynamic, 6> by_fit;  ///< motion_terms
-  std::vector<Eigen::Index> first_of_pair;          ///< Rows of one pair of scans follow one another.
+  Eigen::VectorXd metres;                                           ///< The offsets.
+  Eigen::Matrix<double, Eigen::Dynamic, kSensorErrors> by_sensors;  ///< SensorTerms
+  Eigen::Matrix<double, Eigen::Dynamic, 6> by_fit;                  ///< motion_terms
+  std::vector<Eigen::Index> first_of_pair;  ///< Rows of one pair of scans follow one another.
 };
 
 /// Standard deviations: of range by sensor, what data sheets allow; of the fit of two scans, chosen, as half
 /// and five times as much merged as many of six pairs or one more (decision 0052).
 struct OffsetPrior {
-  double bias_m = 0.03;
-  double walk_m = 0.03;  ///< At grazing incidence.
-  double ring_m = 0.01;
-  double fit_m = 0.02;
-  double fit_rad = 0.004;
+  double bias_m = 0.03;    ///< Constant.
+  double walk_m = 0.03;    ///< At grazing incidence.
+  double ring_m = 0.01;    ///< At a node of elevation.
+  double fit_m = 0.02;     ///< Along each axis.
+  double fit_rad = 0.004;  ///< About each axis.
 };
 
 /// What offsets consist of; the rest is owed to the fits.
 struct OffsetParts {
-  Eigen::VectorXd by_sensors;
-  Eigen::VectorXd left;
+  Eigen::VectorXd by_sensors;  ///< Of each row of the system, metres.
+  Eigen::VectorXd left;        ///< What neither sensors nor fits explain: relief and noise, metres.
 };
 
 /// A robust fit of the errors of both sensors and of each pair's fit with their priors, by Huber's weights

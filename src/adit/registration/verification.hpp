@@ -15,10 +15,10 @@ namespace adit {
 
 /// As the fields of the same names in Registration.
 struct Evidence {
-  double overlap = 0.0;
-  Matrix6 information = Matrix6::Zero();
-  double weak_axis = 0.0;
-  Vector3 weak_direction = Vector3::Zero();
+  double overlap = 0.0;                      ///< 0 to 1, the smaller of both directions.
+  Matrix6 information = Matrix6::Zero();     ///< Zero where no pair of points agrees.
+  double weak_axis = 0.0;                    ///< 0 to 1/3; below kWeakAxis the clouds are free to slide.
+  Vector3 weak_direction = Vector3::Zero();  ///< In the frame of a; zero where no pair of points agrees.
 };
 
 /// Overlap in both directions, and the information of T_a_b from its point pairs. Each pair holds the

@@ -14,6 +14,7 @@ namespace adit {
 /// A quantity that grows with time, such as an angle turned; linear between the samples.
 class Growth {
  public:
+  /// Not a number: nothing is known.
   static constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
   /// Nothing is known between samples that are further apart than `longest_gap`.
@@ -21,10 +22,15 @@ class Growth {
 
   /// Stamps ascend. A value of `kNothing` begins another piece, which has nothing to do with the one before.
   void add(Stamp stamp, double value);
+  /// Whether nothing was added yet.
   [[nodiscard]] bool empty() const { return stamps_.empty(); }
+  /// The value that was added last; 0 before the first.
   [[nodiscard]] double last() const { return values_.empty() ? 0.0 : values_.back(); }
+  /// The first stamp and the last one; not to be asked for while it is empty.
+  ///@{
   [[nodiscard]] Stamp begin() const { return stamps_.front(); }
   [[nodiscard]] Stamp end() const { return stamps_.back(); }
+  ///@}
 
   /// `kNothing` outside and in gaps.
   [[nodiscard]] double at(Stamp stamp) const { return find(stamp).value; }
@@ -46,17 +52,18 @@ class Growth {
 
 /// Radians about the upward axis, and what of the motion ahead the sensor measures.
 struct Growths {
-  Growth turn;
-  Growth forward;
+  Growth turn;     ///< Anticlockwise is positive.
+  Growth forward;  ///< Metres by the wheels; m/s by an IMU, which feels only changes of speed.
 };
 /// `forward` in metres. `wheel` is not empty.
 [[nodiscard]] Growths growths_of(const Trajectory& wheel);
 
+/// The line through pairs of numbers; all zero where these are fewer than two or do not vary.
 struct Regression {
-  std::size_t num = 0;
-  double correlation = 0.0;
-  double slope = 0.0;  ///< Of y on x.
-  double sigma = 0.0;  ///< Standard deviation of x.
+  std::size_t num = 0;       ///< Pairs that count.
+  double correlation = 0.0;  ///< -1 to 1.
+  double slope = 0.0;        ///< Of y on x.
+  double sigma = 0.0;        ///< Standard deviation of x.
 };
 /// Of y[i + shift] on x[i]. Pairs in which a number is missing do not count.
 [[nodiscard]] Regression regress(const std::vector<double>& x, const std::vector<double>& y,

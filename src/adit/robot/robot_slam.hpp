@@ -16,6 +16,7 @@
 
 namespace adit {
 
+/// How one robot makes its map from its scans.
 struct RobotSlamConfig {
   OdometryConfig odometry;
   KeyframePolicyConfig keyframes;
@@ -26,10 +27,12 @@ struct RobotSlamConfig {
   PathNoise noise;
   double cloud_voxel = 0.15;  ///< Keyframe clouds are thinned to one point per voxel of this edge, metres.
 };
+/// Keys of all members but `cloud_voxel` begin with their names.
 Fields fields_of(RobotSlamConfig& config);
 
+/// What became of one scan.
 struct RobotStep {
-  OdometryStep odometry;
+  OdometryStep odometry;                    ///< Whether it was registered, and where.
   std::optional<KeyframeId> keyframe = {};  ///< Set when this scan became one.
 };
 
@@ -50,6 +53,7 @@ class RobotSlam {
   /// `motion`: what other sensors measured from the scan before to this one.
   RobotStep process(const Scan& scan, const SensedMotion& motion);
 
+  /// Of all scans so far; the clouds of older keyframes change no more.
   [[nodiscard]] const RobotMap& map() const { return map_; }
 
  private:

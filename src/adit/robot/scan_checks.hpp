@@ -15,11 +15,12 @@ namespace adit {
 
 /// When scans came.
 struct ScanTiming {
-  double interval_s = 0.0;      ///< The usual one, by the median; 0 with fewer than two scans.
-  std::size_t num_missing = 0;  ///< As many as gaps of more than 1.5 intervals have room for.
-  double longest_gap_s = 0.0;
+  double interval_s = 0.0;        ///< The usual one, by the median; 0 with fewer than two scans.
+  std::size_t num_missing = 0;    ///< As many as gaps of more than 1.5 intervals have room for.
+  double longest_gap_s = 0.0;     ///< Between two scans that follow one another.
   double longest_gap_at_s = 0.0;  ///< Seconds from the first scan.
 };
+/// `scan_stamps` ascend.
 [[nodiscard]] ScanTiming timing_of(const std::vector<Stamp>& scan_stamps);
 
 /// The floor in the base frame, where z should be 0 and upwards.
@@ -31,19 +32,20 @@ struct FloorSeen {
 
 /// Where returns stay although the robot moves: parts of the robot.
 struct SelfHits {
-  double share = 0.0;  ///< Of all returns.
-  double nearest_m = 0.0;
-  double farthest_m = 0.0;
+  double share = 0.0;        ///< Of all returns.
+  double nearest_m = 0.0;    ///< From the LiDAR, to 10 cm.
+  double farthest_m = 0.0;   ///< From the LiDAR, to 10 cm; at most some 1.2 m are looked at.
   double azimuth_deg = 0.0;  ///< Of their middle, in the frame of the LiDAR.
 };
 
+/// What a sample of the scans shows.
 struct ScansSeen {
   std::size_t num_scans = 0;  ///< Looked at, spread over the recording.
   double points = 0.0;        ///< Of a scan, the median.
-  bool has_times = false;
-  double sweep_s = 0.0;     ///< From the first to the last point, by their times; the median.
-  double nearest_m = 0.0;   ///< One return in a hundred is nearer,
-  double farthest_m = 0.0;  ///< and none is farther.
+  bool has_times = false;     ///< All these scans have times of their points.
+  double sweep_s = 0.0;       ///< From the first to the last point, by their times; the median.
+  double nearest_m = 0.0;     ///< One return in a hundred is nearer,
+  double farthest_m = 0.0;    ///< and none is farther.
   /// Share of all returns within the last 3 % before `farthest_m`: large where something cuts them off.
   double share_at_the_end = 0.0;
   double cone_deg = 180.0;         ///< Half the opening of the cone in which 99 of 100 returns lie.
@@ -60,12 +62,12 @@ struct ScansSeen {
 /// How far the LiDAR's mount is from where the motion between scans puts it, if the wheels are right. One
 /// standard deviation each.
 struct MountByMotion {
-  double yaw_deg = 0.0;  ///< To be added to that of the mount.
-  double yaw_sigma_deg = 0.0;
+  double yaw_deg = 0.0;        ///< To be added to that of the mount.
+  double yaw_sigma_deg = 0.0;  ///< By the residuals, as `ahead_sigma_m`.
   double ahead_m =
       0.0;  ///< To be added to x, where the robot turned enough: by the side to which it is carried.
   double ahead_sigma_m = 0.0;  ///< Infinite on a drive without curves.
-  std::size_t num_steps = 0;
+  std::size_t num_steps = 0;   ///< From scan to scan, where the motion was well measured; 40 or more.
 };
 /// Registers some 300 scans. None without wheels, or where the scans leave too much of the motion open. A
 /// vehicle whose middle of turning is not the base's origin shows as `ahead_m`, too.

@@ -17,6 +17,7 @@ inline constexpr std::size_t kSettlingScans = 4;
 /// Scans that checks go by: about ten per second.
 [[nodiscard]] std::vector<std::size_t> scans_to_check(const Recording& recording);
 
+/// A stretch of scans, registered.
 struct ScanMotion {
   std::vector<OdometryStep> steps;  ///< One per scan, T_odom_base; empty for fewer than two scans.
   bool has_times = true;            ///< The clouds have times of their points.

@@ -15,34 +15,37 @@
 
 namespace adit {
 
+/// What is wrong with a sensor.
 enum class Finding {
-  imu_in_g,
-  imu_without_gravity,  ///< Of the whole drive, or of its begin.
-  imu_wrong_unit,       ///< Neither m/s^2 nor g.
-  imu_in_degrees,       ///< Degrees per second.
-  imu_wrong_axes,       ///< The mount does not agree with gravity.
-  imu_saturated,
-  imu_gaps,
-  imu_bad_covariance,  ///< Zero, huge or not positive definite.
-  wheels_reversed,     ///< Forward for backward, or left for right.
-  wheels_wrong_scale,  ///< Of turns, or ahead.
-  wheels_frozen,
-  wheels_jump,
+  imu_in_g,               ///< Accelerations in units of gravity.
+  imu_without_gravity,    ///< Of the whole drive, or of its begin.
+  imu_wrong_unit,         ///< Neither m/s^2 nor g.
+  imu_in_degrees,         ///< Degrees per second.
+  imu_wrong_axes,         ///< The mount does not agree with gravity.
+  imu_saturated,          ///< Values are cut off at the end of the sensor's range.
+  imu_gaps,               ///< Silent for more than 0.1 s.
+  imu_bad_covariance,     ///< Zero, huge or not positive definite.
+  wheels_reversed,        ///< Forward for backward, or left for right.
+  wheels_wrong_scale,     ///< Of turns, or ahead.
+  wheels_frozen,          ///< Their value stops changing at full speed.
+  wheels_jump,            ///< Their position changes faster than a robot drives.
   wheels_late,            ///< Or early.
   wheels_contradicted,    ///< They and the gyroscope, or the scans, turn differently.
   wheels_bad_covariance,  ///< Huge, not finite or not positive definite.
 };
 
+/// What was done about it.
 enum class Consequence {
-  noted,
+  noted,     ///< Nothing: the sensor is used as it is.
   repaired,  ///< What is wrong was left out or corrected; the sensor is used.
   left_out,  ///< The sensor is not used.
 };
 
+/// One thing that is wrong with a sensor of a recording.
 struct SensorFinding {
-  Finding finding;
-  Consequence consequence = Consequence::noted;
-  std::string sentence;  ///< For people: what, where, what to do.
+  Finding finding;                               ///< What is wrong.
+  Consequence consequence = Consequence::noted;  ///< What was done to the recording already.
+  std::string sentence;                          ///< For people: what, where, what to do.
 };
 
 /// Checks the wheels and the IMU of a recording and replaces them by what can be used of them. Findings in a

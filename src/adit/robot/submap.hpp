@@ -17,6 +17,7 @@ struct SubmapConfig {
   double step_m = 1.0;     ///< Along the path, from one keyframe that is taken to the next.
   double radius_m = 20.0;  ///< Points farther from the keyframe, horizontally, are left out.
 };
+/// The keys are the names of the fields.
 [[nodiscard]] Fields fields_of(SubmapConfig& config);
 
 /// The points of keyframe `k` and of those around it, brought together by odometry; base frame of keyframe

@@ -19,8 +19,9 @@ struct WheelReference {
   std::string_view mount;   ///< "--imu-mount"
 };
 
+/// What comparing the wheels with another sensor has shown.
 struct WheelComparison {
-  TurnComparison turns;
+  TurnComparison turns;             ///< Judged only where it has_curves().
   bool is_backward = false;         ///< They count backward as forward.
   std::optional<double> ahead;      ///< Metres driven per metre that they count; none where nothing is known.
   double clock_tolerance_s = 0.04;  ///< Two steps of the grid of rates.

@@ -12,19 +12,22 @@
 
 namespace adit {
 
+/// What a finding means for the map.
 enum class Health : std::uint8_t {
-  good,
+  good,     ///< Nothing is wrong.
   noted,    ///< A map can be made; it may be worse than it could be.
   spoils,   ///< A map made of this is bent, or none is made.
   unknown,  ///< The recording does not tell.
 };
+/// good, noted, spoils, unknown.
 [[nodiscard]] std::string_view to_string(Health health);
 
+/// One check of a recording and its outcome.
 struct Diagnosis {
-  std::string check;  ///< What was looked at: "mount: tilt".
-  Health health = Health::good;
-  std::string sentence;     ///< What was found, with the numbers.
-  std::string remedy = {};  ///< What to do; "" where nothing is to be done.
+  std::string check;             ///< What was looked at: "mount: tilt".
+  Health health = Health::good;  ///< What it means for the map.
+  std::string sentence;          ///< What was found, with the numbers.
+  std::string remedy = {};       ///< What to do; "" where nothing is to be done.
 };
 
 /// Scans (missing ones, times of points, ranges, view, parts of the robot in it), the mount (tilt and height

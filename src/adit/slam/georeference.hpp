@@ -12,6 +12,7 @@
 
 namespace adit {
 
+/// What control points say of a session, not written to it yet.
 struct Georeferencing {
   std::vector<Georeference> maps;  ///< Those with control points.
   std::vector<std::string> notes;  ///< One line each.

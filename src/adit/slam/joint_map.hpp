@@ -18,32 +18,35 @@
 
 namespace adit {
 
+/// How a session's map is written in other formats.
 struct MapsConfig {
   double voxel_m = 0.1;         ///< Of clouds: one point in a cube of this edge, metres.
   bool start_together = false;  ///< Of .mcap: all robots start when the first one does.
   OccupancyConfig grid;
   OctomapConfig octomap;
 };
+/// Keys of `grid` and `octomap` begin with these names.
 [[nodiscard]] Fields fields_of(MapsConfig& config);
 
 /// A robot of a session, with its keyframes in the frame of its shared map.
 struct PlacedRobot {
-  std::shared_ptr<const RobotMap> map;
-  std::vector<Pose> T_world_keyframe;  ///< One for each keyframe.
-  std::size_t shared_map = 0;          ///< Number of the shared map; 0 is that of the most robots.
+  std::shared_ptr<const RobotMap> map;  ///< As it was saved, by its own odometry.
+  std::vector<Pose> T_world_keyframe;   ///< One for each keyframe.
+  std::size_t shared_map = 0;           ///< Number of the shared map; 0 is that of the most robots.
 };
+/// A saved session with the maps of its robots.
 struct PlacedSession {
-  SavedSession saved;
-  std::vector<PlacedRobot> robots;
+  SavedSession saved;               ///< All but the maps.
+  std::vector<PlacedRobot> robots;  ///< By id; `saved` may name more, which have no keyframes.
 };
 /// Fails as read_fleet does, and where a robot's trajectory and map do not belong together.
 [[nodiscard]] Result<PlacedSession> read_placed_session(const std::filesystem::path& session);
 
 /// The frame that clouds and poses are written in.
 struct OutputFrame {
-  Pose T_frame_map;
-  std::string name;  ///< For people; "" for the map's own.
-  std::string crs_wkt = kLocalCrs;
+  Pose T_frame_map;                 ///< The identity for the map's own frame.
+  std::string name;                 ///< For people; "" for the map's own.
+  std::string crs_wkt = kLocalCrs;  ///< Its coordinate system as well-known text, for .las.
 };
 /// The target frame of a map: "EPSG:25833", or "the target frame" where no system was named. Fails as crs_wkt
 /// does.
@@ -51,9 +54,9 @@ struct OutputFrame {
 
 /// Robots that share a frame, with their keyframes in it.
 struct JointMap {
-  std::vector<std::shared_ptr<const RobotMap>> maps;
-  std::vector<std::vector<Pose>> T_world_keyframe;  ///< One for each keyframe of each map.
-  std::vector<std::string> left_out;                ///< Robots of the session that are in other maps.
+  std::vector<std::shared_ptr<const RobotMap>> maps;  ///< By robot id.
+  std::vector<std::vector<Pose>> T_world_keyframe;    ///< One for each keyframe of each map.
+  std::vector<std::string> left_out;                  ///< Robots of the session that are in other maps.
 };
 /// The map of the most robots, the first of several.
 [[nodiscard]] JointMap joint_map_of(const PlacedSession& session);

@@ -14,21 +14,22 @@ namespace adit {
 
 /// The map of one robot, reduced to the keyframes of the policy, and the odometry that made it.
 struct MappedRobot {
-  std::shared_ptr<const RobotMap> map;
-  std::string odometry;  ///< The method that ran.
-  std::string lidar;     ///< As the recording names it; "" when unknown.
+  std::shared_ptr<const RobotMap> map;  ///< Without keyframes where the policy left none.
+  std::string odometry;                 ///< The method that ran.
+  std::string lidar;                    ///< As the recording names it; "" when unknown.
 };
 
 /// A recording that could not be mapped.
 struct FailedRobot {
-  std::string name;
+  std::string name;    ///< That of the recording.
   std::string reason;  ///< One line that names the robot.
 };
 
+/// What became of all recordings.
 struct Mapping {
   std::vector<MappedRobot> robots;  ///< In the order of the recordings, and so are the ids.
-  std::vector<FailedRobot> failed;
-  std::vector<std::string> notes;  ///< What the user should know although nothing failed, one line each.
+  std::vector<FailedRobot> failed;  ///< In the order of the recordings; their ids stay free.
+  std::vector<std::string> notes;   ///< What the user should know although nothing failed, one line each.
 };
 
 /// Maps all robots, in parallel, as one phase of progress that counts scans; may throw `Cancelled`

@@ -15,16 +15,16 @@ namespace adit {
 /// others' meetings brought. All of them know the same, so any of them can solve. The first has kept its
 /// estimate up to date from meeting to meeting, as a robot does while it drives.
 struct Meeting {
-  std::vector<std::shared_ptr<const RobotMap>> maps;
-  std::vector<Agent> agents;              ///< One per map.
-  std::vector<std::uint64_t> bytes_sent;  ///< One per agent.
-  std::vector<std::string> failures;      ///< Messages that an agent could not take, one line each.
+  std::vector<std::shared_ptr<const RobotMap>> maps;  ///< As given, in that order.
+  std::vector<Agent> agents;                          ///< One per map.
+  std::vector<std::uint64_t> bytes_sent;              ///< One per agent.
+  std::vector<std::string> failures;  ///< Messages that an agent could not take, one line each.
 };
 
 /// Robots that met before they were saved, and what all of them had found by then. Those whose test was
 /// concluded are not searched again.
 struct MetBefore {
-  std::vector<RobotId> robots;
+  std::vector<RobotId> robots;        ///< Of one earlier session, by their present ids.
   std::vector<MessageBody> findings;  ///< Agent::findings.
 };
 

@@ -17,6 +17,7 @@
 
 namespace adit {
 
+/// The robots of one saved session and what they found.
 struct SavedFleet {
   Provenance provenance;                        ///< Of the session that it was read from.
   std::vector<std::shared_ptr<RobotMap>> maps;  ///< In id order.

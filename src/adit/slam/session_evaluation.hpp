@@ -21,9 +21,9 @@ namespace adit {
 
 /// A true trajectory, T_world_base, as the user gave it.
 struct GivenTruth {
-  std::string source;  ///< What errors call it: its file.
-  std::string robot;   ///< The robot that it was given for (NAME=FILE); "": its file name says.
-  Trajectory trajectory;
+  std::string source;     ///< What errors call it: its file.
+  std::string robot;      ///< The robot that it was given for (NAME=FILE); "": its file name says.
+  Trajectory trajectory;  ///< In the same world for all robots that share a map.
 };
 
 /// The truth of each robot of the session, in the session's order, whatever the order given; none for robots
@@ -33,15 +33,17 @@ struct GivenTruth {
 [[nodiscard]] Result<std::vector<std::optional<Trajectory>>> match_truths(
     const SavedSession& session, const std::vector<GivenTruth>& given);
 
+/// Errors of one robot's trajectories; none of them without a truth.
 struct RobotErrors {
-  std::string name;
+  std::string name;                ///< As in the session.
   std::optional<AteResult> joint;  ///< After one alignment of all robots that share its map and have a truth.
   std::optional<AteResult> odometry;  ///< Of the odometry alone, after its own alignment.
   std::optional<RpeResult> relative;  ///< None where the path is shorter than a segment of 10 m.
 };
 
+/// What ground truth says of a session.
 struct SessionEvaluation {
-  std::vector<std::vector<std::string>> components;
+  std::vector<std::vector<std::string>> components;  ///< Names of the robots that share a map, as saved.
   /// Of each component against the true surface; none where no robot of it has a truth. Empty where no
   /// surface is given.
   std::vector<std::optional<MapAccuracy>> maps = {};
@@ -65,9 +67,11 @@ Result<> add_map_accuracy(SessionEvaluation& evaluation, const PlacedSession& se
 
 /// Two tables: trajectory errors, loops; a third one where maps were compared with the true surface.
 [[nodiscard]] std::vector<Table> tables_of(const SessionEvaluation& evaluation);
+/// The third of them for one map, which its only row calls `name`.
 [[nodiscard]] Table table_of(const MapAccuracy& map, const std::string& name);
 /// The same as JSON, with RPE.
 [[nodiscard]] std::string json_of(const SessionEvaluation& evaluation);
+/// One map, as it stands in the JSON of an evaluation.
 [[nodiscard]] std::string json_of(const MapAccuracy& map);
 
 /// Puts the classes into loops.csv of the session, and `evaluation` into its metrics.json.

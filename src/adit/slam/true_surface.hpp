@@ -24,6 +24,7 @@ struct SightConfig {
   double incidence_deg = 75.0;
   double sensor_height_m = 0.9;  ///< Above the true trajectory, for clouds that do not say.
 };
+/// The keys are the names of the fields.
 inline Fields fields_of(SightConfig& c) {
   return {{"reach_m", &c.reach_m, "m", 0.5, 1000,
            "a surface could have been seen from a true position of the sensor so near ..."},
@@ -33,6 +34,7 @@ inline Fields fields_of(SightConfig& c) {
            "sensor above the positions of the true trajectory, where a cloud is compared"}};
 }
 
+/// A mesh made ready for distances and lines of sight.
 class TrueSurface {
  public:
   /// Fails as `check_mesh` does.
@@ -63,7 +65,7 @@ class TrueSurface {
 
 /// A robot of a shared map.
 struct TruedRobot {
-  const RobotMap* map = nullptr;
+  const RobotMap* map = nullptr;         ///< With its keyframes' clouds; not owned, as all here.
   std::span<const Pose> T_map_keyframe;  ///< One a keyframe.
   const Trajectory* truth = nullptr;     ///< T_world_base.
 };

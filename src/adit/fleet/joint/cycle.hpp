@@ -21,6 +21,7 @@ struct CycleConfig {
   double detour_m = 10.0;
   int refuted_pairs = 2;
 };
+/// The keys are the names of the fields.
 inline Fields fields_of(CycleConfig& c) {
   return {
       {"freedom", &c.freedom, "", 1.0, 1e6,
@@ -36,12 +37,17 @@ inline Fields fields_of(CycleConfig& c) {
 
 /// The loops that join the maps of two robots; PcmLoop::a is a keyframe of robot a, b one of robot b.
 struct Merge {
+  /// Two different robots.
+  ///@{
   RobotId a, b;
-  double evidence = 0.0;  ///< As MergeCheck's.
-  std::vector<PcmLoop> loops;
+  ///@}
+  double evidence = 0.0;       ///< As MergeCheck's.
+  std::vector<PcmLoop> loops;  ///< At least one; their information is positive definite.
 };
 
+/// The odometry of each robot.
 using Chains = std::map<RobotId, OdometryChain>;
+/// Robots in the order in which a path or a cycle passes them, each once.
 using Robots = std::vector<RobotId>;
 
 /// The variance of the drift over the configured one, by what the first and the last loop of each merge leave
@@ -54,6 +60,7 @@ struct Round {
   double miss_m = 0.0;     ///< From its beginning to its end.
   double driven_m = 0.0;   ///< Odometry in between.
   double log_ratio = 0.0;  ///< Logarithm of P(miss | drift) / P(miss | a wrong merge).
+  /// Whether a wrong merge explains the miss better than drift does.
   [[nodiscard]] bool contradicts() const { return log_ratio < 0.0; }
 };
 

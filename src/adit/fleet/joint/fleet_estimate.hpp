@@ -23,6 +23,7 @@ namespace adit {
 /// (`select_loops`).
 class FleetEstimate {
  public:
+  /// What one update did.
   struct Step {
     std::size_t num_keyframes = 0;   ///< Added.
     std::size_t num_begun_anew = 0;  ///< Maps.
@@ -65,6 +66,7 @@ struct EstimateDifference {
   double largest_m = 0.0;                ///< Of all keyframes.
   std::size_t num_judged_otherwise = 0;  ///< Loops in use in one of the two alone.
 };
+/// All keyframes of the estimate have to be in `solution`.
 [[nodiscard]] EstimateDifference difference(const FleetEstimate& estimate, const FleetSolution& solution);
 
 }  // namespace adit

@@ -13,8 +13,7 @@ namespace adit {
 /// Why one candidate is in the solution or not.
 struct LoopAccount {
   std::optional<std::size_t> hypothesis;  ///< Index in MergeCheck::hypotheses of its pair.
-  std::string merge_check;                ///< "accepted", "joined" by several pairs together, "refused", or
-                                          ///< "none" where its pair was not tested.
+  std::string merge_check;                ///< "accepted", "refused", or "none" where its pair was not tested.
   std::string reason;                     ///< One sentence.
 };
 

@@ -17,11 +17,12 @@ namespace adit {
 /// robot with loops within its own map.
 using LoopsOfPairs = std::map<RobotPair, std::vector<std::size_t>>;
 
+/// The loops that may take part, and those of them that do.
 struct LoopSelection {
   std::vector<LoopOutcome>
       loops;  ///< The accepted ones between known keyframes; chosen are those is_selected.
   std::vector<PairOutcome> pairs;  ///< Any two robots; with a reason only where their merge is taken back.
-  LoopsOfPairs of_pairs;
+  LoopsOfPairs of_pairs;           ///< Selected loops or not; pairs without loops have an empty entry.
 };
 
 /// PCM per pair of robots, or, where checks are needed, the loops of the accepted ones but for those that

@@ -15,9 +15,12 @@ namespace adit {
 /// The merges that have not been taken back, as a graph.
 class MergeGraph {
  public:
+  /// Merges are known by their indices; at most one between two robots.
   explicit MergeGraph(const std::vector<Merge>& merges) {
     for (std::size_t m = 0; m < merges.size(); ++m) add(merges[m].a, merges[m].b, m);
   }
+  /// A copy without the merge between these two robots; both have to be in the graph.
+  ///@{
   [[nodiscard]] MergeGraph without(const Merge& merge) const { return without(merge.a, merge.b); }
   [[nodiscard]] MergeGraph without(RobotId a, RobotId b) const {
     MergeGraph rest = *this;
@@ -25,6 +28,7 @@ class MergeGraph {
     rest.merge_.at(b).erase(a);
     return rest;
   }
+  ///@}
   /// From each robot to the next, and from the last to the first.
   [[nodiscard]] std::vector<std::size_t> along(const Robots& cycle) const {
     std::vector<std::size_t> out = along_path(cycle);

@@ -26,6 +26,7 @@ struct DiscernmentConfig {
   double reach_off_m = 0.5;
   SegmentConfig segment;
 };
+/// Keys of `segment` begin with its name.
 Fields fields_of(DiscernmentConfig& config);
 
 /// When loops between two robots may join their maps (MergeChecker, decision 0010).
@@ -47,8 +48,10 @@ struct MergeCheckConfig {
   EvidenceModel evidence;
   DiscernmentConfig discernment;
 };
+/// Keys of `evidence` and `discernment` begin with these names.
 Fields fields_of(MergeCheckConfig& config);
 
+/// Used where AgentConfig::policy is MergePolicy::adaptive.
 struct AdaptiveConfig {
   SearchConfig search;
   RegistrationConfig registration;

@@ -14,9 +14,9 @@ namespace adit {
 
 /// Two keyframes that stand side by side if the loops are true.
 struct PlannedComparison {
-  std::uint32_t own = 0;
-  std::uint32_t theirs = 0;
-  Pose T_own_theirs;
+  std::uint32_t own = 0;     ///< Index of a keyframe of the own map.
+  std::uint32_t theirs = 0;  ///< Of the other robot's map; within one map that of the later keyframe.
+  Pose T_own_theirs;         ///< By the nearest loop and the odometries; a guess for the fit.
 };
 
 /// Lengths along the path, metres.
@@ -28,6 +28,7 @@ struct ComparisonSpacing {
   double wall_spacing_m = 1.0;  ///< From one pair of scans to the next where walls have to decide.
 };
 
+/// Finds pairs of keyframes that stand at most 3 m apart by the nearest loop and the odometries.
 class ComparisonPlanner {
  public:
   /// `loops` agree with one another. With the same chain given twice: revisits, the earlier keyframe as

@@ -20,9 +20,9 @@ namespace adit {
 
 /// Two keyframes of one map to be compared, and where odometry puts the second.
 struct OwnComparison {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
-  Pose T_a_b;
+  std::uint32_t a = 0;  ///< Keyframe index.
+  std::uint32_t b = 0;  ///< Keyframe index.
+  Pose T_a_b;           ///< Where the fit starts. The identity asks whether another place looks the same.
 };
 
 /// Where it would show at a place that scans were displaced along the path: structures that differ, own
@@ -32,6 +32,7 @@ using DisplacementSigns = std::vector<std::vector<Vector3>>;
 /// Each part is measured when it is first asked for; all together take some seconds of processor time.
 class Discernment {
  public:
+  /// Called once, when `measured` is first asked for.
   using FindLookAlikes = std::function<std::vector<LoopCandidate>()>;
   /// `chain`: the odometry of `map`. `find_look_alikes` names places of the map and others of it that look
   /// like them, all along the path.
@@ -43,6 +44,7 @@ class Discernment {
   /// difference of neighbouring keyframes times an allowance, or `least_difference_m2`. 0 on a map too short
   /// to measure on: all differ.
   [[nodiscard]] double limit() const { return limit_; }
+  /// Whether scans cannot be of one place; those with nothing in common differ.
   [[nodiscard]] bool differ(const Agreement& agreement) const {
     return !(agreement.largest_difference <= limit_);
   }
@@ -54,13 +56,16 @@ class Discernment {
   /// The keyframes that stand displaced from this one along the path, to either side, by the distance that
   /// makes a place distinctive; fewer at the ends of the path.
   [[nodiscard]] std::vector<std::uint32_t> displaced_from(std::uint32_t keyframe) const;
-  /// Path, in metres, over which odometry leads to within half a metre to the side: by how much its heading
-  /// differs from that of the scans. Within 50 and 150 m.
+  /// Path, in metres, over which odometry leads to within `reach_off_m` to the side: by how much its heading
+  /// differs from that of the scans. Between `shortest_reach_m`, which it is where too little could be
+  /// measured, too, and `longest_reach_m` (DiscernmentConfig).
   [[nodiscard]] double reach_m();
+  /// How long look-alikes agree and how walls compare on the own map; valid as long as this.
   [[nodiscard]] const Measured& measured();
 
   /// Compares keyframes of the own map with one another.
   [[nodiscard]] std::vector<LocalFit> compare(const std::vector<OwnComparison>& asked, FitFrom from);
+  /// Of the own keyframes; filled as comparisons need them.
   [[nodiscard]] SurfaceStore& surfaces() { return surfaces_; }
 
  private:

@@ -17,13 +17,22 @@ namespace adit {
 
 /// What all robots of a fleet share, because the evidence of several is added up: constants, no settings.
 struct FleetEvidence {
+<<<<<<< HEAD
   double agreement_if_true = 0.92;
   double least_chance = 0.2;
   double copied = 0.002;
   double copy_goes_on = 0.95;
+=======
+  double agreement_if_true = 0.95;  ///< P(a place shows no change of structure that is new | one tunnel).
+  double least_chance = 0.2;        ///< Least P(look-alikes agree at one more place), whatever was measured.
+  double copied = 0.002;            ///< Share of look-alikes that were built to the same plan.
+  double copy_goes_on = 0.95;       ///< P(one built to the same plan agrees at one more distinctive place).
+>>>>>>> docB
 };
+/// The values in use.
 inline constexpr FleetEvidence kFleetEvidence;
 
+/// The values that are settings of each robot.
 struct EvidenceModel {
   double error_rate = 5e-3;
   double refusal_rate = 0.01;
@@ -52,10 +61,10 @@ struct EvidenceModel {
 
 /// One value of the model and its origin.
 struct EvidenceEntry {
-  std::string key;
-  double value = 0.0;
-  std::string unit;
-  std::string meaning;
+  std::string key;          ///< "error_rate", "walls.same_share", "fleet.copied", ...
+  double value = 0.0;       ///< Of the model that was given, or of kFleetEvidence.
+  std::string unit;         ///< "m", "1/km", ...; "" for shares, chances and numbers.
+  std::string meaning;      ///< One line, as in the configuration.
   std::string_view source;  ///< What it was fitted to or chosen by.
   std::string_view date;    ///< Of that, year-month-day.
 };

@@ -23,10 +23,13 @@ struct ComparedPlace {
   std::vector<PatchOffset> offsets = {};  ///< Of their walls from the own ones; none where it differs.
   /// Where structure differs by more than the limit, and where one robot met what may come and go; own
   /// odometry frame, metres.
+  ///@{
   std::vector<Vector3> structures = {};
   std::vector<Vector3> things = {};
+  ///@}
   DisplacementSigns signs = {};  ///< By what it is distinctive (Discernment).
   bool is_explained = false;  ///< What differs was counted before, at another place, or was not seen again.
+  /// Whether the scans cannot be of one place; those with nothing in common differ.
   [[nodiscard]] bool differs() const { return !(difference <= 1.0); }
 };
 
@@ -39,7 +42,9 @@ class Changes {
   bool know(const std::vector<Vector3>& seen);
   /// Adds them; true if one of them was not known before.
   bool add(const std::vector<Vector3>& seen);
+  /// Whether that place belongs to an object that is known.
   [[nodiscard]] bool has(const Vector3& place) const;
+  /// Objects known.
   [[nodiscard]] std::size_t num() const { return places_.size(); }
 
  private:
@@ -47,12 +52,14 @@ class Changes {
   std::vector<Vector3> places_;  ///< Where each was seen first.
 };
 
+/// Loops that agree, the places to be compared along them, and what was found there so far.
 struct Hypothesis {
   Hypothesis() = default;
+  /// Without loops and places yet.
   explicit Hypothesis(const AdaptiveConfig& config)
       : model(config.merge_check.evidence), offsets(config.registration.relief) {}
 
-  EvidenceModel model;
+  EvidenceModel model;                  ///< Says which differences are one object.
   std::vector<std::size_t> loops;       ///< Indices, ascending.
   double share_of_loops = 1.0;          ///< Of those that do not slide; where its own do, of all.
   std::vector<PlannedComparison> plan;  ///< Places of the claimed overlap.
@@ -67,6 +74,7 @@ struct Hypothesis {
   double known_before = 0.0;      ///< Evidence that does not come from comparing scans.
   std::size_t num_unlocated = 0;  ///< Places that differ as a whole, by a second look, too.
 
+  /// Whether all places of the plan were compared, those that differ a second time where they can be.
   [[nodiscard]] bool is_finished() const;
   /// Places that differ and have a second look left, once all have been seen: one fit in many fails.
   [[nodiscard]] std::vector<std::size_t> to_look_at_again() const;
@@ -82,8 +90,10 @@ struct Hypothesis {
   [[nodiscard]] std::size_t num_changes_unless_explained() const;
   /// Compared places that agree, but for what is explained; and those of them where a displacement would have
   /// shown beside that.
+  ///@{
   [[nodiscard]] std::size_t num_agreeing() const;
   [[nodiscard]] std::size_t num_distinctive() const;
+  ///@}
   /// What was found at each place; what differs elsewhere leaves the rest of a place to agree. In the order
   /// driven by the own robot; where not `distinctive_only` every place that agrees counts as distinctive.
   [[nodiscard]] std::vector<TestedPlace> places(bool distinctive_only) const;
@@ -100,9 +110,9 @@ struct Hypothesis {
 
 /// Two maps and the loops between them. With the same chain given twice: a map and its revisits.
 struct LoopsBetween {
-  const OdometryChain& own;
-  const OdometryChain& theirs;
-  std::vector<PcmLoop> loops;  ///< All that registration accepted.
+  const OdometryChain& own;     ///< Must outlive this.
+  const OdometryChain& theirs;  ///< Must outlive this. For revisits `own` itself, no copy of it.
+  std::vector<PcmLoop> loops;   ///< All that registration accepted.
   std::vector<double> known_before =
       {};                       ///< Evidence of each that does not come from comparing scans; or empty.
   std::size_t num_sliding = 0;  ///< So many of the loops, the last ones, are free to slide along a tunnel.

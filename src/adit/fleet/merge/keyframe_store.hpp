@@ -24,9 +24,12 @@ namespace adit {
 template <class T>
 class KeyframeStore {
  public:
+  /// Of one keyframe; called from several threads at once.
   using Compute = std::function<T(const RobotMap&, std::uint32_t index)>;
+  /// How much of `max_bytes` a value takes.
   using BytesOf = std::function<std::size_t(const T&)>;
 
+  /// Empty at first. What a single `prepare` asks for is kept even beyond `max_bytes`.
   KeyframeStore(std::shared_ptr<const RobotMap> map, Compute compute, BytesOf bytes_of, std::size_t max_bytes)
       : map_(std::move(map)),
         compute_(std::move(compute)),
@@ -49,10 +52,12 @@ class KeyframeStore {
     for (const std::uint32_t i : missing) num_bytes_ += bytes_of_(*entries_[i].value);
     forget_oldest();
   }
+  /// Valid until the next `prepare` or `forget_all`. Throws ContractViolation where it is not kept.
   [[nodiscard]] const T& at(std::uint32_t index) const {
     ADIT_CHECK(entries_.at(index).value.has_value(), "keyframes are prepared before they are asked for");
     return *entries_[index].value;
   }
+  /// Of all that is kept, by `bytes_of`.
   [[nodiscard]] std::size_t num_bytes() const { return num_bytes_; }
   /// What is needed later is computed again.
   void forget_all() {
@@ -90,7 +95,9 @@ class KeyframeStore {
 /// Keyframes, each with those around it, made ready for registration.
 class FeatureStore : public KeyframeStore<Features> {
  public:
+  /// Default of `max_bytes`.
   static constexpr std::size_t kMaxBytes = 256'000'000;
+  /// Features are of submap(map, k, submap_config), in the base frame of keyframe k.
   FeatureStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
                const SubmapConfig& submap_config, std::size_t max_bytes = kMaxBytes);
 };
@@ -100,14 +107,19 @@ struct SeenPlace {
   SeenSurface view;  ///< Of its scan and those beside it, as if all had been seen from where it stood.
   SeenSurface scan;  ///< Of its scan alone: what no other keyframe's scan has part in.
 
+  /// Both clouds and `viewpoint`, that of the LiDAR, in the base frame of the keyframe.
   SeenPlace(const PointCloud& of_view, const PointCloud& of_scan, const Vector3& viewpoint,
             const RegistrationConfig& config);
+  /// Of both surfaces.
   [[nodiscard]] std::size_t num_bytes() const { return view.num_bytes() + scan.num_bytes(); }
 };
 
+/// Keyframes made ready for comparing them.
 class SurfaceStore : public KeyframeStore<SeenPlace> {
  public:
+  /// Default of `max_bytes`.
   static constexpr std::size_t kMaxBytes = 128'000'000;
+  /// The view of keyframe k is submap(map, k, view_config).
   SurfaceStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
                const SubmapConfig& view_config, std::size_t max_bytes = kMaxBytes);
 };

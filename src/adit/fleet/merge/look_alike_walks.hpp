@@ -16,6 +16,7 @@ namespace adit {
 /// Scans of one place are compared this far apart, in turns: metres.
 inline constexpr std::array<double, 3> kComparedApart = {0.5, 1.0, 2.0};
 
+/// All walks of one map, taken from place to place together.
 class LookAlikeWalks {
  public:
   /// `chain`: the odometry of the map. All must outlive it.

@@ -26,8 +26,11 @@ class LookAlikes {
       : prior_chance_(model.prior_chance), prior_steps_(model.prior_steps) {}
 
   /// Look-alikes that had agreed at `passed` distinctive places agreed at the next one, or differed.
+  ///@{
   void add_agreed(std::size_t passed) { add(passed, 0); }
   void add_differed(std::size_t passed) { add(passed, 1); }
+  ///@}
+  /// By all that was added and the prior; they never fall from one phase to the next.
   [[nodiscard]] ChancesToGoOn chances() const;
 
  private:

@@ -18,21 +18,25 @@ namespace adit {
 
 /// Sigmas that all loops of the paper's policies have, as in Swarm-SLAM's back-end.
 struct FixedLoopNoise {
-  double translation = 0.1;  ///< Metres.
-  double rotation_deg = 0.6;
+  double translation = 0.1;   ///< Metres.
+  double rotation_deg = 0.6;  ///< About each axis.
 };
+/// Diagonal, [translation; rotation] in 1/m^2 and 1/rad^2.
 [[nodiscard]] Matrix6 information_of(const FixedLoopNoise& noise);
 
+/// How candidates are registered, and which of those that fit are loops.
 struct LoopRegistrationConfig {
-  RegistrationConfig registration;
+  RegistrationConfig registration;  ///< The same that the FeatureStore computes features by.
   /// Farther apart, in metres, two scans may show the same walls, but it is not one place.
   double one_place_m = std::numeric_limits<double>::infinity();
   bool upright = false;  ///< Both robots stand on floors: no loop tilts one by more than 60 degrees.
   std::optional<FixedLoopNoise> noise = {};  ///< Instead of what each registration says of itself.
 };
 
+/// Registers own keyframes with those of peers and with one another.
 class LoopRegistration {
  public:
+  /// `features` of the own map, which others may use as well.
   LoopRegistration(std::shared_ptr<FeatureStore> features, const LoopRegistrationConfig& config)
       : features_(std::move(features)), config_(config) {}
 

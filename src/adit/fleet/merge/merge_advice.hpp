@@ -39,6 +39,7 @@ struct OwnMapKnows {
   /// Whether the scans of two own keyframes differ; asked where there is a rival.
   std::function<std::vector<bool>(const std::vector<OwnComparison>& pairs)> differ;
 };
+/// By that discernment, which must outlive the answer.
 [[nodiscard]] OwnMapKnows what_own_map_knows(Discernment& discernment);
 
 /// Of all ways to go on beyond an end of what both drove, up to 100 m of own path each, the one that brings

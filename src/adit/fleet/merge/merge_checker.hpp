@@ -38,20 +38,22 @@ struct OwnMeasurements {
 
 /// Why maps are joined or not.
 enum class MergeDecision : std::uint8_t {
-  no_loops,
+  no_loops,             ///< No loop aligns the maps.
   scans_differ,         ///< At more places than a true alignment leaves.
   nothing_distinctive,  ///< All places that agree would agree if displaced along the tunnel, too.
   other_walls,          ///< The evidence would do if the relief of the walls did not speak against it.
-  too_little_evidence,
-  too_few_loops,
-  rival,       ///< Another hypothesis has nearly as much evidence.
-  unfinished,  ///< Not all places were compared.
-  accepted,
+  too_little_evidence,  ///< Less than needed, although some places are distinctive.
+  too_few_loops,        ///< Evidence enough, by fewer loops than MergeCheckConfig::min_loops.
+  rival,                ///< Another hypothesis has nearly as much evidence.
+  unfinished,           ///< Not all places were compared.
+  accepted,             ///< Every test was passed.
 };
 
 /// Asks for comparisons until it knows.
 class MergeChecker {
  public:
+  /// The chains of `between` are read here and not kept; what `own.measured` refers to must outlive the
+  /// checker.
   MergeChecker(LoopsBetween between, OwnMeasurements own, const AdaptiveConfig& config);
 
   /// The next comparisons, at most `num`, each with another keyframe of theirs; none when the check is over.

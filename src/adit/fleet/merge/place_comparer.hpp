@@ -14,6 +14,7 @@
 
 namespace adit {
 
+/// Fits what was seen at both keyframes of a place, and judges the fit by the limit of the own map.
 class PlaceComparer {
  public:
   /// `discernment`: of `map`. All must outlive it.

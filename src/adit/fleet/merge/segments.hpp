@@ -15,6 +15,7 @@
 
 namespace adit {
 
+/// Which candidates agree with one another.
 struct SegmentConfig {
   double reach_m = 60.0;
   double bin_m = 3.0;
@@ -22,6 +23,7 @@ struct SegmentConfig {
   double off_deg_per_m = 3.0;
   double turned_deg = 18.0;
 };
+/// The keys are the names of the fields.
 inline Fields fields_of(SegmentConfig& c) {
   return {{"reach_m", &c.reach_m, "m", 1.0, 10000.0,
            "candidates of one segment lie within this distance along the own path, ahead or behind"},
@@ -42,9 +44,10 @@ struct Segment {
   std::vector<LoopCandidate> candidates;
 };
 
+/// What agreeing_segments is asked for.
 struct SegmentQuery {
-  std::size_t num = 0;  ///< Segments at most.
-  SegmentConfig config = {};
+  std::size_t num = 0;        ///< Segments at most.
+  SegmentConfig config = {};  ///< Which candidates agree.
 };
 
 /// Segments of all `found`, those with the largest support first; each candidate belongs to the first one

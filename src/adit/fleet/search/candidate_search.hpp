@@ -17,6 +17,7 @@
 
 namespace adit {
 
+/// Which matches of descriptors are registered (CandidateSearch).
 struct SearchConfig {
   int candidates = 64;
   bool stand_out = true;
@@ -29,12 +30,13 @@ struct SearchConfig {
   SelfSimilarityConfig self_similarity;
   RevisitConfig revisit;
 };
+/// Keys of `self_similarity` and `revisit` begin with these names.
 Fields fields_of(SearchConfig& config);
 
 /// A peer and its descriptors.
 struct PeerPlaces {
-  RobotId peer;
-  std::vector<Places::Place> places;
+  RobotId peer;                       ///< Whose keyframes `places` are.
+  std::vector<Places::Place> places;  ///< Of a keyframe that is named twice the first one counts.
 };
 
 /// The most similar place of the peer to each of the keyframes `queries` of `map`, as seen from each lane
@@ -53,7 +55,9 @@ class CandidateSearch {
   CandidateSearch(std::shared_ptr<const RobotMap> map, OdometryChain chain, const PlaceIndexConfig& place,
                   const SearchConfig& config);
 
+  /// From which own keyframes are described, by the configuration.
   [[nodiscard]] Lanes lanes() const { return {config_.lanes, config_.lane_m}; }
+  /// Of the own map; made when it is first asked for, valid as long as this.
   [[nodiscard]] const SelfSimilarity& self_similarity();
 
   /// Of what `most_similar_places` found, those that stand out most from look-alikes in the own map, at most

@@ -17,16 +17,17 @@ namespace adit {
 
 /// Lines parallel to the one that was driven.
 struct Lanes {
-  int on_each_side = 0;
-  double apart_m = 1.0;
+  int on_each_side = 0;  ///< Beside the one that was driven.
+  double apart_m = 1.0;  ///< From each to the next.
 };
 
 /// What keyframe `k` looks like from each of them, the driven one first.
 [[nodiscard]] std::vector<ScanContext> contexts_from(const Lanes& lanes, const RobotMap& map,
                                                      std::uint32_t k);
 
-/// What `find` names for keyframe `k` from each of them; each place once, with its smallest distance.
+/// Names the place that looks most like a descriptor; none where none is near enough.
 using FindSimilar = std::function<std::optional<LoopCandidate>(const ScanContext&)>;
+/// What `find` names for keyframe `k` from each of them; each place once, with its smallest distance.
 [[nodiscard]] std::vector<LoopCandidate> most_similar_from(const Lanes& lanes, const RobotMap& map,
                                                            std::uint32_t k, const FindSimilar& find);
 

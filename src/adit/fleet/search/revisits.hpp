@@ -11,12 +11,14 @@
 
 namespace adit {
 
+/// When odometry allows that a robot came back to a place.
 struct RevisitConfig {
   double path_m = 40.0;
   double near_m = 5.0;
   double sigmas = 3.0;
   double probability = 0.99;
 };
+/// The keys are the names of the fields.
 inline Fields fields_of(RevisitConfig& c) {
   return {
       {"path_m", &c.path_m, "m", 1.0, 10000.0,

@@ -16,12 +16,14 @@
 
 namespace adit {
 
+/// Which places of one map are different ones, and how those that look alike are searched.
 struct SelfSimilarityConfig {
   double other_place_m = 15.0;
   double sigmas = 3.0;
   int matches = 32;
   int stride = 3;
 };
+/// The keys are the names of the fields.
 inline Fields fields_of(SelfSimilarityConfig& c) {
   return {{"other_place_m", &c.other_place_m, "m", 1.0, 1000.0,
            "two places of one map this far apart share little of what is seen"},
@@ -31,6 +33,7 @@ inline Fields fields_of(SelfSimilarityConfig& c) {
           {"stride", &c.stride, "", 1, 1000, "look-alikes are looked for at every so many keyframes"}};
 }
 
+/// Searches the descriptors of a map in that map, leaving out what odometry does not keep apart.
 class SelfSimilarity {
  public:
   /// `place` as in the search for peers; `chain`: the odometry of `map`.
@@ -39,10 +42,12 @@ class SelfSimilarity {
 
   /// The most similar other place of keyframe `k`, by its own descriptor or by `context` (as from another
   /// lane).
+  ///@{
   [[nodiscard]] std::optional<LoopCandidate> most_similar(std::uint32_t k) const {
     return most_similar(k, map_->places[k]);
   }
   [[nodiscard]] std::optional<LoopCandidate> most_similar(std::uint32_t k, const ScanContext& context) const;
+  ///@}
   /// Of each keyframe the descriptor distance to its most similar other place; 1 where there is none.
   [[nodiscard]] std::vector<double> distances() const;
   /// Places all along the path and others that look like them from one of the lanes; each pair once.

@@ -16,20 +16,22 @@ namespace adit {
 
 /// The odometry graph of one robot, as its owner and others know it.
 struct RobotGraph {
-  std::string name;
+  std::string name;              ///< As its owner calls itself.
   std::vector<GraphNode> nodes;  ///< Index = keyframe index.
 };
 
+/// In ascending order; twice the same robot stands for revisits of its own map.
 using RobotPair = std::pair<RobotId, RobotId>;
+/// The ends of a loop, from < to.
 using KeyframePair = std::pair<KeyframeId, KeyframeId>;
 
 /// All that one agent knows: its own graph, and the graphs, loops and merge checks that messages brought.
 /// Ordered containers throughout, so that two agents that know the same compute the same, to the last bit.
 struct FleetGraph {
-  MergePolicy policy = MergePolicy::adaptive;
-  std::map<RobotId, RobotGraph> robots;
-  std::map<KeyframePair, LoopClosure> loops;  ///< Registered candidates, accepted or not; from < to.
-  std::map<RobotPair, MergeCheck> checks;     ///< The latest of each pair; {a, a}: revisits of robot a.
+  MergePolicy policy = MergePolicy::adaptive;  ///< That of the agent which knows this.
+  std::map<RobotId, RobotGraph> robots;        ///< Its own and all that it heard of, even without keyframes.
+  std::map<KeyframePair, LoopClosure> loops;   ///< Registered candidates, accepted or not; from < to.
+  std::map<RobotPair, MergeCheck> checks;      ///< The latest of each pair; {a, a}: revisits of robot a.
 
   /// Messages about a keyframe may come before the graph that it belongs to.
   [[nodiscard]] bool knows(KeyframeId id) const {

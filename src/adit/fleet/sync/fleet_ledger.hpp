@@ -12,26 +12,34 @@
 
 namespace adit {
 
+/// What one agent knows, and of each author how much.
 class FleetLedger {
  public:
+  /// `own` is the graph of robot `self`, which no message changes.
   FleetLedger(RobotId self, RobotGraph own, MergePolicy policy);
 
+  /// All of it, whoever found it.
   [[nodiscard]] const FleetGraph& known() const { return known_; }
+  /// Keyframes known of a robot; 0 where it is unknown.
   [[nodiscard]] std::size_t num_nodes_of(RobotId robot) const;
   /// Loops that this robot registered, accepted or not.
   [[nodiscard]] std::size_t num_own_loops() const;
+  /// Merge checks that this robot decided, those that later ones replaced among them.
   [[nodiscard]] std::size_t num_own_checks() const;
 
   /// What this robot registered or decided itself. A loop that is known already is left as it is.
   void add_own(const LoopClosure& loop);
+  /// Replaces an earlier verdict on the same robots.
   void add_own(MergeCheck check);
 
   /// What a message brought. Nothing changes, and false is returned, where a part before it was lost (the
   /// next Hello asks for it) and where it makes no sense: news about this robot itself, covariances that are
   /// not positive definite, loops or checks that are not their author's.
+  ///@{
   bool take(const GraphPart& part);
   bool take(const Loops& part);
   bool take(const MergeChecks& part);
+  ///@}
   /// What `findings` named when this robot was saved, its own among it: before it adds or takes anything.
   /// False as above.
   bool restore(const MessageBody& finding);
@@ -43,8 +51,10 @@ class FleetLedger {
   /// What `peer`, who said `theirs`, does not know yet.
   [[nodiscard]] std::vector<MessageBody> news_for(RobotId peer, const Hello& theirs) const;
   /// What `author` registered or decided, from number `first` on.
+  ///@{
   [[nodiscard]] std::vector<MessageBody> loops_since(RobotId author, std::size_t first) const;
   [[nodiscard]] std::vector<MessageBody> checks_since(RobotId author, std::size_t first) const;
+  ///@}
   /// All that any robot registered or decided.
   [[nodiscard]] std::vector<MessageBody> findings() const;
 

@@ -22,8 +22,8 @@ namespace adit {
 /// What the clouds that a robot sends are made of.
 struct SentClouds {
   double voxel_m = 0.3;  ///< One point each.
-  SubmapConfig submap;
-  SubmapConfig view;
+  SubmapConfig submap;   ///< Of clouds of CloudKind::submap.
+  SubmapConfig view;     ///< Of CloudKind::view: the scans beside the keyframe's own.
 };
 /// The clouds that a peer asks for; keyframes that do not exist are left out.
 [[nodiscard]] Clouds clouds_of(const RobotMap& map, const CloudRequest& request, const SentClouds& config);

@@ -25,8 +25,10 @@ enum class PeerState : std::uint8_t {
   decided,           ///< Searched, and checked where loops were found: nothing is awaited.
 };
 
+/// The conversation with one peer, over all meetings.
 class PeerSession {
  public:
+  /// Computed anew from what is awaited and what has come.
   [[nodiscard]] PeerState state() const;
 
   /// The peer says how many keyframes it has. What waits for others is given up: it would wait for ever.
@@ -41,6 +43,7 @@ class PeerSession {
   bool take(const Places& part);
   /// Forgets descriptors that no search has used; a later meeting sends them again.
   void forget_places();
+  /// Whether the last descriptor of the peer has come and the search has not taken them yet.
   [[nodiscard]] bool has_all_places() const { return has_all_places_; }
   /// Whether all places lie on the first `num_nodes` nodes of the peer's graph.
   [[nodiscard]] bool lie_within(std::size_t num_nodes) const;
@@ -49,6 +52,7 @@ class PeerSession {
 
   /// Candidates to register.
   void await_clouds_of(const std::vector<LoopCandidate>& candidates);
+  /// Candidates that wait for clouds.
   [[nodiscard]] std::size_t num_waiting() const;
   /// The peer's keyframes whose clouds the merge check needs, in its order; none ends the comparison.
   void await_comparison_of(std::vector<std::uint32_t> keyframes) { to_compare_ = std::move(keyframes); }
@@ -57,8 +61,8 @@ class PeerSession {
   [[nodiscard]] std::optional<CloudRequest> request() const;
   /// Candidates that the peer's keyframe `cloud` lets one register.
   struct Arrived {
-    LoopCandidate candidate;
-    std::size_t cloud = 0;  ///< Index into Clouds::clouds.
+    LoopCandidate candidate;  ///< Its match is that keyframe.
+    std::size_t cloud = 0;    ///< Index into Clouds::clouds.
   };
   /// Candidates whose clouds have come, which then wait no longer.
   [[nodiscard]] std::vector<Arrived> take_arrived(const Clouds& clouds);

@@ -18,133 +18,147 @@
 
 namespace adit {
 
+/// In every encoded message: messages of another version are refused.
 inline constexpr std::uint8_t kProtocolVersion = 10;
+/// The most that one message holds; longer lists are sent in parts.
+///@{
 inline constexpr std::size_t kPlacesPerMessage = 64;
 inline constexpr std::size_t kCloudsPerMessage = 16;
 inline constexpr std::size_t kNodesPerMessage = 512;
 inline constexpr std::size_t kLoopsPerMessage = 256;
 inline constexpr std::size_t kChecksPerMessage = 16;
+///@}
+/// The most that a MergeCheck states, the best ones.
 inline constexpr std::size_t kHypothesesPerCheck = 16;
 
 /// A keyframe as the graph needs it.
 struct GraphNode {
-  Stamp stamp;
-  Pose T_odom_base;
+  Stamp stamp;       ///< Of its scan, by the clock of the owner.
+  Pose T_odom_base;  ///< In the odometry frame of the owner.
   Matrix6 step_covariance =
       Matrix6::Zero();  ///< Of the pose relative to the keyframe before; zero for the first.
 };
 
 /// Opens a meeting: what the sender knows already, so that only the rest is sent.
 struct Hello {
+  /// How much the sender knows of one robot; parts are received in order, so that numbers say it all.
   struct Known {
-    RobotId robot;
-    std::uint32_t num_nodes = 0;
-    std::uint32_t num_places = 0;
+    RobotId robot;                 ///< Also the sender itself.
+    std::uint32_t num_nodes = 0;   ///< Keyframes of its graph.
+    std::uint32_t num_places = 0;  ///< Descriptors received from it.
     std::uint32_t num_loops = 0;   ///< Of those that this robot registered.
     std::uint32_t num_checks = 0;  ///< Of those that this robot decided.
   };
-  std::vector<Known> known;
-  bool answer = false;  ///< This is the reply to a Hello.
+  std::vector<Known> known;  ///< At most one per robot.
+  bool answer = false;       ///< This is the reply to a Hello.
 };
 
 /// Nodes first_index, first_index + 1, ... of the graph of `owner`, who need not be the sender.
 struct GraphPart {
-  RobotId owner;
-  std::string name;
-  std::uint32_t first_index = 0;
-  std::vector<GraphNode> nodes;
+  RobotId owner;                  ///< Whose keyframes they are.
+  std::string name;               ///< Of the owner.
+  std::uint32_t first_index = 0;  ///< Keyframe index of nodes.front().
+  std::vector<GraphNode> nodes;   ///< At most kNodesPerMessage; none says that the owner exists.
 };
 
 /// Descriptors of the sender's own searchable keyframes, in their order; `first` counts those sent before.
 struct Places {
+  /// A keyframe to be recognised.
   struct Place {
-    std::uint32_t index = 0;
-    ScanContext context;
+    std::uint32_t index = 0;  ///< Of the keyframe.
+    ScanContext context;      ///< Compared only where the receiver describes places on the same grid.
   };
-  std::uint32_t first = 0;
-  std::vector<Place> places;
-  bool last = false;  ///< Nothing follows.
+  std::uint32_t first = 0;    ///< Number of places.front() among the searchable keyframes.
+  std::vector<Place> places;  ///< At most kPlacesPerMessage.
+  bool last = false;          ///< Nothing follows.
 };
 
 /// Views are compared: a scan and those beside it, seen from where it stood. Submaps (robot/submap.hpp) are
 /// registered.
 enum class CloudKind : std::uint8_t { view, submap };
 
+/// Asks for clouds of the receiver's own keyframes.
 struct CloudRequest {
-  std::vector<std::uint32_t> indices;
-  CloudKind kind = CloudKind::view;
+  std::vector<std::uint32_t> indices;  ///< Of keyframes, at most kCloudsPerMessage.
+  CloudKind kind = CloudKind::view;    ///< Of all clouds that are asked for.
 };
 
 /// The sender's own keyframe clouds, each in its keyframe's base frame.
 struct Clouds {
+  /// What was seen at one keyframe, metres.
   struct Cloud {
-    std::uint32_t index = 0;
+    std::uint32_t index = 0;                              ///< Of the keyframe.
     Eigen::Vector3f viewpoint = Eigen::Vector3f::Zero();  ///< The LiDAR, in the frame of the points.
     std::vector<Eigen::Vector3f> points;                  ///< Of the keyframe's scan, or of the submap.
     std::vector<Eigen::Vector3f> beside = {};  ///< Of a view: what the scans beside it saw and it did not.
   };
-  std::vector<Cloud> clouds;
-  CloudKind kind = CloudKind::view;
+  std::vector<Cloud> clouds;         ///< In the order of the request, without keyframes that do not exist.
+  CloudKind kind = CloudKind::view;  ///< As requested.
 };
 
 /// Loops number first, first + 1, ... of those that `author`, who need not be the sender, registered:
 /// accepted and rejected ones alike, so that all know what was tried. They start at keyframes of the author;
 /// those within its own map at the earlier one.
 struct Loops {
-  RobotId author;
-  std::uint32_t first = 0;
-  std::vector<LoopClosure> loops;
+  RobotId author;                  ///< Numbered them in the order of registration.
+  std::uint32_t first = 0;         ///< Number of loops.front().
+  std::vector<LoopClosure> loops;  ///< At most kLoopsPerMessage.
 };
 
+/// What became of one alignment of two maps.
 enum class HypothesisOutcome : std::uint8_t {
-  accepted,
-  refuted,  ///< Scans differ at more places than a true alignment leaves.
-  unsure,   ///< The best one, with less evidence than needed.
-  rival,    ///< Its evidence and that of another one differ by less than what is needed.
-  behind,   ///< Its evidence is less than that of the best one by at least what is needed.
+  accepted,  ///< It joins the maps.
+  refuted,   ///< Scans differ at more places than a true alignment leaves.
+  unsure,    ///< The best one, with less evidence than needed.
+  rival,     ///< Its evidence and that of another one differ by less than what is needed.
+  behind,    ///< Its evidence is less than that of the best one by at least what is needed.
 };
+/// accepted, refuted, unsure, rival, behind.
 [[nodiscard]] std::string_view to_string(HypothesisOutcome outcome);
 
 /// What comparing two scans that a hypothesis puts side by side has shown.
 enum class PlaceOutcome : std::uint8_t {
-  differs,
+  differs,      ///< The scans cannot be of one place.
   agrees,       ///< It would agree if displaced along the tunnel, too: no evidence.
   distinctive,  ///< Agrees, and a displacement along the tunnel would have shown.
 };
 
 /// A place of the claimed overlap: the keyframes that were compared there.
 struct TestedPlace {
-  std::uint32_t a = 0;
-  std::uint32_t b = 0;
-  PlaceOutcome outcome = PlaceOutcome::differs;
+  std::uint32_t a = 0;                           ///< Index of the keyframe of robot a of the MergeCheck.
+  std::uint32_t b = 0;                           ///< And of robot b.
+  PlaceOutcome outcome = PlaceOutcome::differs;  ///< After a second look, where one was taken.
 };
 
 /// What was counted while the places of a hypothesis were compared; its evidence comes from this.
 struct HypothesisCounts {
-  std::uint32_t num_distinctive = 0;  ///< Places that agree and where a displacement would have shown.
-  std::uint32_t num_changes = 0;      ///< Of structure, each once.
-  std::uint32_t num_things = 0;       ///< That stand on the floor and only one robot met, each once.
-  std::uint32_t num_wall_patches = 0;
-  double compared_m = 0.0;  ///< Length of tunnel that the compared scans show.
+  std::uint32_t num_distinctive = 0;   ///< Places that agree and where a displacement would have shown.
+  std::uint32_t num_changes = 0;       ///< Of structure, each once.
+  std::uint32_t num_things = 0;        ///< That stand on the floor and only one robot met, each once.
+  std::uint32_t num_wall_patches = 0;  ///< That two pairs of scans or more saw.
+  double compared_m = 0.0;             ///< Length of tunnel that the compared scans show.
   /// Of the relief of walls: the share of equal signs and its standard deviation, 0.5 without patches.
+  ///@{
   double equal_signs = 0.5;
   double equal_signs_sigma = 0.5;
+  ///@}
   bool operator==(const HypothesisCounts&) const = default;
 };
 
 /// One alignment of two maps, put forward by loops that agree with one another, and what testing it has
 /// shown.
 struct MergeHypothesis {
-  HypothesisOutcome outcome = HypothesisOutcome::refuted;
-  double evidence = 0.0;  ///< As in MergeCheck; 0 where it is refuted.
-  std::uint32_t num_checked = 0;
-  std::uint32_t num_passed = 0;
-  double from_best_m = 0.0;  ///< Metres between where it and the best one put the other robot.
+  HypothesisOutcome outcome = HypothesisOutcome::refuted;  ///< Beside the others of its check.
+  double evidence = 0.0;                                   ///< As in MergeCheck; 0 where it is refuted.
+  std::uint32_t num_checked = 0;                           ///< Places that were compared.
+  std::uint32_t num_passed = 0;  ///< Of these, places that agree or whose difference is explained.
+  double from_best_m = 0.0;      ///< Metres between where it and the best one put the other robot.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> loops;  ///< Keyframes of a and b.
   std::vector<TestedPlace> places{};  ///< In the order driven by a; left out where it is refuted.
   double walls = 0.0;                 ///< The part of the evidence that comes from the relief of walls.
-  HypothesisCounts counts{};
+  HypothesisCounts counts{};          ///< Stated where it is refuted, too.
 
+  /// Places that differ, without those that are explained.
   [[nodiscard]] std::uint32_t num_differing() const { return num_checked - num_passed; }
 };
 
@@ -162,12 +176,15 @@ struct MergeAdvice {
 /// decides; where `b` is the same robot it is about places of its own map that it came back to. A later
 /// verdict replaces those before it. Evidence, numbers and loops are those of the best hypothesis.
 struct MergeCheck {
+  /// The smaller id first.
+  ///@{
   RobotId a, b;
+  ///@}
   double evidence = 0.0;  ///< log P(what was observed | same stretch) / P(... | stretches only look alike).
   double needed = 0.0;    ///< Evidence that joins maps: log(1 / error rate).
-  std::uint32_t num_checked = 0;
-  std::uint32_t num_passed = 0;
-  bool accepted = false;
+  std::uint32_t num_checked = 0;  ///< As in MergeHypothesis.
+  std::uint32_t num_passed = 0;   ///< As in MergeHypothesis.
+  bool accepted = false;          ///< The loops join the maps, unless third robots contradict them.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> loops;  ///< Keyframes of a and b.
   std::string reason;                               ///< One sentence: why, and what would lead to a merge.
   std::vector<MergeHypothesis> hypotheses{};        ///< At most kHypothesesPerCheck, the best one first.
@@ -177,17 +194,19 @@ struct MergeCheck {
 
 /// Number first, first + 1, ... of those that `author`, who need not be the sender, decided.
 struct MergeChecks {
-  RobotId author;
-  std::uint32_t first = 0;
-  std::vector<MergeCheck> checks;
+  RobotId author;                  ///< Numbered them in the order of decision.
+  std::uint32_t first = 0;         ///< Number of checks.front().
+  std::vector<MergeCheck> checks;  ///< At most kChecksPerMessage.
 };
 
+/// What a message says. The order of the kinds is part of the protocol.
 using MessageBody = std::variant<Hello, GraphPart, Places, CloudRequest, Clouds, Loops, MergeChecks>;
 
+/// From one robot to one other.
 struct Message {
-  RobotId from;
-  RobotId to;
-  MessageBody body;
+  RobotId from;      ///< Who sends it; what it says may be of others.
+  RobotId to;        ///< The agent that takes it (Agent::on).
+  MessageBody body;  ///< One statement, request or part of a list.
 };
 
 }  // namespace adit
