@@ -20,8 +20,10 @@ class Calibration {
   /// A normalised error squared, six where the covariance is true, of an error that is not known axis by
   /// axis.
   void add_normalised(double squared) { normalised_.push_back(squared); }
+  /// Takes over all errors of the other, unusable ones too.
   void add(const Calibration& other);
 
+  /// Errors that count; those of `num_unusable` do not.
   [[nodiscard]] std::size_t count() const { return normalised_.size(); }
   /// Whether any error was added axis by axis.
   [[nodiscard]] bool has_axes() const { return num_errors_ > 0; }
@@ -46,7 +48,7 @@ class Calibration {
 
 /// What an odometry states of its keyframes; vectors of one length.
 struct StatedPath {
-  std::vector<Pose> T_odom_keyframe;
+  std::vector<Pose> T_odom_keyframe;      ///< In the order driven.
   std::vector<Matrix6> step_covariances;  ///< Of the drift from keyframe k - 1 to k, right perturbation.
   std::vector<Matrix6> pose_noise;        ///< Of each pose alone, right perturbation.
 };

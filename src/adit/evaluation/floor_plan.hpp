@@ -16,11 +16,13 @@ namespace adit {
 struct FloorPlan {
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< South-western corner of cell (0, 0), metres.
   double cell_m = 0.0;                               ///< Edge of a cell.
-  int width = 0;
-  int height = 0;
-  std::vector<float> density;  ///< Share of ink in a cell, 0 to 1.
+  int width = 0;                                     ///< Columns, from west to east.
+  int height = 0;                                    ///< Rows, from south to north.
+  std::vector<float> density;                        ///< Share of ink in a cell, 0 to 1.
 
+  /// Whether there is no cell, as of an empty mesh or cloud.
   [[nodiscard]] bool empty() const { return density.empty(); }
+  /// Density of a cell, which must exist.
   [[nodiscard]] float at(int column, int row) const {
     return density[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
                    static_cast<std::size_t>(column)];

@@ -8,11 +8,15 @@
 
 namespace adit::paper {
 
+/// A robot of table 1.
 struct RobotRow {
-  std::string_view robot;
+  std::string_view robot;  ///< Its number.
+  /// As printed.
+  ///@{
   double path_length_m;
   double duration_s;
   double speed_mps;
+  ///@}
 };
 /// Table 1.
 inline constexpr std::array<RobotRow, 4> kRobots = {{{"0", 453.31, 238.65, 1.89},
@@ -22,18 +26,28 @@ inline constexpr std::array<RobotRow, 4> kRobots = {{{"0", 453.31, 238.65, 1.89}
 
 /// Per cent of loops of a wrong place, and of a right place but a wrong registration.
 struct OutlierShares {
-  double wrong_place;
-  double wrong_registration;
+  double wrong_place;         ///< PR.
+  double wrong_registration;  ///< PCR.
 };
 
+/// Two robots in tables 2 to 5: with all keyframes, and with tunnel-filtered ones.
 struct PairRow {
-  std::string_view pair;
-  OutlierShares all_before, filtered_before;  ///< Table 2, before PCM.
-  OutlierShares all_after, filtered_after;    ///< Table 3, after PCM.
-  bool all_succeeds_without_pcm, filtered_succeeds_without_pcm, all_succeeds,
-      filtered_succeeds;            ///< Table 4.
+  std::string_view pair;  ///< As in the tables, "(0, 1)".
+  /// Table 2, before PCM.
+  ///@{
+  OutlierShares all_before, filtered_before;
+  ///@}
+  /// Table 3, after PCM.
+  ///@{
+  OutlierShares all_after, filtered_after;
+  ///@}
+  /// Table 4.
+  ///@{
+  bool all_succeeds_without_pcm, filtered_succeeds_without_pcm, all_succeeds, filtered_succeeds;
+  ///@}
   std::array<double, 2> max_ate_m;  ///< Table 5: tunnel-filtered keyframes, with PCM.
 };
+/// Tables 2 to 5, a row for each two of the four robots.
 inline constexpr std::array<PairRow, 6> kPairs = {{
     {"(0, 1)",
      {46.08, 37.30},

@@ -18,6 +18,7 @@ class DeviationStatistics {
   /// Starts as if `initial` had been seen once.
   explicit DeviationStatistics(double initial) : sum_of_squares_(initial * initial), count_(1) {}
 
+  /// Metres, as of `point_deviation`.
   void add(double deviation);
   /// 0 while nothing was seen.
   [[nodiscard]] double sigma() const;
@@ -34,8 +35,11 @@ class DeviationStatistics {
 /// widening back.
 class AdaptiveThreshold {
  public:
+  /// All in metres. The initial threshold counts as one deviation seen; `max_range` is that of
+  /// `point_deviation`.
   AdaptiveThreshold(double initial_threshold, double min_motion, double max_range);
 
+  /// Of the next scan, metres: the deviations' own, or wider after scans that failed.
   [[nodiscard]] double sigma() const;
   void add(const Pose& correction);  ///< predicted^-1 * estimated of a scan that was registered.
   void failed();                     ///< A scan that was not.

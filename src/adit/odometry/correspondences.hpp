@@ -25,20 +25,31 @@ class Correspondences {
   /// right perturbation of T has the Jacobian [I, -hat(p)] whatever T is, and no lever arm to the map's
   /// origin spoils the conditioning. Places behind the last point hold zeros.
   struct Block {
+    /// The points, metres.
+    ///@{
     std::array<double, kBlock> px, py, pz;
+    ///@}
+    /// The residuals, metres.
+    ///@{
     std::array<double, kBlock> rx, ry, rz;
+    ///@}
     std::array<double, kBlock> found;  ///< 1; 0 where there is no neighbour, and then r is 0.
   };
 
   /// `source` in the base frame; the map must stay as it is while this is used.
   Correspondences(std::span<const Eigen::Vector3f> source, const LocalMap& map, double max_distance);
 
+  /// Of the whole source; the last one may be filled in part.
   [[nodiscard]] std::size_t num_blocks() const { return blocks_.size(); }
   /// Block `index` of the source at this pose. Several blocks may be asked for at the same time.
   void residuals(std::size_t index, const Pose& T_map_base, Block& block);
 
+  /// Coordinates of a block's points.
   struct Points {
+    /// Metres.
+    ///@{
     std::array<float, kBlock> x, y, z;
+    ///@}
   };
   /// What is kept of a block. Lanes behind the last point never need a search.
   struct Followed {
@@ -47,7 +58,10 @@ class Correspondences {
     Points neighbour;  ///< The nearest candidate to that.
     Points searched;   ///< Where the last search for each was made,
     std::array<Points, LocalMap::Candidates::kNumber> candidates;  ///< its answer,
-    std::array<float, kBlock> clearance2, room2;                   ///< and the squares of its bounds.
+    /// and the squares of its bounds.
+    ///@{
+    std::array<float, kBlock> clearance2, room2;
+    ///@}
   };
 
  private:

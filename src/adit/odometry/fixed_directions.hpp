@@ -12,16 +12,21 @@ namespace adit {
 /// displace 10 m away.
 class FixedDirections {
  public:
+  /// A matrix of y; it never takes memory from the heap.
   using Block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 
+  /// Those that `information` of x fixes; none where it is zero.
   explicit FixedDirections(const Matrix6& information);
 
+  /// Of directions, 0 to 6: the length of y.
   [[nodiscard]] int number() const { return static_cast<int>(basis_.cols()); }
   /// What a matrix of x is in y (number() rows and columns), and back: zero along open directions.
+  ///@{
   [[nodiscard]] Block of_information(const Matrix6& information) const;
   [[nodiscard]] Block of_covariance(const Matrix6& covariance) const;
   [[nodiscard]] Matrix6 information(const Block& of_fixed) const;
   [[nodiscard]] Matrix6 covariance(const Block& of_fixed) const;
+  ///@}
   /// The inverse of an information within these directions.
   [[nodiscard]] Matrix6 inverse_of(const Matrix6& information) const;
 

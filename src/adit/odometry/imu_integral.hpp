@@ -23,6 +23,7 @@ struct ImuNoise {
   double gyroscope_start = 0.02;      ///< Bias when switched on, rad/s.
   double accelerometer_start = 0.15;  ///< The same, m/s2.
 };
+/// The keys are the names of the fields.
 [[nodiscard]] Fields fields_of(ImuNoise& noise);
 
 /// What the integral starts from; body frame at the begin unless it says otherwise.
@@ -37,10 +38,12 @@ struct ImuStart {
 /// Poses of a body over time, in its frame at the first of them.
 class BodyPath {
  public:
+  /// Stamps ascend; the first pose is the identity.
   void add(Stamp stamp, const Pose& T_begin_body) { poses_.push_back({stamp, T_begin_body}); }
   /// In the frame of the first pose; outside the span as if the body moved on with its first or last twist.
   /// Needs two poses.
   [[nodiscard]] Pose at(Stamp stamp) const;
+  /// T_begin_body, as they were added.
   [[nodiscard]] const Trajectory& poses() const { return poses_; }
 
  private:
@@ -54,10 +57,12 @@ class BodyPath {
 /// Real-Time Visual-Inertial Odometry", T-RO 2017, section V, with the middle of two samples between them and
 /// with the IMU away from the body's origin.
 struct ImuIntegral {
-  BodyPath path;  ///< A pose at each sample, the first at the begin, the last at the end.
-  Pose T_begin_end;
+  BodyPath path;                    ///< A pose at each sample, the first at the begin, the last at the end.
+  Pose T_begin_end;                 ///< Of the body, over the whole interval.
   Vector6 twist = Vector6::Zero();  ///< At the end, in its frame: velocity, turn rate.
+  /// Errors of the answer by those of the start.
   Eigen::Matrix<double, 12, 15> jacobian = Eigen::Matrix<double, 12, 15>::Zero();
+  /// Covariance of the answer by the noise of the samples alone.
   Eigen::Matrix<double, 12, 12> noise = Eigen::Matrix<double, 12, 12>::Zero();
 };
 /// `motion.imu` as SensedMotion documents it, not empty; `begin` before `end`.
@@ -66,8 +71,8 @@ struct ImuIntegral {
 
 /// Means over samples, in the IMU's frame.
 struct ImuMean {
-  Vector3 angular_velocity = Vector3::Zero();
-  Vector3 specific_force = Vector3::Zero();
+  Vector3 angular_velocity = Vector3::Zero();  ///< Radians per second, with the bias.
+  Vector3 specific_force = Vector3::Zero();    ///< m/s2, with the bias: at rest it is against gravity.
   bool is_still = false;  ///< Neither turned nor shook: a robot that stands, or a very smooth ride.
 };
 /// `samples` not empty.

@@ -16,12 +16,15 @@ namespace adit {
 /// Norm of the wheels' motion [m; rad] since the last registered scan up to which the robot counts as at
 /// rest; the value of Kinematic-ICP.
 inline constexpr double kStationaryMotion = 1e-3;
+/// The field stationary_motion, for each configuration that has it.
 [[nodiscard]] Field stationary_motion_field(double* stationary_motion);
 
+/// What `KinematicIcp` needs; scan_to_map has defaults of its own here.
 struct KinematicIcpConfig {
   ScanToMapConfig scan_to_map{.max_iterations = 10, .convergence = 1e-3, .max_correction = 1.0};
   double stationary_motion = kStationaryMotion;
 };
+/// Those of scan_to_map, without a prefix, and stationary_motion.
 [[nodiscard]] Fields fields_of(KinematicIcpConfig& config);
 
 /// Wheel odometry corrected by LiDAR in the two motions that a non-holonomic vehicle has: T. Guadagnino, B.
@@ -36,11 +39,13 @@ struct KinematicIcpConfig {
 /// map.
 class KinematicIcp : public Odometry {
  public:
+  /// With an empty map; T_odom_base starts at identity. Ranges of the settings are not checked.
   KinematicIcp(const KinematicIcpConfig& config, const Pose& T_base_lidar);
 
   /// Needs the wheels; their duration must be positive where the scan has per-point times.
   OdometryStep register_scan(const Scan& scan, const SensedMotion& motion) override;
   [[nodiscard]] const PointCloud& cloud_of_last_scan() const override { return cloud_; }
+  /// In the frame odom; empty before the first scan.
   [[nodiscard]] const LocalMap& map() const { return map_; }
 
  private:

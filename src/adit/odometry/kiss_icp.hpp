@@ -18,16 +18,19 @@ namespace adit {
 
 /// Whether scans are taken to come at an unsteady pace.
 enum class IrregularSteps { automatic, on, off };
+/// All choices.
 inline constexpr std::array kIrregularSteps{IrregularSteps::automatic, IrregularSteps::on,
                                             IrregularSteps::off};
-[[nodiscard]] std::string_view to_string(IrregularSteps steps);
+[[nodiscard]] std::string_view to_string(IrregularSteps steps);  ///< auto, on, off
 
+/// What `KissIcp` needs; initial_threshold and min_motion are by default as in KISS-ICP 1.2.
 struct KissIcpConfig {
   ScanToMapConfig scan_to_map;
   double initial_threshold = 2.0;
   double min_motion = 0.1;
   IrregularSteps irregular_steps = IrregularSteps::automatic;
 };
+/// Those of scan_to_map, without a prefix, and initial_threshold, min_motion, irregular_steps.
 [[nodiscard]] Fields fields_of(KissIcpConfig& config);
 
 /// LiDAR-only odometry: I. Vizzo, T. Guadagnino, B. Mersch, L. Wiesmann, J. Behley, C. Stachniss, "KISS-ICP:
@@ -46,11 +49,14 @@ struct KissIcpConfig {
 /// out of the map.
 class KissIcp : public Odometry {
  public:
+  /// With an empty map. Ranges of the settings are not checked.
   KissIcp(const KissIcpConfig& config, const Pose& T_base_lidar);
 
   OdometryStep register_scan(const Scan& scan, const SensedMotion& motion) override;
   [[nodiscard]] const PointCloud& cloud_of_last_scan() const override { return cloud_; }
+  /// In the frame odom; empty before the first scan.
   [[nodiscard]] const LocalMap& map() const { return map_; }
+  /// Of the adaptive threshold, for the next scan; metres.
   [[nodiscard]] double sigma() const { return threshold_.sigma(); }
 
  private:

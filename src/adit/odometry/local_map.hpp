@@ -18,36 +18,43 @@ namespace adit {
 /// frame.
 class LocalMap {
  public:
+  /// The answer of `nearest`.
   struct Neighbour {
-    Eigen::Vector3f point;
-    float squared_distance = 0.0F;
+    Eigen::Vector3f point;          ///< Map frame.
+    float squared_distance = 0.0F;  ///< From the query, square metres.
   };
 
   /// Points near a query, and how long they suffice to know the nearest: for a query that has moved by m <
   /// room, the nearest is among them or farther than clearance - m.
   struct Candidates {
-    static constexpr std::size_t kNumber = 8;
-    static constexpr float kNowhere = 1e9F;  ///< Coordinates of points that stand for none.
-    std::array<Eigen::Vector3f, kNumber> points;
+    static constexpr std::size_t kNumber = 8;     ///< Points that a search keeps.
+    static constexpr float kNowhere = 1e9F;       ///< Coordinates of points that stand for none.
+    std::array<Eigen::Vector3f, kNumber> points;  ///< In no order; those that are missing lie at kNowhere.
     float clearance = 0.0F;  ///< Metres: all other points that the search is about are at least so far.
     float room = 0.0F;       ///< Metres: so far the query may move until the search is about other points.
   };
 
   /// The points around a centre: their number, and the sums of their offsets d from it and of d d^T.
   struct Moments {
-    int count = 0;
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+    int count = 0;                                      ///< Points.
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();      ///< Of d, metres.
+    Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();  ///< Of d d^T, square metres.
   };
 
   /// `voxel_size` and `max_points_per_voxel` positive.
   LocalMap(double voxel_size, int max_points_per_voxel);
 
+  /// Edge of a voxel, metres.
   [[nodiscard]] double voxel_size() const { return static_cast<double>(grid_.voxel_size()); }
+  /// Whether no voxel holds a point.
   [[nodiscard]] bool empty() const { return num_voxels() == 0; }
+  /// Voxels that hold a point.
   [[nodiscard]] std::size_t num_voxels() const { return first_.size() - free_.size(); }
+  /// All points, voxel by voxel; both take time in proportion to the map.
+  ///@{
   [[nodiscard]] std::size_t num_points() const;
   [[nodiscard]] std::vector<Eigen::Vector3f> points() const;
+  ///@}
 
   /// Adds those points that their voxels still have room for. Points that are not finite are left
   /// out.

@@ -18,6 +18,7 @@ struct MotionNoise {
   double speed = 2.0;      ///< Metres per second.
   double turn_rate = 2.0;  ///< Radians per second.
 };
+/// The keys are the names of the fields.
 [[nodiscard]] Fields fields_of(MotionNoise& noise);
 
 /// Standard deviations of the wheels' motion between two scans, per metre driven. Wheels that measure in a
@@ -35,6 +36,7 @@ struct WheelNoise {
   double slip_that_lasts = 0.1;  ///< Forward again, fading within `slip_time`: metres per metre.
   double slip_time = 1.0;        ///< Seconds.
 };
+/// The keys are the names of the fields.
 [[nodiscard]] Fields fields_of(WheelNoise& noise);
 
 /// Covariance of the error of the wheels' motion T_base0_base1 in an interval, without those of their scale
@@ -43,7 +45,7 @@ struct WheelNoise {
 
 /// What is known of a motion before the LiDAR has measured it.
 struct MotionPrior {
-  Pose T_ref_now;
+  Pose T_ref_now;                        ///< From the last scan whose pose was measured.
   Matrix6 covariance = Matrix6::Zero();  ///< Right perturbation, [translation; rotation].
 };
 
@@ -57,6 +59,7 @@ struct MotionPrior {
 /// could not be measured the uncertainty grows.
 class MotionFilter {
  public:
+  /// At the first scan, with a twist of which little is known.
   MotionFilter(const MotionNoise& motion, const WheelNoise& wheels, const ImuNoise& imu);
 
   /// The next interval begins and ends; `begin` before `end`. Before the first one, nothing can be learned:
@@ -94,6 +97,7 @@ class MotionFilter {
 
   /// Metres driven per metre that the wheels count, less one.
   [[nodiscard]] double wheel_scale() const { return scale_; }
+  /// Standard deviation of that.
   [[nodiscard]] double wheel_scale_sigma() const { return std::sqrt(covariance_(kScale, kScale)); }
 
  private:

@@ -20,11 +20,14 @@ class Odometry {
   [[nodiscard]] virtual const PointCloud& cloud_of_last_scan() const = 0;
 
  protected:
+  /// For methods alone: a copy of the base would be without its method.
+  ///@{
   Odometry() = default;
   Odometry(const Odometry&) = default;
   Odometry& operator=(const Odometry&) = default;
   Odometry(Odometry&&) = default;
   Odometry& operator=(Odometry&&) = default;
+  ///@}
 };
 
 }  // namespace adit

@@ -24,6 +24,7 @@ struct PathNoise {
   double rotation_deg = 0.15;
   double guessed = 5.0;  ///< Factor on both where odometry had no prediction to rely on.
 };
+/// The keys are the names of the fields.
 [[nodiscard]] Fields fields_of(PathNoise& noise);
 
 /// Covariance of the relative pose over `distance_m` metres of such a method: a random walk (right
@@ -42,6 +43,7 @@ struct PathNoise {
 /// are added up.
 class PathUncertainty {
  public:
+  /// The first edge begins at the first step that enters the map.
   explicit PathUncertainty(const PathNoise& noise) : config_(noise) {}
 
   /// The next step; those that did not enter the map add nothing until one does.

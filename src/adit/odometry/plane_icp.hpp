@@ -14,6 +14,7 @@
 
 namespace adit {
 
+/// What `PlaneIcp` needs; scan_to_map has defaults of its own here.
 struct PlaneIcpConfig {
   ScanToMapConfig scan_to_map{.voxel_size = 0.5,
                               .max_points_per_voxel = 10,
@@ -26,6 +27,7 @@ struct PlaneIcpConfig {
   MotionNoise motion;
   ImuNoise imu;
 };
+/// Those of scan_to_map, without a prefix, and stationary_motion, sigma, wheels.*, motion.*, imu.*.
 [[nodiscard]] Fields fields_of(PlaneIcpConfig& config);
 
 /// adit's own odometry for tunnels. A filter predicts the motion since the last registered scan, by the IMU
@@ -47,11 +49,14 @@ struct PlaneIcpConfig {
 /// at rest, unless its IMU feels that it moves.
 class PlaneIcp : public Odometry {
  public:
+  /// With an empty map. Ranges of the settings are not checked.
   PlaneIcp(const PlaneIcpConfig& config, const Pose& T_base_lidar);
 
   OdometryStep register_scan(const Scan& scan, const SensedMotion& motion) override;
   [[nodiscard]] const PointCloud& cloud_of_last_scan() const override { return cloud_; }
+  /// In the frame odom; empty before the first scan.
   [[nodiscard]] const LocalMap& map() const { return map_; }
+  /// As the last scan has left it.
   [[nodiscard]] const MotionFilter& filter() const { return filter_; }
 
  private:

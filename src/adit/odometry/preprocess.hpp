@@ -12,8 +12,8 @@ namespace adit {
 /// Metres from the sensor; both bounds are exclusive, so that the (0, 0, 0) that some drivers write for "no
 /// echo" is dropped too.
 struct RangeLimits {
-  double min_range = 0.0;
-  double max_range = 100.0;
+  double min_range = 0.0;    ///< Points at this range and nearer ones are dropped.
+  double max_range = 100.0;  ///< Points at this range and farther ones are dropped.
 };
 
 /// A raw cloud in the lidar frame -> all points with a finite position and a range within the limits, in the

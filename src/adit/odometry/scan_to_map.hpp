@@ -32,16 +32,20 @@ struct ScanToMapConfig {
   double degeneracy_threshold = 0.01;
 };
 
+/// The keys are the names of the fields.
 [[nodiscard]] Fields fields_of(ScanToMapConfig& config);
 
 /// Normal equations of a Gauss-Newton step in N unknowns, and the unweighted sum of squared residuals.
 template <int N>
 struct NormalEquations {
+  /// Sum of J^T W J.
   Eigen::Matrix<double, N, N> H = Eigen::Matrix<double, N, N>::Zero();
+  /// Sum of J^T W r: the step x solves H x = -g.
   Eigen::Matrix<double, N, 1> g = Eigen::Matrix<double, N, 1>::Zero();
-  double squared_residuals = 0.0;
-  int num_correspondences = 0;
+  double squared_residuals = 0.0;  ///< Square metres.
+  int num_correspondences = 0;     ///< Whose residuals were summed.
 
+  /// Of the residuals of both.
   NormalEquations& operator+=(const NormalEquations& other) {
     H += other.H;
     g += other.g;
@@ -62,10 +66,10 @@ struct NormalEquations {
 
 /// Where iterating ended. With too few correspondences or after divergence the pose is the prediction.
 struct Alignment {
-  Pose T_map_base;
-  StepStatus status = StepStatus::ok;
-  int num_correspondences = 0;
-  int iterations = 0;
+  Pose T_map_base;                     ///< Where the scan was taken.
+  StepStatus status = StepStatus::ok;  ///< ok, too_few_points or diverged.
+  int num_correspondences = 0;         ///< Points with a counterpart in the map, at the end.
+  int iterations = 0;                  ///< Of Gauss-Newton, those of a coarse start included.
 };
 
 /// Whether a correction of the prediction is one that the odometry believes.
@@ -89,6 +93,8 @@ struct ThinnedScan {
   std::vector<Eigen::Vector3f> map_points;  ///< One point per cube of half a voxel: what the map takes.
   std::vector<Eigen::Vector3f> source;      ///< Of those one per cube of 1.5 voxels: what is registered.
 };
+/// Each cube keeps its first point, in the order of the cloud. `voxel_size`: that of the map, metres;
+/// `thinner` gives the memory.
 [[nodiscard]] ThinnedScan thinned_twice(std::span<const Eigen::Vector3f> points_base, double voxel_size,
                                         VoxelThinner& thinner);
 

@@ -21,6 +21,7 @@ struct PosePrior {
 /// tangent of a right perturbation of T_map_base.
 [[nodiscard]] NormalEquations<6> linearize_prior(const PosePrior& prior, const Pose& T_map_base);
 
+/// Where `align_point_to_plane` ended. After a failure `information` and `share_near` are zero.
 struct PlaneAlignment : Alignment {
   Observability seen;                     ///< What the scan alone says about the pose.
   Matrix6 information = Matrix6::Zero();  ///< Of the residuals at the end, as if all were independent.

@@ -12,6 +12,7 @@ class WheelTrust {
   /// Of the interval before a scan; `driven_m` as the odometry has it in the end, with its standard
   /// deviation: where neither scans nor wheels hold it, wheels are not to be judged by it.
   void compare(double counted_m, double driven_m, double sigma_m);
+  /// Whether wheels are not to be believed at present.
   [[nodiscard]] bool are_slipping() const { return are_slipping_; }
 
  private:

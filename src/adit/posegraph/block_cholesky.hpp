@@ -18,7 +18,9 @@ struct BlockPattern {
   std::vector<std::size_t> column_start;  ///< First block of each column, then the number of blocks.
   std::vector<std::size_t> row;           ///< Row of each block.
 
+  /// Block columns; as many block rows.
   [[nodiscard]] std::size_t size() const { return column_start.empty() ? 0 : column_start.size() - 1; }
+  /// Blocks of the lower triangle, those on the diagonal included.
   [[nodiscard]] std::size_t num_blocks() const { return row.size(); }
   /// Index of block (i, j), i >= j, which must be in the pattern.
   [[nodiscard]] std::size_t block(std::size_t i, std::size_t j) const;
@@ -31,8 +33,10 @@ struct BlockPattern {
 /// The part of a factorization that depends on the pattern alone: ordering, elimination tree, supernodes.
 /// Valid for every block size.
 class BlockSymbolic;
+/// Analyzes a pattern whose columns begin with their diagonal blocks, as `of_pairs` makes it. Ordering:
+/// approximate minimum degree.
 [[nodiscard]] std::shared_ptr<const BlockSymbolic> analyze(const BlockPattern& pattern);
-/// Multiplications (each with an addition) in one factorization, for block size 1.
+/// Multiplications and additions in one factorization, for block size 1.
 [[nodiscard]] double factorization_work(const BlockSymbolic& symbolic);
 
 /// Multifrontal Cholesky factorization of a sparse symmetric positive definite matrix of square blocks. Each
@@ -46,6 +50,7 @@ class BlockSymbolic;
 template <class Real>
 class BasicBlockCholesky {
  public:
+  /// Takes the memory of the factor. Blocks have `block_size` rows and columns.
   BasicBlockCholesky(std::shared_ptr<const BlockSymbolic> symbolic, std::size_t block_size);
 
   /// `values`: the blocks in the order of the pattern, each column-major; only the lower triangle of diagonal
@@ -67,6 +72,7 @@ class BasicBlockCholesky {
   BasicLargeBuffer<Real> factor_;   // columns of the supernodes, one after another
   BasicLargeBuffer<Real> updates_;  // workspace for what supernodes pass to their parents
 };
+/// In double precision.
 using BlockCholesky = BasicBlockCholesky<double>;
 
 }  // namespace adit

@@ -29,6 +29,7 @@
 
 namespace adit {
 
+/// Whether any poses cost less than the given ones.
 enum class Optimality {
   globally_optimal,  ///< No poses cost less than the given ones by more than `max_gap`.
   cannot_tell,       ///< The bound is further off than that, and no better poses were found.
@@ -36,11 +37,12 @@ enum class Optimality {
 };
 [[nodiscard]] std::string_view to_string(Optimality optimality);  ///< "globally optimal", ...
 
+/// What is proved of some poses: a lower bound of the cost of all others, and the verdict that it allows.
 struct Certificate {
-  Optimality optimality = Optimality::cannot_tell;
-  double cost = 0.0;         ///< chi2 of the given poses.
-  double lower_bound = 0.0;  ///< No poses cost less; at least 0.
-  double gap = 0.0;          ///< (cost - lower_bound) / cost; 0 where the cost is rounding.
+  Optimality optimality = Optimality::cannot_tell;  ///< By `gap`; never not_optimal where `certify` made it.
+  double cost = 0.0;                                ///< chi2 of the given poses.
+  double lower_bound = 0.0;                         ///< No poses cost less; at least 0.
+  double gap = 0.0;  ///< (cost - lower_bound) / cost; 0 where the cost is rounding.
   /// Of S with the translations eliminated and the anchors held, in units of rotational information; from
   /// a few steps of Lanczos' method, so that the true one may be slightly smaller. The verdict rests on the
   /// factorization of S, not on this number. Infinite where no node is free, minus infinity where S is too
@@ -49,6 +51,7 @@ struct Certificate {
   std::string reason;  ///< In one sentence.
 };
 
+/// When a gap counts as none, and how long better poses are looked for.
 struct CertificateConfig {
   double max_gap = 1e-3;  ///< Largest gap, relative to the cost, that counts as globally optimal.
   int max_descents = 3;   ///< Of `improved`: searches for better poses, at most.
@@ -69,7 +72,7 @@ template <class P>
 /// A solution, replaced where it was shown not to be optimal, and its certificate.
 template <class P>
 struct Certified {
-  Solution<P> solution;
+  Solution<P> solution;                        ///< The one given, or the best of those found from it.
   Certificate certificate;                     ///< Of `solution`.
   Optimality given = Optimality::cannot_tell;  ///< Of the solution given: not_optimal where it was replaced.
   int descents = 0;                            ///< How often better poses were found.

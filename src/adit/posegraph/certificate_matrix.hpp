@@ -28,11 +28,12 @@ inline constexpr int kSpaceOf = P::kDof == 6 ? 3 : 2;
 /// The cross blocks of the information cost both parts the share 1 - (largest canonical correlation).
 template <class P>
 struct EdgeMinorant {
-  double stiffness = 0.0;
-  Eigen::Matrix<double, kSpaceOf<P>, 1> lever;
-  Eigen::Matrix<double, kSpaceOf<P>, kSpaceOf<P>> turn;
-  double slack = 0.0;  ///< chi2 less the minorant at y, not negative.
+  double stiffness = 0.0;  ///< Information of the translation along every direction, not negative.
+  Eigen::Matrix<double, kSpaceOf<P>, 1> lever;  ///< Seen from the node at which the edge starts, as v.
+  Eigen::Matrix<double, kSpaceOf<P>, kSpaceOf<P>> turn;  ///< 0 where the minorant says nothing of rotations.
+  double slack = 0.0;                                    ///< chi2 less the minorant at y, not negative.
 };
+/// The minorant of an edge that touches its chi2 at this residual y. The edge's weight does not count.
 template <class P>
 [[nodiscard]] EdgeMinorant<P> minorant_at(const typename BasicPoseGraph<P>::Edge& edge,
                                           const typename P::Tangent& residual);
@@ -77,9 +78,10 @@ class ShiftedMatrix {
   /// Of S with the translations eliminated: smallest eigenvalue, from above, and its vector with the
   /// translations that belong to it. By Lanczos' method on the inverse of what was factorized with `shift`.
   struct Mode {
-    double eigenvalue = 0.0;
-    Eigen::VectorXd vector;
+    double eigenvalue = 0.0;  ///< Of S itself, without the shift.
+    Eigen::VectorXd vector;   ///< Rows as those of S; of any length.
   };
+  /// `shift`: that of what was factorized last; `steps`: of Lanczos' method, at most, one solution each.
   [[nodiscard]] Mode softest_mode(double shift, int steps) const;
 
  private:

@@ -12,8 +12,10 @@
 namespace adit {
 
 /// The rotation nearest to `m` in the Frobenius norm.
+///@{
 [[nodiscard]] Matrix3 nearest_rotation(const Matrix3& m);
 [[nodiscard]] Eigen::Matrix2d nearest_rotation(const Eigen::Matrix2d& m);
+///@}
 
 /// Poses to start from that need no initial guess: rotations by linear least squares over unconstrained
 /// matrices, each then projected to the nearest rotation; translations by linear least squares given these.
@@ -24,12 +26,13 @@ template <class P>
 [[nodiscard]] Result<std::vector<P>> chordal_poses(const BasicPoseGraph<P>& graph,
                                                    const std::vector<double>& edge_weights = {});
 
-/// The same where the structure of the graph with these weights is known already.
+/// Poses of `chordal_poses`, and how firmly the edges hold them.
 template <class P>
 struct ChordalStart {
-  std::vector<P> poses;
+  std::vector<P> poses;      ///< T_world_node, one per node; anchors as given.
   double least_pivot = 1.0;  ///< Of the system for the translations, see `BlockCholesky::least_pivot`.
 };
+/// The same as `chordal_poses` where the structure of the graph with these weights is known already.
 template <class P>
 [[nodiscard]] Result<ChordalStart<P>> chordal_start(const BasicPoseGraph<P>& graph,
                                                     const std::vector<double>& edge_weights,

@@ -23,14 +23,21 @@ constexpr std::size_t kStripe = 96;
 template <class Real>
 class PackedPanel {
  public:
+  /// Copies a panel, column-major at `a`.
   void pack(const Real* a, std::size_t stride, std::size_t rows, std::size_t depth);
   /// The same in parts: room for a panel, then some of its columns from the strip of row `first` on, which is
   /// where the lower trapezoid has them. `a` is the whole panel.
+  ///@{
   void resize(std::size_t rows, std::size_t depth);
   void pack_columns(const Real* a, std::size_t stride, std::size_t first, std::size_t count);
+  ///@}
+  /// Strip number i: rows from i kStrip on, kStrip numbers for each column in turn.
   [[nodiscard]] const Real* strip(std::size_t i) const { return data_.data() + i * depth_ * kStrip<Real>; }
+  /// Rows and columns of the panel, padding not counted.
+  ///@{
   [[nodiscard]] std::size_t rows() const { return rows_; }
   [[nodiscard]] std::size_t depth() const { return depth_; }
+  ///@}
 
  private:
   std::vector<Real> data_;
@@ -38,10 +45,11 @@ class PackedPanel {
   std::size_t depth_ = 0;
 };
 
+/// C -= A B^T, or C = -A B^T.
+enum class Into { subtract, replace };
 /// Lower trapezoid of C -= A B^T, or of C = -A B^T, where B is the first `columns` rows of A: columns [begin,
 /// end) of it, rows from the strip that holds the diagonal downwards; `begin` is a multiple of 8. A few
 /// elements just above the diagonal are overwritten as well.
-enum class Into { subtract, replace };
 template <class Real>
 void subtract_outer_product(Real* c, std::size_t stride, const PackedPanel<Real>& a, std::size_t begin,
                             std::size_t end, Into into = Into::subtract);

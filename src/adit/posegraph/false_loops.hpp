@@ -16,9 +16,10 @@ namespace adit {
 /// first of a run is random, the others follow both paths.
 enum class FalseLoops { random, clustered };
 
+/// A graph of which it is known what is true.
 template <class P>
 struct LabelledGraph {
-  BasicPoseGraph<P> graph;
+  BasicPoseGraph<P> graph;   ///< Its false loops are its last edges.
   std::size_t num_true = 0;  ///< Edges known to be true, odometry included: they come first.
 };
 

@@ -17,43 +17,45 @@
 namespace adit {
 
 // The control parameter mu of Yang et al.; no unit.
-inline constexpr double kSmallestMu =
-    1e-6;  // below, loops weigh too little to constrain anything in double precision
-inline constexpr double kLargestMu = 1e3;  // above, the surrogate is the truncated cost itself
-inline constexpr double kFirstMu =
-    0.01;  // of a graduation from a good solution: reaches loops within 100 bounds
+/// Of the control parameter mu of Yang et al., which has no unit: below, loops weigh too little to constrain
+/// anything in double precision.
+inline constexpr double kSmallestMu = 1e-6;
+inline constexpr double kLargestMu = 1e3;  ///< Above, the surrogate is the truncated cost itself.
+/// Of a graduation from a good solution: reaches loops within 100 bounds.
+inline constexpr double kFirstMu = 0.01;
 
-inline constexpr int kMaxRounds = 20;   // of settling; most graphs need a few
-inline constexpr int kMaxRestarts = 2;  // of the search from the best poses so far
+inline constexpr int kMaxRounds = 20;   ///< Of settling; most graphs need a few.
+inline constexpr int kMaxRestarts = 2;  ///< Of the search from the best poses so far.
 
 // Groups of rejected loops that are reconsidered: loops of one cluster whose ends are near one another.
-inline constexpr std::size_t kSmallestGroup = 3;  // loops
-inline constexpr std::size_t kGroupReach = 12;    // nodes between their ends, at most
-inline constexpr std::size_t kMaxParts = 8;       // where only parts of clusters are reconsidered
-inline constexpr std::size_t kMaxGroups = 24;     // where all are
+inline constexpr std::size_t kSmallestGroup = 3;  ///< Loops; smaller ones are not reconsidered.
+inline constexpr std::size_t kGroupReach = 12;    ///< Ends are near if their indices differ by no more.
+inline constexpr std::size_t kMaxParts = 8;       ///< Groups, where only parts of clusters are reconsidered.
+inline constexpr std::size_t kMaxGroups = 24;     ///< Groups, where all clusters are; the largest ones.
 
-// An odometry edge whose chi2 is this many bounds, twice as many standard deviations, is bent.
+/// An odometry edge whose chi2 is this many bounds, twice as many standard deviations, is bent.
 inline constexpr double kBentBounds = 4.0;
-// A cluster with this share of the loops of the largest one counts as evidence of its own; a solution that
-// rejects no cluster this large is accepted.
+/// A cluster with this share of the loops of the largest one counts as evidence of its own; a solution that
+/// rejects no cluster this large is accepted.
 inline constexpr double kRivalShare = 0.2;
-inline constexpr std::size_t kDecisiveCluster = 12;  // loops; in a smaller cluster all may be one mistake
+inline constexpr std::size_t kDecisiveCluster = 12;  ///< Loops; in a smaller cluster all may be one mistake.
 
 // Where loops fit better than their information says, the bound shrinks.
-inline constexpr double kVarianceHeadroom = 4.0;  // times the variance of the loops kept still passes
-inline constexpr double kFitQuantile =
-    0.9;  // of the kept loops' chi2, compared with that of the chi-square distribution
-inline constexpr double kBoundRelease = 30.0;  // times the fitted bound, when it is widened once
+inline constexpr double kVarianceHeadroom = 4.0;  ///< Times the variance of the loops kept still passes.
+/// Of the kept loops' chi2, compared with that of the chi-square distribution.
+inline constexpr double kFitQuantile = 0.9;
+inline constexpr double kBoundRelease = 30.0;  ///< Times the fitted bound, when it is widened once.
 
-// Parts of clusters that are kept for the most part, or whole clusters too.
+/// Parts of clusters that are kept for the most part, or whole clusters too.
 enum class Reconsidered { parts, all };
 
+/// Edges with a weight below one half.
 template <class P>
 [[nodiscard]] std::size_t num_rejected(const Solution<P>& s) {
   return static_cast<std::size_t>(std::ranges::count_if(s.edge_weights, [](double w) { return w < 0.5; }));
 }
 
-// Loops' weights by their chi2; odometry edges are known inliers.
+/// Loops' weights by their chi2; odometry edges are known inliers, of weight 1. `costs`: chi2 of each edge.
 template <class P, class WeightOfChi2>
 std::vector<double> weights_of(const BasicPoseGraph<P>& graph, const std::vector<double>& costs,
                                const WeightOfChi2& weight) {
@@ -64,6 +66,7 @@ std::vector<double> weights_of(const BasicPoseGraph<P>& graph, const std::vector
   return weights;
 }
 
+/// 0 without loops. `costs`: chi2 of each edge.
 template <class P>
 double largest_loop_cost(const BasicPoseGraph<P>& graph, const std::vector<double>& costs) {
   double largest = 0.0;
@@ -73,37 +76,39 @@ double largest_loop_cost(const BasicPoseGraph<P>& graph, const std::vector<doubl
   return largest;
 }
 
-// Remark 5: the smallest mu at which the surrogate is still convex for the largest residual.
+/// Remark 5: the smallest mu at which the surrogate is still convex for the largest residual.
 inline double first_mu(double largest_chi2, double bound) {
   return largest_chi2 > bound ? std::max(kSmallestMu, bound / (2.0 * largest_chi2 - bound)) : kLargestMu;
 }
 
-// Exactly: outside the band of mu, where a larger mu changes nothing. At a small mu true loops weigh little.
+/// Exactly: outside the band of mu, where a larger mu changes nothing. At a small mu true loops weigh little.
 inline bool all_binary(const std::vector<double>& weights) {
   return std::ranges::all_of(weights, [](double w) { return w == 0.0 || w == 1.0; });
 }
 
+/// The graph with its nodes at `poses`, one per node.
 template <class P>
 BasicPoseGraph<P> moved(BasicPoseGraph<P> graph, const std::vector<P>& poses) {
   for (std::size_t i = 0; i < poses.size(); ++i) graph.nodes[i].pose = poses[i];
   return graph;
 }
 
-// The search: graph and settings stay, solutions go through.
+/// The search: graph and settings stay, solutions go through.
 template <class P>
 class GncSearch {
  public:
-  // Loops above `bound` are false.
+  /// Loops with a chi2 above `bound` are false. Graph and settings must outlive the search.
   GncSearch(const BasicPoseGraph<P>& graph, const GncConfig& config, double bound)
       : graph_(graph), config_(config), bound_(bound) {}
 
+  /// Takes this bound instead of the one fitted.
   void restore_bound(double bound) { bound_ = bound; }
 
-  // As the configuration states it.
+  /// As the configuration states it.
   [[nodiscard]] double given_bound() const { return chi2_quantile(config_.inlier_probability, P::kDof); }
 
-  // Graduated non-convexity from the poses of `s`, from the convex surrogate on or from `mu` if that is
-  // larger.
+  /// Graduated non-convexity from the poses of `s`, from the convex surrogate on or from `mu` if that is
+  /// larger.
   [[nodiscard]] Solution<P> graduate(Solution<P> s, double mu = 0.0) const {
     OptimizerConfig inner = warm();
     inner.relative_tolerance = std::max(inner.relative_tolerance, 1e-3);
@@ -122,20 +127,21 @@ class GncSearch {
     return s;
   }
 
+  /// A graduated search from the poses of `start`, with the loops chosen anew at its end.
   [[nodiscard]] Solution<P> run(Solution<P> start) const {
     if (!start.ok()) return start;
     return settle(unbend(graduate(std::move(start))));
   }
 
-  // The paper's search and nothing else.
+  /// The paper's search and nothing else.
   [[nodiscard]] Solution<P> run_plain(Solution<P> start) const {
     if (!start.ok()) return start;
     const Solution<P> s = graduate(std::move(start));
     return s.ok() ? continued(s, s.poses, warm(), loops_within_bound(s.poses)) : s;
   }
 
-  // From the loops that confirm one another: least squares over the largest clusters, then all loops that
-  // this explains. It never meets most false loops, which is also what keeps the matrix sparse.
+  /// Least squares over the loops that confirm one another, those of the largest clusters. It never meets
+  /// most false loops, which is also what keeps the matrix sparse.
   [[nodiscard]] Solution<P> from(const LoopClusters& clusters) const {
     const double rival = kRivalShare * static_cast<double>(largest_of(clusters));
     std::vector<double> weights(graph_.edges.size(), 1.0);
@@ -147,8 +153,8 @@ class GncSearch {
     return optimize(graph_, config_.optimizer, weights);
   }
 
-  // Lowers the bound to what the loops in use call for: a high quantile of their chi2 against that of true
-  // noise, but not below what all that is in use says together. False when it stays as it is.
+  /// Lowers the bound to what the loops in use call for: a high quantile of their chi2 against that of true
+  /// noise, but not below what all that is in use says together. False when it stays as it is.
   bool fit_bound(const Solution<P>& s) {
     const std::vector<double> costs = edge_costs(graph_, s.poses);
     std::vector<double> kept;
@@ -165,9 +171,9 @@ class GncSearch {
     return share < 1.0;
   }
 
-  // From a solution that holds few loops, but true ones, to all true ones. The bound follows their fit, is
-  // let out once for loops that drift has kept away, and drawn in again; where it is right as given,
-  // gradually.
+  /// From a solution that holds few loops, but true ones, to all true ones. The bound follows their fit, is
+  /// let out once for loops that drift has kept away, and drawn in again; where it is right as given,
+  /// gradually.
   [[nodiscard]] Solution<P> grow(Solution<P> s) {
     const double given = bound_;
     if (!s.ok()) return s;
@@ -180,8 +186,8 @@ class GncSearch {
     return settle(std::move(s));
   }
 
-  // Whether the loops that `s` turns down are many times fewer, cluster by cluster, than a cluster that it
-  // keeps.
+  /// Whether the loops that `s` turns down are many times fewer, cluster by cluster, than a cluster that it
+  /// keeps.
   [[nodiscard]] bool rejects_only_small(const Solution<P>& s, const LoopClusters& clusters) const {
     std::vector<std::size_t> rejected(clusters.sizes.size(), 0);
     for (std::size_t e = 0; e < graph_.edges.size(); ++e) {
@@ -198,9 +204,9 @@ class GncSearch {
            static_cast<double>(largest_rejected) < kRivalShare * static_cast<double>(largest_kept);
   }
 
-  // Loops that hold only together are lost together: where a stretch has bent, each of them alone seems
-  // false. With a whole group back in use the stretch straightens, if the group is true; the evidence
-  // decides. Where whole clusters are in doubt, those in use are taken out in the same way.
+  /// Loops that hold only together are lost together: where a stretch has bent, each of them alone seems
+  /// false. With a whole group back in use the stretch straightens, if the group is true; the evidence
+  /// decides. Where whole clusters are in doubt, those in use are taken out in the same way.
   [[nodiscard]] Solution<P> reconsider(Solution<P> s, const LoopEvidence<P>& evidence,
                                        Reconsidered which) const {
     const auto rejected = rejected_groups(s, evidence.clusters(), which);
@@ -211,8 +217,8 @@ class GncSearch {
     return s;
   }
 
-  // Alternates between the poses for these loops and the loops for these poses; both lower the objective, so
-  // that it ends. True loops that were lost on the way come back. The loops `barred` stay out.
+  /// Alternates between the poses for these loops and the loops for these poses; both lower the objective, so
+  /// that it ends. True loops that were lost on the way come back. The loops `barred` stay out.
   [[nodiscard]] Solution<P> settle(Solution<P> s, const std::vector<std::size_t>& barred = {}) const {
     for (int round = 0; s.ok() && round < kMaxRounds; ++round) {
       auto weights = loops_within_bound(s.poses);
@@ -223,7 +229,7 @@ class GncSearch {
     return s;
   }
 
-  // A chain that false loops have bent beyond what the solver straightens is found anew.
+  /// A chain that false loops have bent beyond what the solver straightens is found anew.
   [[nodiscard]] Solution<P> unbend(const Solution<P>& s) const {
     if (!s.ok()) return s;
     const auto weights = loops_within_bound(s.poses);
@@ -233,12 +239,12 @@ class GncSearch {
     return anew.ok() && anew.cost_final < next.cost_final ? anew : next;
   }
 
-  // With these weights, from the poses of `s`.
+  /// Least squares with these weights, from the poses of `s`.
   [[nodiscard]] Solution<P> with_weights(const Solution<P>& s, const std::vector<double>& weights) const {
     return continued(s, s.poses, warm(), weights);
   }
 
-  // The truncated least-squares objective.
+  /// The truncated least-squares objective: chi2 of all edges, of a loop at most the bound.
   [[nodiscard]] double objective(const Solution<P>& s) const {
     const std::vector<double> costs = edge_costs(graph_, s.poses);
     double sum = 0.0;
@@ -248,8 +254,8 @@ class GncSearch {
     return sum;
   }
 
-  // No odometry edge is off by more than twice the bound's standard deviations, and no part of the graph came
-  // loose.
+  /// No odometry edge is off by more than twice the bound's standard deviations, and no part of the graph
+  /// came loose.
   [[nodiscard]] bool is_whole_and_unbent(const Solution<P>& s) const {
     if (s.status != SolveStatus::converged) return false;
     const std::vector<double> costs = edge_costs(graph_, s.poses);
@@ -259,8 +265,8 @@ class GncSearch {
            connected_components(graph_).anchors.size();
   }
 
-  // Nothing hints at a better explanation: at most one loop in ten was rejected or only small clusters were,
-  // and neither is odometry bent nor the graph in parts.
+  /// Nothing hints at a better explanation: at most one loop in ten was rejected or only small clusters were,
+  /// and neither is odometry bent nor the graph in parts.
   [[nodiscard]] bool is_clearly_fine(const Solution<P>& s, const LoopClusters& clusters) const {
     if (!is_whole_and_unbent(s)) return false;
     const auto num_loops = static_cast<std::size_t>(

@@ -12,6 +12,7 @@
 
 namespace adit {
 
+/// Whether an edge counts in the cost.
 enum class EdgeUse { in_use, out_of_use };
 
 /// Least squares over a pose graph that grows keyframe by keyframe, for robots that solve while they drive.
@@ -37,10 +38,14 @@ enum class EdgeUse { in_use, out_of_use };
 template <class P>
 class IncrementalOptimizer {
  public:
-  using Edge = typename BasicPoseGraph<P>::Edge;
+  using Edge = typename BasicPoseGraph<P>::Edge;  ///< As of the graph.
+  /// Without nodes. The settings are those of each update.
   explicit IncrementalOptimizer(const OptimizerConfig& config = {});
+  /// What was moved from may only be destroyed or assigned to.
+  ///@{
   IncrementalOptimizer(IncrementalOptimizer&&) noexcept;
   IncrementalOptimizer& operator=(IncrementalOptimizer&&) noexcept;
+  ///@}
   ~IncrementalOptimizer();
 
   /// Returns the index of the node. `pose`: T_world_node where the solver starts; for a new keyframe the last
@@ -51,19 +56,21 @@ class IncrementalOptimizer {
   std::size_t add_edge(const Edge& edge, EdgeUse use = EdgeUse::in_use);
   /// From the next update on.
   void set_use(std::size_t edge, EdgeUse use);
+  /// As it was set last, even before the next update.
   [[nodiscard]] bool is_used(std::size_t edge) const;
   /// Of an edge in use, at the poses, after a successful update.
   [[nodiscard]] double chi2(std::size_t edge) const;
 
+  /// What an update did.
   struct Update {
-    SolveStatus status = SolveStatus::converged;
-    std::string reason;              ///< Why it stopped, in one sentence.
-    int iterations = 0;              ///< Linear systems solved.
-    double cost = 0.0;               ///< chi2 of the edges in use at the poses.
-    std::size_t num_renewed = 0;     ///< Supernodes eliminated in this update.
-    std::size_t num_supernodes = 0;  ///< Supernodes of the whole factor.
-    std::size_t num_linearized = 0;  ///< Edges linearized anew, those just added not counted.
-    std::size_t num_evaluated = 0;   ///< Evaluations of edges.
+    SolveStatus status = SolveStatus::converged;  ///< Why it ended, as in `Solution`.
+    std::string reason;                           ///< Why it stopped, in one sentence.
+    int iterations = 0;                           ///< Linear systems solved.
+    double cost = 0.0;                            ///< chi2 of the edges in use at the poses.
+    std::size_t num_renewed = 0;                  ///< Supernodes eliminated in this update.
+    std::size_t num_supernodes = 0;               ///< Supernodes of the whole factor.
+    std::size_t num_linearized = 0;               ///< Edges linearized anew, those just added not counted.
+    std::size_t num_evaluated = 0;                ///< Evaluations of edges.
     std::vector<std::size_t> moved;  ///< Nodes with another pose than before the update, ascending.
   };
   /// Reports a node free to move or a cost that is not finite in `status`; the poses then stay as they were.
@@ -80,6 +87,7 @@ class IncrementalOptimizer {
   /// Of edges that are out of use, after a successful update.
   [[nodiscard]] Prediction predict(const std::vector<std::size_t>& edges);
 
+  /// T_world_node, one per node; of a node that was added since the last update as given.
   [[nodiscard]] const std::vector<P>& poses() const;
   [[nodiscard]] const BasicPoseGraph<P>& graph() const;  ///< Everything added so far; node poses as given.
 

@@ -22,8 +22,10 @@ class BlockSymbolic;
 /// section 3 (the Bayes tree is this tree), with dense fronts as in block_cholesky.hpp.
 class IncrementalCholesky {
  public:
+  /// Without variables; `block_size` is d.
   explicit IncrementalCholesky(std::size_t block_size) : d_(block_size) {}
 
+  /// Variables added so far.
   [[nodiscard]] std::size_t size() const { return diagonal_.size(); }
   /// A variable with a zero diagonal block; returns its index.
   std::size_t add_variable();
@@ -43,19 +45,22 @@ class IncrementalCholesky {
   /// its diagonal), or nothing when all is well; after a failure `solve` must not be called.
   [[nodiscard]] std::optional<std::size_t> refresh();
   /// Supernodes that the last refresh eliminated, and that there are.
+  ///@{
   [[nodiscard]] std::size_t num_renewed() const { return num_renewed_; }
   [[nodiscard]] std::size_t num_supernodes() const { return cliques_.size() - free_cliques_.size(); }
+  ///@}
 
   /// Solution of A x = b, after `refresh`.
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right_side);
 
   /// Rows of a vector at some variables, d numbers each; zero elsewhere.
   struct Sparse {
-    std::vector<std::size_t> variables;
-    std::vector<double> rows;
+    std::vector<std::size_t> variables;  ///< In any order, each once.
+    std::vector<double> rows;            ///< Of the variables, in their order.
   };
+  /// As much of a solution as `solve` worked out.
   struct PartialSolution {
-    Sparse x;
+    Sparse x;           ///< Of the variables whose rows it worked out.
     double gain = 0.0;  ///< b^T x of the whole solution.
   };
   /// Solution of A x = b as far as it matters, after `refresh`: the forward pass visits the paths from the

@@ -19,22 +19,28 @@ namespace adit {
 template <class P>
 class IncrementalModel {
  public:
-  static constexpr int D = P::kDof;
-  using Edge = typename BasicPoseGraph<P>::Edge;
-  using Tangent = typename P::Tangent;
-  using Step = IncrementalCholesky::PartialSolution;
+  static constexpr int D = P::kDof;                   ///< Rows of a node in the factor.
+  using Edge = typename BasicPoseGraph<P>::Edge;      ///< As of the graph.
+  using Tangent = typename P::Tangent;                ///< A perturbation of factors.hpp.
+  using Step = IncrementalCholesky::PartialSolution;  ///< Perturbations of the nodes, by `variable`.
   /// Of a node in the factor; the first has none.
   static std::size_t variable(std::size_t node) { return node - 1; }
 
   /// Steps below this many metres and radians are not taken.
   static constexpr double kSmallestStep = 1e-5;
 
+  /// `pose`: T_world_node, where the node stays until a step moves it.
   void add_node(std::uint64_t key, const P& pose);
+  /// The edge is out of use. Its nodes must have been added.
   void add_edge(const Edge& edge);
+  /// Counts from the next `renew` on.
   void set_use(std::size_t edge, bool is_used);
 
+  /// Everything added so far; node poses as given.
   [[nodiscard]] const BasicPoseGraph<P>& graph() const { return graph_; }
+  /// T_world_node at present, one per node.
   [[nodiscard]] const std::vector<P>& poses() const { return poses_; }
+  /// As `set_use` left it, even before the next `renew`.
   [[nodiscard]] bool is_used(std::size_t edge) const {
     return term_of_[edge] != kNone && terms_[term_of_[edge]].is_used;
   }
@@ -42,8 +48,11 @@ class IncrementalModel {
   [[nodiscard]] double cost(std::size_t edge) const { return costs_[term_of_[edge]]; }
   /// Of all edges in use.
   [[nodiscard]] double cost() const;
+  /// The factor of the Hessian, as of the last `renew` or linearization; without the first node.
+  ///@{
   [[nodiscard]] const IncrementalCholesky& cholesky() const { return cholesky_; }
   [[nodiscard]] IncrementalCholesky& cholesky() { return cholesky_; }
+  ///@}
   /// T_from_to at the present poses.
   [[nodiscard]] P relative(const Edge& edge) const { return poses_[edge.from].inverse() * poses_[edge.to]; }
 
@@ -59,6 +68,7 @@ class IncrementalModel {
   /// plus a metre. Adds how many to `num_linearized`.
   [[nodiscard]] std::optional<std::size_t> linearize_changed(const std::vector<std::size_t>& terms,
                                                              double change, std::size_t& num_linearized);
+  /// Of every edge that is or was in use.
   [[nodiscard]] std::vector<std::size_t> all_terms() const;
 
   /// The step to the minimum of the model, as far as it matters, and by how much chi2 falls with it; empty
@@ -68,12 +78,15 @@ class IncrementalModel {
   /// gain.
   [[nodiscard]] std::vector<std::size_t> stale_for(const Step& step);
 
+  /// What new poses have changed.
   struct Replaced {
     std::vector<std::pair<std::size_t, P>> poses;  ///< As they were.
     std::vector<std::size_t> terms;                ///< That were evaluated.
     double cost = 0.0;                             ///< By how much it rose.
   };
+  /// Moves the nodes by a step, all but those that it moves by `kSmallestStep` or less.
   Replaced take(const Step& step);
+  /// Gives nodes these poses again, as `Replaced` has them.
   void put_back(const std::vector<std::pair<std::size_t, P>>& old);
   /// All poses but that of the first node, which stays.
   Replaced take_all(const std::vector<P>& poses);

@@ -17,16 +17,17 @@ namespace adit {
 /// of its own. Source: the clusters of RRR (Latif, Cadena, Neira, "Robust loop closing over time", RSS 2012),
 /// section III, with the cycle test of PCM (see pcm.hpp).
 struct LoopClusterConfig {
-  std::size_t max_steps = 12;
-  std::size_t max_neighbours = 8;
+  std::size_t max_steps = 12;      ///< Odometry edges between their ends, at most.
+  std::size_t max_neighbours = 8;  ///< Loops that a loop is compared with, at most.
   /// Two true neighbours pass the test this often. Low on purpose: in six dimensions the volume in which
   /// false ones agree by chance falls with the third power of the bound, and a true loop has several
   /// neighbours.
   double probability = 0.6;
-  std::size_t max_piece = 10;
+  std::size_t max_piece = 10;  ///< Loops in a piece, at most.
 };
+/// The loops of a graph by clusters, and the clusters in pieces.
 struct LoopClusters {
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);  ///< In no cluster or piece.
   std::vector<std::size_t> of_edge;  ///< Cluster of each edge; kNone for odometry.
   std::vector<std::size_t> sizes;    ///< Loops in each cluster; at least 1.
   /// Pieces of clusters, of at most `max_piece` loops: those that agree best come together first. A piece is
@@ -41,6 +42,7 @@ struct LoopClusters {
   /// The median cycle, raised to what it may be at 99.9 % if there are only a few. 1 where no cycle says so.
   double scale = 1.0;
 };
+/// Clusters the loops of a graph. The poses of its nodes do not count.
 template <class P>
 [[nodiscard]] LoopClusters loop_clusters(const BasicPoseGraph<P>& graph,
                                          const LoopClusterConfig& config = {});

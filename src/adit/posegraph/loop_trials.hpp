@@ -19,31 +19,35 @@
 
 namespace adit {
 
-inline constexpr std::size_t kSmallestTried = 2;  // loops; a single one is judged by its own chi2
-inline constexpr std::size_t kLargestTried = 64;  // loops; larger clusters are tried piece by piece
-// Of a graph of that many nodes one trial may be made, of smaller ones more: what trials may cost.
+inline constexpr std::size_t kSmallestTried = 2;  ///< Loops; a single one is judged by its own chi2.
+inline constexpr std::size_t kLargestTried = 64;  ///< Loops; larger clusters are tried piece by piece.
+/// Of a graph of that many nodes one trial may be made, of smaller ones more: what trials may cost.
+///@{
 inline constexpr std::size_t kTrialNodes = 100'000;
 inline constexpr std::size_t kTrialNodesOfParts = 20'000;
-inline constexpr std::size_t kMaxTrials = 100;
-inline constexpr std::size_t kMistake = 5;      // loops of a rejected cluster that is hardly chance
-inline constexpr double kMisfitHeadroom = 3.0;  // times the variance of the solution still passes
-inline constexpr double kStrained = 1.5;        // times the median strain of all groups
-inline constexpr double kOpenShare = 1e-9;      // of the largest information: an open direction
-inline constexpr double kTrueShare = 0.99;      // of the groups that stay, at least: asked of the odds
-inline constexpr double kLikeSize = 2.0 / 3.0;  // of the loops of a group: another is as strong
+///@}
+inline constexpr std::size_t kMaxTrials = 100;  ///< Of one pass at most, however small the graph.
+inline constexpr std::size_t kMistake = 5;      ///< Loops of a rejected cluster that is hardly chance.
+inline constexpr double kMisfitHeadroom = 3.0;  ///< Times the variance of the solution still passes.
+/// Pieces that are strained by more than so many times the median of all groups are tried.
+inline constexpr double kStrained = 1.5;
+inline constexpr double kOpenShare = 1e-9;      ///< Of the largest information: an open direction.
+inline constexpr double kTrueShare = 0.99;      ///< Of the groups that stay, at least: asked of the odds.
+inline constexpr double kLikeSize = 2.0 / 3.0;  ///< Of the loops of a group: another is as strong.
 
-// Which groups are tried: all clusters, or the pieces of those too large to be tried as a whole. Where there
-// are only a few groups all are.
+/// Which groups are tried: all clusters, or the pieces of those too large to be tried as a whole. Where there
+/// are only a few groups all are.
 enum class Tried { all, parts_of_large };
 
-// A group: a cluster of loops, or a piece of a large one (loop_clusters.hpp). All of its loops may be one
-// mistake, so it is judged as one measurement, however many loops it has: by what chi2 the rest of the graph
-// saves without it, beyond what its own loops cost one another, and by how sharply the rest predicts it.
+/// A group: a cluster of loops, or a piece of a large one (loop_clusters.hpp). All of its loops may be one
+/// mistake, so it is judged as one measurement, however many loops it has: by what chi2 the rest of the graph
+/// saves without it, beyond what its own loops cost one another, and by how sharply the rest predicts it.
 template <class P>
 class LoopTrials {
  public:
-  using Group = std::vector<std::size_t>;  // edges
+  using Group = std::vector<std::size_t>;  ///< Edges.
 
+  /// All but `tried` must outlive this.
   LoopTrials(const BasicPoseGraph<P>& graph, const GncSearch<P>& search, const LoopEvidence<P>& evidence,
              Tried tried)
       : graph_(graph), search_(search), evidence_(evidence) {
@@ -61,13 +65,15 @@ class LoopTrials {
     if (tried == Tried::all || are_few_) groups_.insert(groups_.end(), whole.begin(), whole.end());
   }
 
+  /// Whether `s` rejects a whole cluster that is hardly chance; any cluster of two loops and more counts
+  /// where there are only a few groups.
   [[nodiscard]] bool rejects_mistakes(const Solution<P>& s) const {
     return !clusters_like(s, static_cast<double>(are_few_ ? kSmallestTried : kMistake), Fate::rejected)
                 .empty();
   }
 
-  // Takes out, one after another, the group that the rest contradicts most. What a group contradicts changes
-  // little when others go, so that only the worst so far is measured again.
+  /// Takes out, one after another, the group that the rest contradicts most. What a group contradicts changes
+  /// little when others go, so that only the worst so far is measured again.
   [[nodiscard]] Solution<P> without_misfits(Solution<P> s) {
     std::vector<std::pair<double, std::size_t>> worst;  // misfit and group; a heap
     std::vector<std::size_t> list = most_strained(s);
@@ -102,8 +108,8 @@ class LoopTrials {
     return s;
   }
 
-  // Leaves out the groups that the graph cannot tell from false ones, of which it has rejected some of their
-  // size: what the rest predicts is too uncertain to make their agreement with it more than chance.
+  /// Leaves out the groups that the graph cannot tell from false ones, of which it has rejected some of their
+  /// size: what the rest predicts is too uncertain to make their agreement with it more than chance.
   [[nodiscard]] Solution<P> without_undecided(Solution<P> s) {
     std::vector<double> weights = s.edge_weights;
     std::size_t num_groups = 0;
@@ -304,8 +310,8 @@ class LoopTrials {
   bool are_few_ = false;  // groups: all of them can be tried
 };
 
-// Where the search had to choose between explanations, every group is tried. Where the clusters settled it,
-// only parts of large ones are: a mistake may have come in with them by chance.
+/// Where the search had to choose between explanations, every group is tried. Where the clusters settled it,
+/// only parts of large ones are: a mistake may have come in with them by chance.
 template <class P>
 [[nodiscard]] Solution<P> try_loops(const BasicPoseGraph<P>& graph, const GncSearch<P>& search,
                                     const LoopEvidence<P>& evidence, Tried tried, Solution<P> best) {

@@ -18,7 +18,8 @@ namespace adit {
 template <class P>
 class Marginals {
  public:
-  using Covariance = Eigen::Matrix<double, P::kDof, P::kDof>;
+  using Covariance = Eigen::Matrix<double, P::kDof, P::kDof>;  ///< Of one pose.
+  /// Of two poses.
   using JointCovariance = Eigen::Matrix<double, 2 * P::kDof, 2 * P::kDof>;
 
   /// Fails when the graph is singular or an information matrix is indefinite. `edge_weights` as in

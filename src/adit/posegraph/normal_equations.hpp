@@ -14,19 +14,21 @@ namespace adit {
 /// Which nodes of a graph are unknowns, which edges contribute, and where the terms of each edge go in the
 /// normal equations. Edges of weight 0 and edges between two anchors are left out.
 struct GraphStructure {
-  static constexpr std::size_t kFixed = static_cast<std::size_t>(-1);
+  static constexpr std::size_t kFixed = static_cast<std::size_t>(-1);  ///< No unknown.
   /// One term of one block of the normal matrix.
   struct Term {
-    std::size_t active_edge;
-    enum class Part { from_from, to_to, from_to, to_from } part;
+    std::size_t active_edge;  ///< Index into `active_edges`.
+    /// A block of `EdgeTerms`; to_from is the transpose of from_to.
+    enum class Part { from_from, to_to, from_to, to_from } part;  ///< The one that is added.
   };
   std::vector<std::size_t> variable_of_node;  ///< kFixed for anchors.
-  std::vector<std::size_t> node_of_variable;
-  std::vector<std::size_t> active_edges;  ///< Indices of edges, ascending.
-  BlockPattern pattern;
-  std::vector<std::size_t> term_start;  ///< First term of each block, then the number of terms.
-  std::vector<Term> terms;              ///< By block, in the order of the edges.
+  std::vector<std::size_t> node_of_variable;  ///< Ascending.
+  std::vector<std::size_t> active_edges;      ///< Indices of edges, ascending.
+  BlockPattern pattern;                       ///< Of the normal matrix, which has a row for each variable.
+  std::vector<std::size_t> term_start;        ///< First term of each block, then the number of terms.
+  std::vector<Term> terms;                    ///< By block, in the order of the edges.
 };
+/// Anchors are those of `components`, which are of this graph with these weights (empty: all 1).
 template <class P>
 [[nodiscard]] GraphStructure structure_of(const BasicPoseGraph<P>& graph, const Components& components,
                                           const std::vector<double>& edge_weights);
@@ -46,8 +48,13 @@ template <int D>
 struct EdgeTerms {
   EdgeTerms() {
   }  // NOLINT(modernize-use-equals-default): a defaulted one would fill arrays of them with zeros
+  /// Rows of the first node, columns of the second.
+  ///@{
   Eigen::Matrix<double, D, D> from_from, to_to, from_to;
+  ///@}
 };
+/// Blocks of the normal matrix in the order of the pattern, each column-major. `edges`: one per active edge.
+///@{
 template <int D>
 void sum_terms(const GraphStructure& structure, const std::vector<EdgeTerms<D>>& edges,
                std::vector<double>& values);
@@ -58,12 +65,14 @@ template <int D>
   sum_terms<D>(structure, edges, values);
   return values;
 }
+///@}
 
 /// Linearizes one graph again and again in the same memory: to get it from the system anew takes as long as
 /// the work. Graph, structure and weights must outlive it.
 template <class P>
 class Linearizer {
  public:
+  /// `edge_weights`: one per edge of the graph (empty: all 1).
   Linearizer(const BasicPoseGraph<P>& graph, const GraphStructure& structure,
              const std::vector<double>& edge_weights);
   /// Valid until the next call.
@@ -82,6 +91,7 @@ class Linearizer {
   std::vector<EdgeGradient> gradients_;
   NormalEquations equations_;
 };
+/// The normal equations at these poses, T_world_node, for one time only.
 template <class P>
 [[nodiscard]] NormalEquations linearize(const BasicPoseGraph<P>& graph, const GraphStructure& structure,
                                         const std::vector<P>& poses, const std::vector<double>& edge_weights);

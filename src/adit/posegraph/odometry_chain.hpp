@@ -16,13 +16,15 @@ namespace adit {
 template <class P>
 class BasicOdometryChain {
  public:
-  using Covariance = typename P::Jacobian;
+  using Covariance = typename P::Jacobian;  ///< [translation; rotation].
 
   /// `step_covariances[k]`: of T_k_(k+1), right perturbation, [translation; rotation]; one less than the
   /// poses, or ContractViolation.
   BasicOdometryChain(std::vector<P> T_odom_keyframe, const std::vector<Covariance>& step_covariances);
 
+  /// Keyframes.
   [[nodiscard]] std::size_t size() const { return T_odom_keyframe_.size(); }
+  /// T_odom_keyframe of keyframe i.
   [[nodiscard]] const P& pose(std::size_t i) const { return T_odom_keyframe_[i]; }
   /// T_i_j by odometry.
   [[nodiscard]] P between(std::size_t i, std::size_t j) const { return pose(i).inverse() * pose(j); }
@@ -35,12 +37,13 @@ class BasicOdometryChain {
   std::vector<P> T_odom_keyframe_;
   std::vector<Covariance> prefix_;  ///< prefix_[j]: sum over steps k < j of Ad(T_odom_(k+1)) Sigma_k Ad^T.
 };
+/// In space.
 using OdometryChain = BasicOdometryChain<Pose>;
 
 /// Where a node of a graph stands: on which of its `odometry_paths`, and at which place along it.
 struct PlaceOnPath {
-  std::size_t path = 0;
-  std::size_t position = 0;
+  std::size_t path = 0;      ///< Index of the path.
+  std::size_t position = 0;  ///< Index into its `nodes`.
   auto operator<=>(const PlaceOnPath&) const = default;
 };
 /// The place of each node. The paths must hold every node once.

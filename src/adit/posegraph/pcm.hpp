@@ -13,11 +13,13 @@
 
 namespace adit {
 
+/// How strict the test is, and how long the search may take.
 struct PcmConfig {
   double probability =
       0.99;  ///< Two true loops pass the test this often (chi-square with 6 degrees of freedom).
   std::uint64_t max_search_nodes = 20'000'000;
 };
+/// The keys are the names of the fields.
 inline Fields fields_of(PcmConfig& c) {
   return {{"probability", &c.probability, "", 0.01, 0.999999, "probability that two true loops agree"},
           {"max_search_nodes", &c.max_search_nodes, "", 1, 1e15, "budget of the clique search, in branches"}};
@@ -25,12 +27,13 @@ inline Fields fields_of(PcmConfig& c) {
 
 /// A loop as PCM sees it: keyframe `a` of the first chain, `b` of the second.
 struct PcmLoop {
-  std::size_t a = 0;
-  std::size_t b = 0;
-  Pose T_a_b;
+  std::size_t a = 0;                          ///< Index into the first chain.
+  std::size_t b = 0;                          ///< Index into the second.
+  Pose T_a_b;                                 ///< The measurement.
   Matrix6 information = Matrix6::Identity();  ///< Of T_a_b, right perturbation.
 };
 
+/// Which loops agree, and the largest sets of those that all do.
 struct PcmResult {
   BitGraph consistency{0};           ///< One vertex per loop.
   std::vector<std::size_t> largest;  ///< Indices of loops, ascending: the loops to keep.

@@ -11,12 +11,14 @@
 
 namespace adit {
 
+/// When a loop is believed, and how far a step solves.
 struct RobustIncrementalConfig {
   double inlier_probability = 0.999;  ///< Share of true loops whose chi2 is within the bound.
   double true_share = 0.9995;         ///< Of loops with just enough evidence, so many are true.
   int max_iterations = 2;             ///< Linear systems per step; what remains is done in the next one.
   double relative_tolerance = 1e-4;   ///< Of the cost: a solution that would fall by less is one.
 };
+/// The keys are the names of the fields.
 inline Fields fields_of(RobustIncrementalConfig& c) {
   return {{"inlier_probability", &c.inlier_probability, "", 0.5, 0.999999,
            "share of true loops that the bound keeps"},
@@ -46,29 +48,41 @@ inline Fields fields_of(RobustIncrementalConfig& c) {
 template <class P>
 class RobustIncremental {
  public:
-  using Edge = typename BasicPoseGraph<P>::Edge;
+  using Edge = typename BasicPoseGraph<P>::Edge;  ///< As of the graph.
+  /// Without nodes.
   explicit RobustIncremental(const RobustIncrementalConfig& config = {});
+  /// What was moved from may only be destroyed or assigned to.
+  ///@{
   RobustIncremental(RobustIncremental&&) noexcept;
   RobustIncremental& operator=(RobustIncremental&&) noexcept;
+  ///@}
   ~RobustIncremental();
 
   /// See `IncrementalOptimizer`. A loop is judged in the next update.
+  ///@{
   std::size_t add_node(std::uint64_t key, const P& pose);
   std::size_t add_edge(const Edge& edge);
+  ///@}
 
+  /// What an update did.
   struct Step {
-    SolveStatus status = SolveStatus::converged;
-    std::string reason;
-    std::vector<std::size_t> accepted;  ///< Loops that are in use since this step.
-    std::vector<std::size_t> dropped;   ///< Loops that were in use before it.
-    std::size_t num_waiting = 0;        ///< Loops within the bound that lack evidence.
-    double variance = 1.0;              ///< Of the measurements, by what their information states.
-    int iterations = 0;
+    SolveStatus status = SolveStatus::converged;  ///< Of its last solution.
+    std::string reason;                           ///< Why that stopped, in one sentence.
+    std::vector<std::size_t> accepted;            ///< Loops that are in use since this step.
+    std::vector<std::size_t> dropped;             ///< Loops that were in use before it.
+    std::size_t num_waiting = 0;                  ///< Loops within the bound that lack evidence.
+    double variance = 1.0;                        ///< Of the measurements, by what their information states.
+    int iterations = 0;                           ///< Linear systems solved, over all its solutions.
   };
+  /// Solves with all that was added, judges the new loops, and examines others again. A solution that fails,
+  /// as `IncrementalOptimizer::update` may, ends the step.
   Step update();
 
+  /// Whether the edge counts at present; odometry does from the start.
   [[nodiscard]] bool is_in_use(std::size_t edge) const;
+  /// T_world_node, one per node; of a node that was added since the last update as given.
   [[nodiscard]] const std::vector<P>& poses() const;
+  /// Everything added so far, in use or not; node poses as given.
   [[nodiscard]] const BasicPoseGraph<P>& graph() const;
 
  private:

@@ -16,14 +16,15 @@ struct VarianceComponent {
   /// Of its measurements, by that which their information states: 1 where they err as stated, more where they
   /// state too much. Drawn towards 1 where little is redundant.
   double variance = 1.0;
-  double chi2 = 0.0;        ///< Of its residuals, by the information as stated.
-  double redundancy = 0.0;  ///< How many of its numbers the rest of the graph checks.
-  std::size_t num_edges = 0;
+  double chi2 = 0.0;          ///< Of its residuals, by the information as stated.
+  double redundancy = 0.0;    ///< How many of its numbers the rest of the graph checks.
+  std::size_t num_edges = 0;  ///< Those of weight 0 not counted.
 };
 
+/// A solution, and how well its sources fit one another.
 template <class P>
 struct BalancedSolution {
-  Solution<P> solution;
+  Solution<P> solution;                       ///< Iterations count over all rounds.
   std::vector<VarianceComponent> components;  ///< One per source.
 };
 

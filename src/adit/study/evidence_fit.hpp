@@ -16,8 +16,8 @@ namespace adit {
 
 /// A value of the model as these hypotheses have it.
 struct FittedValue {
-  std::string key;  ///< As EvidenceEntry.
-  double value = 0.0;
+  std::string key;              ///< As EvidenceEntry.
+  double value = 0.0;           ///< In the unit of EvidenceEntry.
   std::size_t num_samples = 0;  ///< Hypotheses that it was fitted to; at least one.
   double upper = 0.0;           ///< Of a share: its upper limit at 95 %; else the value.
 };

@@ -15,24 +15,26 @@ namespace adit {
 
 /// Distances of estimated from true positions, after an alignment (Umeyama, no scale).
 struct PositionError {
-  double rmse_m = 0.0;
-  double max_m = 0.0;
+  double rmse_m = 0.0;  ///< Over all positions with a truth.
+  double max_m = 0.0;   ///< Of the worst position.
 };
 
+/// How good a solution of a graph is, by the truth and the labels that its file has.
 struct GraphJudgement {
+  /// One robot by itself.
   struct Robot {
-    std::string name;
-    std::size_t num_poses = 0;
+    std::string name;                    ///< As it was given.
+    std::size_t num_poses = 0;           ///< Its nodes, with truth or without.
     std::optional<PositionError> error;  ///< After the robot's own alignment; none without truth.
   };
   /// Robots that the measurements kept join, in one map.
   struct Map {
-    std::vector<std::string> robots;
+    std::vector<std::string> robots;     ///< Names, in the order of the file.
     std::optional<PositionError> error;  ///< After one alignment of all its robots together.
   };
   std::optional<LoopScore> loops;  ///< None where the file labels no outliers.
   std::vector<Robot> robots;       ///< In the order of the file.
-  std::vector<Map> maps;
+  std::vector<Map> maps;           ///< Each robot is in one.
 };
 
 /// `solution`: of the graph of `jrl`, with or without its priors as edges. A loop counts as kept from weight

@@ -14,7 +14,7 @@ namespace adit {
 
 /// A solution of a meeting and the class of each of its loops.
 struct JudgedSolution {
-  FleetSolution solution;
+  FleetSolution solution;               ///< As it was given.
   std::vector<LoopClass> loop_classes;  ///< One per entry of solution.loops.
 };
 /// `runs` are the robots of the meeting, in its order. Fails on a loop with a robot that is not among them,
@@ -22,9 +22,11 @@ struct JudgedSolution {
 [[nodiscard]] Result<JudgedSolution> judge(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
                                            const FleetSolution& solution);
 
-/// The result of a meeting of two robots.
+/// The result of a meeting of two robots, without the policy's name; `pcm` is left as it is by default.
 [[nodiscard]] PairResult pair_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
                                      const JudgedSolution& judged);
+/// The result of a meeting of any number of robots, without the policy's name, map accuracies and what
+/// figures need.
 [[nodiscard]] JointResult joint_result(const std::vector<const RobotRun*>& runs, const Meeting& meeting,
                                        const JudgedSolution& judged);
 

@@ -15,7 +15,7 @@ namespace adit {
 
 /// One entry [[graph]] of the list.
 struct ListedGraph {
-  std::string name;
+  std::string name;  ///< What tables call it; with `injection` unique in the list.
   std::string path;  ///< A g2o file, or a folder of them, one per robot.
   std::string injection =
       "random";  ///< How false loops are added: "random", "clustered"; "as found": the file has its own.

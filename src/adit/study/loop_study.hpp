@@ -15,9 +15,10 @@
 
 namespace adit {
 
+/// How the methods are set, and on what they are run.
 struct LoopStudy {
-  GncConfig gnc;
-  PcmConfig pcm;
+  GncConfig gnc;  ///< Of adit's own search and of plain GNC, whatever its `plain` says.
+  PcmConfig pcm;  ///< What PCM keeps is solved by the optimizer of `gnc`.
   std::vector<int> shares = {10, 30, 50, 70};  ///< Per cent of all loops that are false.
   std::function<void(FalseLoopRun)> on_run;    ///< Takes each result.
 };
@@ -26,6 +27,7 @@ struct LoopStudy {
 /// has. Fails where the graph cannot be read or its true edges cannot be solved.
 Result<> run_graph(const ListedGraph& listed, const LoopStudy& study);
 
+/// What of a list is run.
 struct ChosenGraphs {
   std::vector<ListedGraph> graphs;  ///< In the order of the list.
   std::vector<std::string> notes;   ///< One line per graph that is left out because its file is absent.

@@ -21,19 +21,21 @@ enum class HypothesisTruth {
   wrong,
 };
 
+/// A hypothesis that a merge check has tested.
 struct JudgedHypothesis {
-  HypothesisTruth truth = HypothesisTruth::wrong;
-  bool refuted = false;   ///< Then its evidence does not count.
-  bool accepted = false;  ///< The check joined the maps by it.
-  double evidence = 0.0;
-  double needed = 0.0;
-  HypothesisCounts counts{};
+  HypothesisTruth truth = HypothesisTruth::wrong;  ///< Always wrong where the robots never met.
+  bool refuted = false;                            ///< Then its evidence does not count.
+  bool accepted = false;                           ///< The check joined the maps by it.
+  double evidence = 0.0;                           ///< As in MergeHypothesis.
+  double needed = 0.0;                             ///< As in MergeCheck.
+  HypothesisCounts counts{};                       ///< What the evidence comes from.
   double walls = 0.0;    ///< The part of the evidence that comes from the relief of walls.
   std::string robots{};  ///< As in "zab-1/robot_0, zab-1/robot_2".
 };
 
+/// How robots are driven and maps are checked.
 struct CalibrationStudy {
-  RunConfig config;
+  RunConfig config;              ///< Used under the policy `adaptive`.
   std::filesystem::path folder;  ///< Keeps the robots' maps (maps/, which exists).
 };
 

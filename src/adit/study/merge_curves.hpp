@@ -14,12 +14,12 @@ namespace adit {
 
 /// One entry [[effect]] of the list.
 struct MergeEffect {
-  std::string name;
-  std::string field;  ///< A key of RunConfig.
-  std::string unit;
+  std::string name;     ///< What tables call it; unique in the list.
+  std::string field;    ///< A key of RunConfig.
+  std::string unit;     ///< Of amplitudes; may be empty.
   double stated = 0.0;  ///< What data sheets or a working mine have; amplitudes go to twice this.
-  int steps = 2;
-  std::string set;  ///< Further "key=value", separated by commas, at every amplitude but 0.
+  int steps = 2;        ///< Amplitudes above 0, evenly spaced.
+  std::string set;      ///< Further "key=value", separated by commas, at every amplitude but 0.
 
   /// From 0 to twice `stated`.
   [[nodiscard]] std::vector<double> amplitudes() const;
@@ -31,10 +31,11 @@ Result<std::vector<MergeEffect>> read_effects(const std::filesystem::path& list)
 /// `config` with that effect; unchanged at the amplitude 0.
 Result<RunConfig> with_effect(const MergeEffect& effect, double amplitude, RunConfig config);
 
+/// What merging came to under one effect of one amplitude.
 struct CurvePoint {
-  std::string effect;
-  double amplitude = 0.0;
-  MergeCounts counts;  ///< Over the worlds.
+  std::string effect;      ///< Its name.
+  double amplitude = 0.0;  ///< In the unit of the effect.
+  MergeCounts counts;      ///< Over the worlds.
 };
 
 /// Runs MergePolicy::adaptive on every world at every amplitude, on maps that are not kept but those without

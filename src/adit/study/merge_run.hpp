@@ -28,8 +28,10 @@ Result<MergeRun> run_merges(const std::vector<RobotRun>& runs, const MergeTruth&
                             const SlamConfig& config);
 
 /// The results file holds all runs so far; a missing file holds none.
+///@{
 Result<std::vector<MergeRun>> read_merge_runs(const std::filesystem::path& file);
 Result<> write_merge_runs(const std::filesystem::path& file, const std::vector<MergeRun>& runs);
+///@}
 /// One line per pair, for spreadsheets.
 Result<> write_merge_csv(const std::filesystem::path& file, const std::vector<MergeRun>& runs);
 /// Replaces the run of the same world, policy, sensors and conditions, or appends.

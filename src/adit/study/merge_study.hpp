@@ -14,11 +14,13 @@
 
 namespace adit {
 
+/// Which worlds of a list are run.
 struct WorldChoice {
   std::vector<std::string> groups;  ///< Worlds of these groups,
   std::vector<std::string> only;    ///< or if not empty those of these names.
 };
 
+/// What of a list is run.
 struct ChosenWorlds {
   std::vector<ListedWorld> worlds;  ///< In the order of the list.
   std::vector<std::string> notes;   ///< One line per world that is left out because its files are absent.
@@ -28,9 +30,10 @@ struct ChosenWorlds {
                                                  const std::vector<ListedWorld>& worlds,
                                                  const WorldChoice& choice);
 
+/// How robots are driven and merged, and where results go.
 struct MergeStudy {
-  RunConfig config;
-  std::vector<KeyframeSelection> policies;
+  RunConfig config;  ///< As each world (`scenario_of`) and each policy (`with_policy`) then change it.
+  std::vector<KeyframeSelection> policies;  ///< Those that run on each world, in this order.
   std::string variant;  ///< Added to the policies' names, so that results stand beside the usual ones.
   std::filesystem::path folder;  ///< Keeps the robots' maps (maps/, which exists) and results.json.
   std::function<void(const MergeRun&)> on_run;  ///< Called after each policy; may be empty.

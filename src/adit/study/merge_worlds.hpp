@@ -15,13 +15,14 @@ namespace adit {
 
 /// One entry [[world]] of the list: a preset of the generator, or routes through a mesh on disk.
 struct ListedWorld {
-  std::string name;
-  std::string group = "tuning";
-  std::uint64_t noise_seed = 1;
-  std::string lidars;       ///< Of its robots in turn, separated by commas; "": as the study has them.
-  std::string conditions;   ///< "ideal" or "field"; "": as the study has them.
-  std::string routes_file;  ///< Relative to the list; "": the world is generated from `generated`.
-  WorldConfig generated;
+  std::string name;              ///< What tables and caches call it; unique in the list.
+  std::string group = "tuning";  ///< "tuning", "check", "field" or "limit".
+  std::uint64_t noise_seed = 1;  ///< Of all noise of sensors and wheels.
+  std::string lidars;            ///< Of its robots in turn, separated by commas; "": as the study has them.
+  std::string conditions;        ///< "ideal" or "field"; "": as the study has them.
+  std::string routes_file;  ///< As read, relative to the working directory; "": the world is generated from
+                            ///< `generated`.
+  WorldConfig generated;    ///< Not read where there is a `routes_file`.
 };
 
 /// In the order of the file, paths made relative to the working directory. Fails on an entry without a name,

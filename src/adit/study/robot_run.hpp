@@ -16,7 +16,7 @@ struct RobotRun {
   std::shared_ptr<const RobotMap> map;        ///< By the configured odometry.
   std::shared_ptr<const RobotMap> paper_map;  ///< By `paper_odometry`; the same map where that is the same.
   Trajectory truth;                           ///< For evaluation alone.
-  RobotResult result;
+  RobotResult result;                         ///< What tables say of the drive.
 
   /// The map from which `policy` selects keyframes.
   [[nodiscard]] const std::shared_ptr<const RobotMap>& map_for(KeyframeSelection policy) const {

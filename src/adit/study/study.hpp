@@ -15,6 +15,7 @@
 
 namespace adit {
 
+/// What is run, and where results go.
 struct Study {
   RunConfig config;                         ///< Policies run under `with_policy`.
   std::vector<KeyframeSelection> policies;  ///< Of the pairs; the last one also of all robots jointly.

@@ -13,6 +13,7 @@ namespace adit {
 /// opposite directions.
 inline constexpr double kSurfaceTolerance = 0.16;
 
+/// Where a stretch was laid in the end, and how well it fits there.
 struct SurfaceFit {
   Pose T_there_here;       ///< Both in the world frame: carries the stretch to where it was laid.
   double differing = 1.0;  ///< Share of the stretch's rays that meet another surface there.

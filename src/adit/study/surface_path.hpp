@@ -15,9 +15,11 @@ namespace adit {
 /// Rays of one viewpoint: rings of equal angles around the tunnel's axis; one ring looks straight at the
 /// walls, one ahead and one back. Turned by 180 degrees about the vertical, the rays coincide with one
 /// another.
+///@{
 inline constexpr std::size_t kRings = 3;
 inline constexpr std::size_t kRaysPerRing = 24;
 inline constexpr std::size_t kRays = kRings * kRaysPerRing;
+///@}
 /// Metres; what is farther counts as this far.
 inline constexpr float kRayReach = 20.0F;
 
@@ -26,6 +28,7 @@ inline constexpr float kRayReach = 20.0F;
 /// The ray that takes the place of `ray` after half a turn about the vertical.
 [[nodiscard]] std::size_t turned_ray(std::size_t ray);
 
+/// The surface as one viewpoint sees it.
 struct SurfaceSample {
   Pose T_world_view;  ///< Level; midway between the walls at the sides, so that the lane does not matter.
   std::array<float, kRays> ranges{};           ///< Metres, at most kRayReach.

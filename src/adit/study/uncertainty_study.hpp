@@ -15,18 +15,19 @@ namespace adit {
 
 /// The errors of one source of relative poses.
 struct UncertaintyRow {
-  std::string source;  ///< "odometry over 10 m", "loops", ...
-  Calibration calibration;
+  std::string source;       ///< "odometry over 10 m", "loops", ...
+  Calibration calibration;  ///< Of its errors, by the covariances stated for them.
 };
 
 /// What was measured with one LiDAR and one IMU.
 struct MeasuredUncertainty {
-  std::string sensors;  ///< "os2-32, IMU icm-20948".
-  std::vector<UncertaintyRow> rows;
+  std::string sensors;               ///< "os2-32, IMU icm-20948".
+  std::vector<UncertaintyRow> rows;  ///< Each source once.
 };
 
+/// How robots are driven and merged.
 struct UncertaintyStudy {
-  RunConfig config;
+  RunConfig config;              ///< Used under the policy `adaptive`.
   std::filesystem::path folder;  ///< Keeps the robots' maps (maps/, which exists).
 };
 
