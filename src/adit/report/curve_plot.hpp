@@ -9,8 +9,9 @@
 
 namespace adit {
 
+/// One curve of `plot_shares`.
 struct ShareCurve {
-  std::string label;
+  std::string label;                    ///< As the legend names it. Its place in the list decides its colour.
   std::vector<Eigen::Vector2d> points;  ///< {x, share}, x ascending from 0, shares 0 to 1.
 };
 

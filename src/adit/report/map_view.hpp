@@ -13,15 +13,18 @@
 
 namespace adit {
 
-inline constexpr double kFigureWidth = 800.0;
-inline constexpr double kMapFooter = 44.0;  ///< Room for the scale bar.
+inline constexpr double kFigureWidth = 800.0;  ///< Pixels: of every map, and of the box plots.
+inline constexpr double kMapFooter = 44.0;     ///< Room for the scale bar.
 
 /// The smallest box around everything that a figure shows; `extend` skips what is not finite.
 class MapExtent {
  public:
+  /// Widens the box so that it holds these too, in plan: heights do not count. An empty plan changes nothing.
+  ///@{
   void extend(std::span<const Vector3> path);
   void extend(std::span<const Eigen::Vector3f> points);
   void extend(const FloorPlan& plan);
+  ///@}
   /// With a margin of 3 %, and at least 2 m on a side; around the origin when nothing was shown.
   [[nodiscard]] Eigen::AlignedBox2d box() const;
 
@@ -36,11 +39,14 @@ class MapView {
   /// `top` is the room for legend and labels above the map, in pixels.
   MapView(const Eigen::AlignedBox2d& world, double top);
 
+  /// From the world frame (metres, north up; heights do not count) to pixels, y down.
+  ///@{
   [[nodiscard]] Point2 at(const Vector3& p) const { return at(Point2(p.head<2>())); }
   [[nodiscard]] Point2 at(const Point2& p) const;
   [[nodiscard]] std::vector<Point2> at(std::span<const Vector3> path) const;
-  [[nodiscard]] double pixels_per_metre() const { return scale_; }
-  [[nodiscard]] double bottom() const { return bottom_; }  ///< Where the map ends, in pixels.
+  ///@}
+  [[nodiscard]] double pixels_per_metre() const { return scale_; }  ///< The same along both axes.
+  [[nodiscard]] double bottom() const { return bottom_; }           ///< Where the map ends, in pixels.
 
  private:
   Eigen::AlignedBox2d world_;
@@ -52,6 +58,7 @@ class MapView {
 /// Legend at the top, then the view under it, with room for the scale bar below.
 MapView begin_map(SvgCanvas& canvas, const Eigen::AlignedBox2d& world, std::span<const LegendItem> legend);
 
+/// A dot with a white rim, as at the start of a path. `at`: pixels.
 void draw_start(SvgCanvas& canvas, const Point2& at, Rgba color);
 
 /// Robots that share a tunnel hide one another: the earlier ones are drawn wider, so that a rim of each stays

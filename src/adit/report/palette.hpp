@@ -15,9 +15,9 @@ namespace adit {
 
 inline constexpr Rgba kInk = {31, 41, 51};         ///< Text.
 inline constexpr Rgba kMutedInk = {97, 110, 124};  ///< Axis labels and notes.
-inline constexpr Rgba kGrid = {223, 228, 234};
-inline constexpr Rgba kWall = {98, 110, 122};
-inline constexpr Rgba kWhite = {255, 255, 255};
+inline constexpr Rgba kGrid = {223, 228, 234};     ///< Grid lines of axes, and frames around maps.
+inline constexpr Rgba kWall = {98, 110, 122};      ///< Walls in floor plans, whose density is the opacity.
+inline constexpr Rgba kWhite = {255, 255, 255};    ///< Rims of dots and paths, and numbers on dots.
 
 /// The robot's colour; colours repeat after eight robots.
 [[nodiscard]] Rgba robot_color(std::size_t robot);

@@ -17,10 +17,10 @@ namespace adit {
 
 /// Straight (not premultiplied) colour, 8 bits per channel.
 struct Rgba {
-  std::uint8_t r = 0;
-  std::uint8_t g = 0;
-  std::uint8_t b = 0;
-  std::uint8_t a = 255;
+  std::uint8_t r = 0;    ///< Red.
+  std::uint8_t g = 0;    ///< Green.
+  std::uint8_t b = 0;    ///< Blue.
+  std::uint8_t a = 255;  ///< Opacity; 0: nothing is seen.
   bool operator==(const Rgba&) const = default;
 };
 

@@ -14,20 +14,26 @@ namespace adit {
 /// The phases that run at one moment, as a tree. Not synchronised; times are the caller's, on any clock.
 class PhaseTree {
  public:
+  /// A time on the caller's clock.
   using Seconds = std::chrono::duration<double>;
 
+  /// A phase that has begun and not ended.
   struct Running {
-    PhaseId id = 0;
-    PhaseId parent = 0;
-    std::string name;
+    PhaseId id = 0;         ///< Given out by `begin`: from 1 on, none twice.
+    PhaseId parent = 0;     ///< The phase around it; 0: none.
+    std::string name;       ///< As progress_line() shows it.
     std::size_t total = 0;  ///< Steps; 0: unknown.
-    std::size_t done = 0;
-    Seconds begin{};
+    std::size_t done = 0;   ///< Steps so far; may exceed `total`.
+    Seconds begin{};        ///< When the phase began.
   };
 
+  /// A phase of `total` steps (0: unknown) begins inside `parent` (0: inside none). Returns its id.
   PhaseId begin(std::string_view name, std::size_t total, PhaseId parent, Seconds now);
+  /// Does nothing where the phase has ended already.
+  ///@{
   void advance(PhaseId phase, std::size_t steps);
   void end(PhaseId phase);
+  ///@}
 
   /// From an outermost phase inwards, as long as one phase alone runs inside the last. Robots that are mapped
   /// in parallel are thus one phase; of pairs that meet one after the other the current one is shown.

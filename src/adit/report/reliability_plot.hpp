@@ -11,7 +11,7 @@ namespace adit {
 
 /// Of one source of errors: share that its covariances claim to hold, share that they hold.
 struct ReliabilityCurve {
-  std::string label;
+  std::string label;                    ///< As the legend names it.
   std::vector<Eigen::Vector2d> points;  ///< {claimed, observed}, both 0 to 1, claimed ascending.
 };
 

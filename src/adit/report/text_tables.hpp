@@ -13,7 +13,7 @@ namespace adit {
 [[nodiscard]] std::string text_of(const Table& table);
 /// GitHub's Markdown: title in bold, table, caption in italics. Bars in cells are escaped.
 [[nodiscard]] std::string markdown_of(const Table& table);
-/// A <figure> with <figcaption>; everything escaped.
+/// A `<figure>` with `<figcaption>`; everything escaped.
 [[nodiscard]] std::string html_of(const Table& table);
 
 }  // namespace adit

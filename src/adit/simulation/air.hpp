@@ -28,6 +28,7 @@ struct AirConfig {
   double cloud_radius = 4.0;   ///< Metres; drawn from half to one and a half of it.
   double drips = 0.0;          ///< Share of rays that meet a drop, in three places of ten.
 };
+/// The keys are the names of the members; in the configuration of a run they begin with "simulation.air.".
 [[nodiscard]] Fields fields_of(AirConfig& config);
 
 /// Haze with a visibility of 2 km; every 500 m a cloud as vehicles raise it, in which one sees 5 to 80 m.
@@ -35,24 +36,26 @@ struct AirConfig {
 
 /// A ball of dust that drifts past one point of a robot's path.
 struct DustCloud {
-  Stamp middle;  ///< Of its life, a minute or two.
-  Vector3 centre;
-  Vector3 velocity;
-  double radius = 1.0;
-  double density = 0.0;
+  Stamp middle;          ///< Of its life, which lasts 90 s.
+  Vector3 centre;        ///< At `middle`; world frame, metres.
+  Vector3 velocity;      ///< World frame, metres per second; steady.
+  double radius = 1.0;   ///< Metres.
+  double density = 0.0;  ///< Extinction in it, per metre.
 };
 
 /// The air during one sweep, world frame.
 struct Air {
+  /// A cloud, where it is at that time.
   struct Ball {
-    Eigen::Vector3f centre;
-    float radius;
-    float density;
+    Eigen::Vector3f centre;  ///< Metres.
+    float radius;            ///< Metres.
+    float density;           ///< Extinction per metre, which adds to that of the fog.
   };
-  float fog = 0.0F;
-  float drips = 0.0F;
-  std::vector<Ball> balls = {};
+  float fog = 0.0F;              ///< Extinction everywhere, per metre.
+  float drips = 0.0F;            ///< Share of rays that meet a drop; 0 where no water drips.
+  std::vector<Ball> balls = {};  ///< All clouds of that time, however far away.
 
+  /// Whether look_through() would change nothing.
   [[nodiscard]] bool is_clear() const { return fog == 0.0F && drips == 0.0F && balls.empty(); }
 };
 

@@ -15,6 +15,7 @@
 
 namespace adit {
 
+/// The width of a beam, and how far apart two of its returns have to be.
 struct Beam {
   double divergence = 0.0;  ///< Radians, full angle; 0: no width.
   double pulse_m = 0.3;     ///< Returns nearer to one another than this are one.

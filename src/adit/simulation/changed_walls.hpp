@@ -10,6 +10,7 @@
 
 namespace adit {
 
+/// How many stretches of the walls change, and by how much.
 struct ChangedWalls {
   double per_km = 0.0;   ///< Stretches of 20 m along the path.
   double largest = 0.3;  ///< Metres; each stretch is drawn from a sixth of it to it, inwards or outwards.

@@ -16,8 +16,8 @@ namespace adit {
 
 /// A place on the floor where the robot can stand, turned in any direction.
 struct FloorCell {
-  static constexpr std::uint32_t kNone = ~0U;
-  FloorColumn column;
+  static constexpr std::uint32_t kNone = ~0U;       ///< In `links`: no cell.
+  FloorColumn column;                               ///< In the grid of DrivableFloor::cell_m.
   Vector3 position;                                 ///< On the floor, metres.
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< Rise of the floor along x and y, over about a metre.
   double margin = 0.0;  ///< From walls and drops, metres; more than `kFarthestMargin` is not told apart.
@@ -27,17 +27,18 @@ struct FloorCell {
 /// Columns beside a column. Opposite directions are four apart.
 inline constexpr std::array<std::array<int, 2>, 8> kNeighbours{
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
-inline constexpr double kFarthestMargin = 3.0;
+inline constexpr double kFarthestMargin = 3.0;  ///< Metres: as far as walls and drops are looked for.
 
 /// The largest part of a mesh's floor on which a robot can get everywhere.
 struct DrivableFloor {
-  double cell_m = 0.0;
+  double cell_m = 0.0;                    ///< Width of a column of the grid, metres.
   std::vector<FloorCell> cells;           ///< By column and height.
   std::vector<Vector3> other_parts = {};  ///< A place in each other part of 4 m² or more.
   double escaping_rays =
       0.0;  ///< Share of the rays from the floor that meet nothing: they leave through portals.
   std::vector<Vector3> openings = {};  ///< Places from which many of them do.
 
+  /// In plan, square metres.
   [[nodiscard]] double area_m2() const { return static_cast<double>(cells.size()) * cell_m * cell_m; }
   /// The cell of the column of `p` that is nearest in height, at most 1 m away.
   [[nodiscard]] std::optional<std::uint32_t> cell_at(const Vector3& p) const;

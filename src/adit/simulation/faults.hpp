@@ -14,12 +14,13 @@
 
 namespace adit {
 
+/// Whether a number follows the stretch: "0.5" in "slip 10:13 0.5".
 enum class FaultAmount { none, needed };
 
 /// One that a sensor knows.
 struct FaultKind {
-  std::string_view name;
-  FaultAmount amount = FaultAmount::none;
+  std::string_view name;                   ///< The first word of a fault; not owned.
+  FaultAmount amount = FaultAmount::none;  ///< Without a number the amount of a fault is 0.
 };
 
 /// The faults in the order of the text, with the name of the sensor. Fails on a kind that is not among

@@ -19,6 +19,8 @@ struct TrafficConfig {
   bool robots = false;             ///< Whether robots see one another.
   double vehicles_per_hour = 0.0;  ///< That meet or overtake each robot while it drives.
 };
+/// The keys are the names of the members; in the configuration of a run they begin with
+/// "simulation.traffic.".
 [[nodiscard]] Fields fields_of(TrafficConfig& config);
 
 /// Robots see one another, and a vehicle passes each every five minutes: chosen, not measured.
@@ -30,7 +32,7 @@ struct DrivingVehicle {
   Stamp met;              ///< When it is beside that robot.
   double pace = 2.0;      ///< Negative: it comes towards the robot.
   double left = 2.0;      ///< Metres from the path to its middle.
-  double width = 1.9;
+  double width = 1.9;     ///< Metres; less than that of kVehicle in a narrow tunnel.
 };
 
 /// The vehicles that drive along the paths, where tunnels have room for them. `floor` is watertight.

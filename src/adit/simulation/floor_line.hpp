@@ -11,15 +11,16 @@
 
 namespace adit {
 
+inline constexpr double kFloorAbove = 1.5;  ///< Metres: waypoints may lie below the floor.
+inline constexpr double kFloorBelow =
+    3.0;  ///< Metres: waypoints may be at the height of a sensor or of a person's eyes.
+
 /// Height in metres of the surface at (p.x, p.y) that is nearest to p.z, world frame, z up; none where there
 /// is no surface from `kFloorAbove` above p to `kFloorBelow` below it. It is the nearest and not the first
 /// from above, since worlds have several levels and ceilings lower than `kFloorAbove`. Edges between
 /// triangles belong to the floor, and so do cracks of up to a millimetre, which vertices written with few
 /// decimals leave. The raycaster should be watertight (EdgeRule), or an edge may let the search pass to
 /// another level.
-inline constexpr double kFloorAbove = 1.5;  ///< Metres: waypoints may lie below the floor.
-inline constexpr double kFloorBelow =
-    3.0;  ///< Metres: waypoints may be at the height of a sensor or of a person's eyes.
 [[nodiscard]] std::optional<double> floor_height(const Raycaster& raycaster, const Vector3& p);
 
 /// The route's waypoints put on the floor (world frame, metres), with further floor points between waypoints

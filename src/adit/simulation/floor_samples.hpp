@@ -15,16 +15,17 @@ namespace adit {
 
 /// A column of a grid in plan: its middle is at ((x + 0.5) cell, (y + 0.5) cell).
 struct FloorColumn {
-  int x = 0;
-  int y = 0;
+  int x = 0;  ///< Negative to the west of the origin.
+  int y = 0;  ///< Negative to the south of it.
   auto operator<=>(const FloorColumn&) const = default;
 };
+/// The column that holds `p` in plan; columns are `cell` metres wide.
 [[nodiscard]] FloorColumn column_of(const Vector3& p, double cell);
 
 /// A surface that is not too steep, exactly above or below the middle of a column.
 struct FloorSample {
-  FloorColumn column;
-  double z = 0.0;
+  FloorColumn column;  ///< Of the grid that floor_samples() was asked for.
+  double z = 0.0;      ///< Height of the surface there, metres.
 };
 
 /// Every such surface of the mesh, floors and ceilings alike, by column and from the lowest up: levels above

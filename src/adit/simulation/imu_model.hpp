@@ -45,6 +45,7 @@ struct ImuConfig {
   double mount_yaw_deg = 0.0;
   std::string faults;  ///< "silent 10:15", see faults.hpp.
 };
+/// The keys are the names of the members; in the configuration of a run they begin with "simulation.imu.".
 [[nodiscard]] Fields fields_of(ImuConfig& config);
 
 /// Ranges of the fields, and the text of the faults.
@@ -54,8 +55,10 @@ Result<> check_imu(ImuConfig config);
 /// carry beside the LiDAR), perfect (no errors). An unknown name fails with the list. They sit where the
 /// default sits.
 [[nodiscard]] Result<ImuConfig> imu_preset(const std::string& name);
+/// The names that imu_preset() knows.
 [[nodiscard]] std::vector<std::string> imu_presets();
 
+/// The stated mount. It is turned by roll, then pitch, then yaw about the fixed axes of the lidar frame.
 [[nodiscard]] Pose T_lidar_imu(const ImuConfig& config);
 
 /// Of one sample, as the density of the noise says.

@@ -21,12 +21,15 @@
 
 namespace adit {
 
+/// In which order a sensor looks in which directions.
 enum class LidarPattern {
   spinning,  ///< All beams of a column at once, columns around the upward axis.
   rosette,   ///< Two turning prisms in front of one laser, about the forward axis.
   wave,      ///< Turning about the upward axis while the elevation swings.
 };
+/// All patterns, for configurations.
 inline constexpr std::array kLidarPatterns{LidarPattern::spinning, LidarPattern::rosette, LidarPattern::wave};
+/// As configurations name it: "spinning".
 [[nodiscard]] std::string_view to_string(LidarPattern pattern);
 
 /// Lengths in metres. Defaults: Ouster OS2-128.
@@ -55,6 +58,7 @@ struct LidarConfig {
   double mount_height = 0.9;
 };
 
+/// The keys are the names of the members; in the configuration of a run they begin with "simulation.lidar.".
 inline Fields fields_of(LidarConfig& c) {
   return {
       {"name", &c.name, "", 0, 0, "the sensor's name, noted in recordings"},
@@ -95,8 +99,10 @@ Result<> check_lidar(LidarConfig config);
 /// livox-mid-360 (fields of view, points per second and ranges as their makers state; the Avia's and the
 /// Mid-360's curves only resemble theirs, which are not published). An unknown name fails with the list.
 [[nodiscard]] Result<LidarConfig> lidar_preset(const std::string& name);
+/// The names that lidar_preset() knows.
 [[nodiscard]] std::vector<std::string> lidar_presets();
 
+/// The stated mount: level, facing forward. The true one is this times LidarUnit::T_nominal_true.
 [[nodiscard]] inline Pose T_base_lidar(const LidarConfig& config) {
   return Pose::translation_of(config.mount_forward, 0.0, config.mount_height);
 }
@@ -111,16 +117,16 @@ Result<> check_lidar(LidarConfig config);
 /// One scan of the sensor, moving steadily (on a geodesic) from its pose at the start to its pose at the end,
 /// or through poses in between.
 struct Sweep {
-  Pose T_world_lidar_start;
-  Pose T_world_lidar_end;
-  Stamp end;  ///< Stamp of the scan.
+  Pose T_world_lidar_start;  ///< One sweep_time() before `end`.
+  Pose T_world_lidar_end;    ///< At `end`, when the last column is fired.
+  Stamp end;                 ///< Stamp of the scan.
   /// One per scan. A ray's noise depends on it, its beam and its column alone.
   std::uint64_t noise_seed = 0;
   std::vector<Pose> T_world_lidar_between = {};  ///< At equal intervals of time; without start and end.
   double dust = 0.0;                     ///< Share of rays that end in dust, within 5 m of the sensor.
   std::optional<Raycaster> movers = {};  ///< What is there during this sweep alone.
-  Surfaces surfaces = {};
-  Air air = {};
+  Surfaces surfaces = {};                ///< Of the world; all alike by default.
+  Air air = {};                          ///< Clear by default.
 };
 
 /// What the sensor sees during one sweep, as it would report it: each point in the lidar frame of its own

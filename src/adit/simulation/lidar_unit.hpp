@@ -41,6 +41,8 @@ struct LidarErrorConfig {
   /// and 2, and so on: the worst pairs of a fleet, for curves of the outcome over an amplitude.
   bool opposed = false;
 };
+/// The keys are the names of the members; in the configuration of a run they begin with
+/// "simulation.lidar_errors.".
 [[nodiscard]] Fields fields_of(LidarErrorConfig& config);
 
 /// Errors as in practice.
@@ -48,20 +50,20 @@ struct LidarErrorConfig {
 
 /// The errors of one unit. By default it has none.
 struct LidarUnit {
-  double divergence_factor = 0.0;
-  double range_bias = 0.0;
-  double incidence_walk = 0.0;
-  double intensity_walk = 0.0;
-  double warm_up_drift = 0.0;
-  double warm_up_s = 1.0;
+  double divergence_factor = 0.0;      ///< Width of the beams divided by the stated one; 0: rays.
+  double range_bias = 0.0;             ///< Metres, added to every range.
+  double incidence_walk = 0.0;         ///< Metres, added where a surface is met at 80 degrees.
+  double intensity_walk = 0.0;         ///< Metres, added to the weakest return; felt where surfaces differ.
+  double warm_up_drift = 0.0;          ///< Metres, added once the sensor is warm.
+  double warm_up_s = 1.0;              ///< Seconds in which the drift has come to 63 %.
   std::vector<double> ring_range;      ///< Metres by beam, from the highest down; empty: none.
   std::vector<double> ring_azimuth;    ///< Radians, the same.
   std::vector<double> ring_elevation;  ///< Radians, the same.
   Pose T_nominal_true;                 ///< The sensor's true frame in the one that the recording states.
-  Duration wheels_late{};
-  Duration imu_late{};
-  double jitter_s = 0.0;
-  double false_returns = 0.0;
+  Duration wheels_late{};              ///< Added to the stamps of the wheel odometry; may be negative.
+  Duration imu_late{};                 ///< The same of the IMU.
+  double jitter_s = 0.0;               ///< Standard deviation of the stamps of scans, seconds.
+  double false_returns = 0.0;          ///< Share of rays that report too short a range.
 
   /// What is added to ranges at that time after power-on whatever they meet, rings apart.
   [[nodiscard]] double bias_at(Duration since_start) const;

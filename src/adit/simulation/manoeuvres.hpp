@@ -19,16 +19,20 @@ struct ManoeuvreConfig {
   double reversal_s = 2.0;  ///< Of the way it came.
   double turn_deg = 90.0;   ///< To one side and back, drawn which.
 };
+/// The keys are the names of the members; in the configuration of a run they begin with
+/// "simulation.drive.manoeuvres.".
 [[nodiscard]] Fields fields_of(ManoeuvreConfig& config);
 
 /// Now and then, as a driver who is in no hurry: chosen, not measured.
 [[nodiscard]] ManoeuvreConfig field_manoeuvres();
 
+/// One halt of a robot, and what it does there.
 struct Manoeuvre {
+  /// Standing; backing up and coming again; turning to one side and back.
   enum class Kind { stop, reversal, turn };
-  Kind kind = Kind::stop;
-  double share = 0.5;   ///< Of the path's length, where the robot halts.
-  double amount = 0.0;  ///< Seconds, or radians (turn).
+  Kind kind = Kind::stop;  ///< Decides the unit of `amount`.
+  double share = 0.5;      ///< Of the path's length, where the robot halts.
+  double amount = 0.0;     ///< Seconds, or radians (turn; positive: to the left).
 };
 
 /// Those of one drive, by place; none in the first and last twentieth of the path, nor 5 m from another.
@@ -38,6 +42,7 @@ struct Manoeuvre {
 /// When a robot is where: a clock that goes along the path, and stands or runs back where it halts.
 class DriveClock {
  public:
+  /// Where the robot is on its drive, and where it looks.
   struct Reading {
     double driving_time = 0.0;  ///< Of the drive without manoeuvres, seconds.
     double turned = 0.0;        ///< Radians to the left of the path.

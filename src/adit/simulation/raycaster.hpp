@@ -16,34 +16,39 @@ namespace adit {
 
 /// World frame, metres; `direction` has unit length.
 struct Ray {
-  Eigen::Vector3f origin = Eigen::Vector3f::Zero();
-  Eigen::Vector3f direction = Eigen::Vector3f::UnitX();
+  Eigen::Vector3f origin = Eigen::Vector3f::Zero();      ///< Where distances count from.
+  Eigen::Vector3f direction = Eigen::Vector3f::UnitX();  ///< Where the ray goes.
 };
 
 /// Where a ray first meets the mesh.
 struct RayHit {
-  static constexpr float kMiss = std::numeric_limits<float>::infinity();
+  static constexpr float kMiss = std::numeric_limits<float>::infinity();  ///< More than any distance.
   float distance = kMiss;                            ///< Metres along the ray; `kMiss` when nothing is met.
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< Unit; the side follows the triangle's winding.
 
+  /// Whether a surface was met.
   [[nodiscard]] bool hit() const { return distance < kMiss; }
 };
 
 /// Many rays and their hits, side by side: the fast form of casting.
 struct RayBlock {
-  static constexpr std::size_t kCapacity = 128;
-  using Numbers = std::array<float, kCapacity>;
+  static constexpr std::size_t kCapacity = 128;  ///< Most rays of a block.
+  using Numbers = std::array<float, kCapacity>;  ///< One number per ray.
+  /// One vector per ray, component by component.
   struct Vectors {
+    /// Of each ray.
+    ///@{
     Numbers x;
     Numbers y;
     Numbers z;
+    ///@}
   };
 
   std::size_t size = 0;  ///< Entries in use of the arrays below.
-  Vectors origins;
-  Vectors directions;
-  Numbers distances;  ///< As in RayHit. Casting fills in these and the cosines.
-  Numbers cosines;    ///< Of the angle between the ray and the normal, 0 to 1; undefined for a miss.
+  Vectors origins;       ///< World frame, metres.
+  Vectors directions;    ///< World frame, of unit length.
+  Numbers distances;     ///< As in RayHit. Casting fills in these and the cosines.
+  Numbers cosines;       ///< Of the angle between the ray and the normal, 0 to 1; undefined for a miss.
 };
 
 /// What happens to a ray that runs exactly through an edge or a corner that triangles share.

@@ -25,6 +25,7 @@ struct RouteConfig {
   [[nodiscard]] double half_width_m() const { return 0.5 * width_m + clearance_m; }
 };
 
+/// The keys are the names of the members; in the configuration of a run they begin with "routes.".
 inline Fields fields_of(RouteConfig& c) {
   return {
       {"width_m", &c.width_m, "m", 0.1, 10, "width of the robot, mirrors and mast included"},

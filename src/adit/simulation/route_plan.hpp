@@ -12,17 +12,19 @@
 
 namespace adit {
 
+/// The route of one robot, and how narrow and steep it is.
 struct PlannedRoute {
-  Route route;
+  Route route;               ///< On the floor, world frame of the mesh.
   double clearance_m = 0.0;  ///< Least distance of a waypoint from a wall; 3 m and more are not told apart.
   double slope_deg = 0.0;    ///< Steepest stretch between two waypoints.
 };
 
+/// The routes of all robots, and what the floor is like.
 struct RoutePlan {
-  std::vector<PlannedRoute> robots;
-  double floor_m2 = 0.0;           ///< On which the robot can stand and get everywhere.
-  double covered = 0.0;            ///< Share of the network's places, 0 to 1, that routes pass.
-  std::vector<std::string> notes;  ///< What the user should know of the mesh, one line each.
+  std::vector<PlannedRoute> robots;  ///< As many as were asked for.
+  double floor_m2 = 0.0;             ///< On which the robot can stand and get everywhere.
+  double covered = 0.0;              ///< Share of the network's places, 0 to 1, that routes pass.
+  std::vector<std::string> notes;    ///< What the user should know of the mesh, one line each.
 };
 
 /// Routes named robot_0, robot_1, ... on floor that the robot of `config` can drive on, in the world frame of

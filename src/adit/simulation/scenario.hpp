@@ -22,6 +22,7 @@
 
 namespace adit {
 
+/// What robots carry, how they drive and what they meet: all that a simulation needs besides the world.
 struct ScenarioConfig {
   LidarConfig lidar;
   /// Names of presets, separated by commas, for fleets of different sensors: robots have them in turn,
@@ -38,6 +39,8 @@ struct ScenarioConfig {
   std::uint64_t seed = 1;
 };
 
+/// The keys are the names of the members, those of nested ones behind their name and a dot; in the
+/// configuration of a run they begin with "simulation.".
 inline Fields fields_of(ScenarioConfig& c) {
   Fields fields{{"seed", &c.seed, "", 0, 1e15, "seed of all noise of sensors and wheels"}};
   fields.push_back({"lidars", &c.lidars, "", 0, 0,
@@ -58,10 +61,12 @@ inline Fields fields_of(ScenarioConfig& c) {
 enum class Conditions {
   ideal,  ///< Noise alone, and every unit of a sensor is the same.
   /// As in practice: field_lidar_errors(), field_surfaces(), field_air(), field_visits(), field_traffic(),
-  /// set_field_motion() and bursts of slip of the wheels.
+  /// field_drive() and field_wheels().
   field,
 };
+/// All conditions, for options and lists of worlds.
 inline constexpr std::array kConditions{Conditions::ideal, Conditions::field};
+/// As options and lists of worlds name them: "ideal".
 [[nodiscard]] std::string_view to_string(Conditions conditions);
 
 /// Puts the conditions into a configuration; sensors and seeds stay as they are.

@@ -15,13 +15,15 @@
 
 namespace adit {
 
+/// Where a body is and how it moves at one moment. Of SmoothMotion the body is the sensor.
 struct Kinematics {
-  Pose T_world_body;
+  Pose T_world_body;         ///< Its rotation turns angular_velocity into the world frame.
   Vector3 velocity;          ///< World frame, metres per second.
   Vector3 acceleration;      ///< World frame, metres per second squared.
   Vector3 angular_velocity;  ///< Body frame, radians per second.
 };
 
+/// The splines of one sensor on one drive. The trajectory need not outlive them.
 class SmoothMotion {
  public:
   /// The motion of a sensor at T_body_sensor on the body that follows `trajectory` (two poses or more).

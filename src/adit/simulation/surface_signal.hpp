@@ -24,6 +24,8 @@ struct SurfaceConfig {
   double signs = 0.0;     ///< Share of squares of half a metre that are painted or reflecting (90 %).
   double wet = 0.0;       ///< Share of the floor under water, which mirrors at grazing angles.
 };
+/// The keys are the names of the members; in the configuration of a run they begin with
+/// "simulation.surfaces.".
 [[nodiscard]] Fields fields_of(SurfaceConfig& config);
 
 /// Rock, coal and wet walls 5 to 20 %, shotcrete and concrete 20 to 60 % (at 900 nm lava has 8 %, asphalt 17,
@@ -38,6 +40,7 @@ inline constexpr float kNominalReflectivity = 0.1F;
 class Surfaces {
  public:
   Surfaces() : Surfaces(SurfaceConfig(), 0) {}
+  /// Each number of `config` lies within its range (fields_of).
   Surfaces(const SurfaceConfig& config, std::uint64_t seed);
 
   /// Whether contrast is 0.

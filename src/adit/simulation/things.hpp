@@ -17,18 +17,18 @@ inline constexpr double kPassingRoom = 0.85;
 
 /// What can stand beside a path: along the wall, across it, above the floor.
 struct Thing {
-  double length = 1.0;
-  double width = 1.0;
-  double height = 1.0;
-  double ground_clearance = 0.0;
+  double length = 1.0;            ///< Along the wall.
+  double width = 1.0;             ///< Across it.
+  double height = 1.0;            ///< Of its top above the floor.
+  double ground_clearance = 0.0;  ///< Of its body above the floor; wheels or feet are below.
 };
-inline constexpr Thing kVehicle{4.6, 1.9, 2.0, 0.35};
-inline constexpr Thing kPallet{1.2, 0.8, 1.1, 0.1};
+inline constexpr Thing kVehicle{4.6, 1.9, 2.0, 0.35};  ///< Parked, or driving.
+inline constexpr Thing kPallet{1.2, 0.8, 1.1, 0.1};    ///< With its load.
 
 /// Origin on the floor below its middle.
 struct PlacedThing {
-  Thing thing;
-  Pose T_world_thing;
+  Thing thing;         ///< As large as it is there, see beside().
+  Pose T_world_thing;  ///< x along it, y to its left, z up.
 };
 
 /// A box between two corners in its own frame, its faces looking outwards.
@@ -39,6 +39,7 @@ struct PlacedThing {
 
 /// Whether a robot at that pose (T_world_base) passes the thing.
 [[nodiscard]] bool leaves_room(const PlacedThing& placed, const Pose& robot);
+/// The same at every pose of a path.
 [[nodiscard]] bool leaves_room(const PlacedThing& placed, const Trajectory& path);
 
 /// To the wall on one side (1: left, -1: right) of a robot's heading, at that height above its base frame's
@@ -57,8 +58,10 @@ struct PlacedThing {
 /// path outlives it.
 class ByLength {
  public:
+  /// `path` holds a pose or more.
   explicit ByLength(const Trajectory& path);
-  [[nodiscard]] double length() const { return driven_.back(); }
+  [[nodiscard]] double length() const { return driven_.back(); }  ///< Of the whole path, metres.
+  /// The first pose at or beyond that share of the length, 0 to 1.
   [[nodiscard]] const StampedPose& at(double share) const;
 
  private:

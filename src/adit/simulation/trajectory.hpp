@@ -14,6 +14,7 @@
 
 namespace adit {
 
+/// The vehicle and how it is driven. Lengths in metres, times in seconds.
 struct DriveConfig {
   double sample_rate_hz = 100.0;
   double stand_time = 1.0;
@@ -30,6 +31,8 @@ struct DriveConfig {
   ManoeuvreConfig manoeuvres;
 };
 
+/// The keys are the names of the members, those of `manoeuvres` behind "manoeuvres."; in the configuration of
+/// a run they begin with "simulation.drive.".
 inline Fields fields_of(DriveConfig& c) {
   Fields fields{
       {"sample_rate_hz", &c.sample_rate_hz, "Hz", 10, 1000, "ground-truth poses per second"},

@@ -30,6 +30,7 @@ struct VisitConfig {
   double wall_change = 0.3;  ///< Metres, the largest; see changed_walls.hpp.
   double pipes = 0.0;        ///< Share of all paths with pipes and cables on a wall, for all robots.
 };
+/// The keys are the names of the members; in the configuration of a run they begin with "simulation.visits.".
 [[nodiscard]] Fields fields_of(VisitConfig& config);
 
 /// A working mine by day: a vehicle every 250 m and a pallet every 125 m, half of which stay; one person; one

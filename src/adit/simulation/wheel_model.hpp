@@ -23,7 +23,9 @@ enum class WheelSign {
   reversed,  ///< Forward counts as backward, left as right.
   swapped,   ///< The left wheels count as the right ones: turns have the wrong sign.
 };
+/// All wirings, for configurations.
 inline constexpr std::array kWheelSigns{WheelSign::correct, WheelSign::reversed, WheelSign::swapped};
+/// As configurations name it: "reversed".
 [[nodiscard]] std::string_view to_string(WheelSign sign);
 
 /// Standard deviations describe how robots differ from one another, or how one robot errs over time; the seed
@@ -55,6 +57,7 @@ struct WheelConfig {
   std::string faults;
 };
 
+/// The keys are the names of the members; in the configuration of a run they begin with "simulation.wheels.".
 inline Fields fields_of(WheelConfig& c) {
   return {
       {"on", &c.on, "", 0, 0, "whether there is wheel odometry"},

@@ -17,10 +17,11 @@ namespace adit {
 
 /// World frame: metres, z up. The mesh faces the free space inside the tunnels; tunnels end in open portals.
 struct World {
-  std::string name;
-  TriangleMesh mesh;
-  std::vector<Route> routes;   ///< Four, of "network" three to six; those of one network start apart.
-  double tunnel_length = 0.0;  ///< Sum over the centre lines of all tunnels, metres.
+  std::string name;   ///< Preset and arrangement ("mine", "mine-twins"), or that of the file or its folder.
+  TriangleMesh mesh;  ///< Walls, floors and all that stands there for good.
+  /// Of make_world() four, with "network" three to six; those of one network start apart.
+  std::vector<Route> routes;
+  double tunnel_length = 0.0;  ///< Sum over the centre lines of all tunnels, metres; 0: unknown.
 };
 
 /// How hard a world is: smooth, bare walls do not fix motion along the axis, and identical places deceive
@@ -49,6 +50,7 @@ struct WorldConfig {
 /// other sections, lining and furniture; a third of them repeat and mirror parts of themselves.
 [[nodiscard]] std::vector<std::string> world_presets();
 
+/// The keys are the names of the members; in the configuration of a run they begin with "world.".
 inline Fields fields_of(WorldConfig& c) {
   return {
       {"preset", &c.preset, "", 0, 0, "kind of tunnel network", world_presets()},

@@ -14,17 +14,22 @@
 
 namespace adit::layouts {
 
-inline constexpr double kSteepest = 0.14;  // 1:7, the steepest that haulage ramps are usually driven at.
-inline constexpr double kFlattest = 0.10;  // 1:10, the flattest usual ramp between levels.
+inline constexpr double kSteepest = 0.14;  ///< 1:7, the steepest that haulage ramps are usually driven at.
+inline constexpr double kFlattest = 0.10;  ///< 1:10, the flattest usual ramp between levels.
 inline constexpr double kCurveShare =
-    0.85;  // Mean grade of a ramp's slope divided by its steepest (ramp_rise).
-inline constexpr double kCrownPillar = 6.5;  // Metres of rock between a level's roof and the floor above.
+    0.85;  ///< Mean grade of a ramp's slope divided by its steepest (ramp_rise).
+inline constexpr double kCrownPillar = 6.5;  ///< Metres of rock between a level's roof and the floor above.
 
+/// True with the probability `share`; draws one number.
 inline bool chance(Rng& rng, double share) { return rng.uniform() < share; }
+/// 1 or -1, as often; draws one number.
 inline double sign_of(Rng& rng) { return chance(rng, 0.5) ? 1.0 : -1.0; }
+/// Metres that a tunnel of that width (metres) stays level at each end.
 inline double landing_of(double width) { return 6.0 + 1.5 * width; }
 
+/// Unit vector in plan. `heading`: radians from x towards y.
 inline Eigen::Vector2d direction(double heading) { return {std::cos(heading), std::sin(heading)}; }
+/// The point `distance` metres from `from`, at the same height. `heading` as above.
 inline Vector3 ahead(const Vector3& from, double heading, double distance) {
   const Eigen::Vector2d d = distance * direction(heading);
   return from + Vector3(d.x(), d.y(), 0.0);
@@ -40,13 +45,15 @@ inline Polyline stretch_of(const Polyline& line, double begin, double end) {
 
 /// A tunnel that is placed several times.
 struct Module {
-  double length = 50.0;
-  LineShape shape;
-  Section section;
+  double length = 50.0;  ///< From end to end in plan, metres.
+  LineShape shape;       ///< But for its landing, which follows from the width.
+  Section section;       ///< That of mirrored copies is its mirror image.
 };
 
+/// Adds nodes and edges to a network; draws a module first where the style repeats.
 class Grower {
  public:
+  /// `network`, whose style is drawn already, and `rng` outlive it.
   Grower(Network& network, const WorldConfig& config, Rng& rng)
       : net_(network), curvature_(config.curvature_factor), rng_(rng) {
     if (style().repeats) {
@@ -56,11 +63,14 @@ class Grower {
     }
   }
 
+  /// `at` on the floor, metres. Returns the index of the node.
   std::size_t add_node(const Vector3& at, int storey) {
     net_.nodes.push_back({at, storey, false});
     return net_.nodes.size() - 1;
   }
 
+  /// About `share` times the style's width, which varies as the style says: 3.2 to 10 m wide, 2.8 to 8 m
+  /// high.
   Section draw_section(double share = 1.0) {
     const double width =
         std::clamp(share * style().width * (1.0 + style().variation * rng_.uniform(-1.0, 1.0)), 3.2, 10.0);
@@ -68,6 +78,7 @@ class Grower {
     return adit::draw_section(style().section, width, height, rng_);
   }
 
+  /// A shape for a tunnel of `length` metres in plan, its landing apart.
   LineShape draw_shape(double length) {
     LineShape shape;
     const bool bends = chance(rng_, style().bend);
@@ -118,8 +129,9 @@ class Grower {
     return steepest_grade(edge.line) <= kSteepest && try_edge(std::move(edge), net_.nodes[a].storey);
   }
 
+  /// What grow() is to add, and where.
   struct Growth {
-    int storey = 0;
+    int storey = 0;         ///< Of the nodes from which it branches off.
     double length = 500.0;  ///< Metres to add.
     double loops = 0.0;     ///< Share of tunnels that close a loop.
     double min_x = -1e9;    ///< No node lies further to the west.
@@ -134,6 +146,7 @@ class Grower {
     return net_.total_length() - begin > 0.6 * growth.length;
   }
 
+  /// That of the network.
   [[nodiscard]] const NetworkStyle& style() const { return net_.style; }
 
  private:
@@ -184,9 +197,12 @@ class Grower {
   Module module_;
 };
 
-// Lay tunnels of the network's style into it; false where the draw does not come out.
+/// Lays tunnels of the network's style into it. False where the draw does not come out: then the network is
+/// of no use.
+///@{
 bool lay_grid(Network& network, Grower& grower, const WorldConfig& config, Rng& rng);
 bool lay_tubes(Network& network, Grower& grower, const WorldConfig& config, Rng& rng);
 bool lay_levels(Network& network, Grower& grower, Rng& rng);
+///@}
 
 }  // namespace adit::layouts

@@ -20,27 +20,32 @@ namespace adit {
 struct Storey {
   std::vector<Solid> spaces;     ///< As those of the plan.
   std::vector<Solid> obstacles;  ///< As those of the plan.
-  Floors floors;
+  Floors floors;                 ///< How high its floors lie above z = 0.
 };
 
+/// What make_world() makes a mesh and routes of.
 struct WorldPlan {
   std::vector<Solid>
       spaces;  ///< Tunnels before what opens into them, so that floors keep the tunnel's facets.
   std::vector<Solid> obstacles;  ///< Matter, faces looking outwards.
-  Relief relief;
-  double max_edge = 1.0;  ///< Longest edge of a triangle, metres.
-  bool flat_floor = true;
-  std::vector<Drive> drives;
-  std::vector<Route> routes;    ///< Routes that are planned already; they follow those of `drives`.
-  std::vector<Storey> storeys;  ///< Beside the level spaces above.
-  double tunnel_length = 0.0;   ///< Sum over the centre lines, metres.
+  Relief relief;                 ///< Displaces the level spaces and all storeys.
+  double max_edge = 1.0;         ///< Longest edge of a triangle, metres.
+  bool flat_floor = true;        ///< As Surfacing::flat_floor.
+  std::vector<Drive> drives;     ///< Along level lines; their routes follow the floor with its relief.
+  std::vector<Route> routes;     ///< Routes that are planned already; they follow those of `drives`.
+  std::vector<Storey> storeys;   ///< Beside the level spaces above.
+  double tunnel_length = 0.0;    ///< Sum over the centre lines, metres.
 };
 
+/// The plan of the preset, see world_presets(). Each number of `config` lies within its range; preset and
+/// arrangement are not looked at.
+///@{
 [[nodiscard]] WorldPlan plan_zab(const WorldConfig& config);
 [[nodiscard]] WorldPlan plan_mine(const WorldConfig& config);
 [[nodiscard]] WorldPlan plan_metro(const WorldConfig& config);
 [[nodiscard]] WorldPlan plan_tiles(const WorldConfig& config);
 [[nodiscard]] WorldPlan plan_network(const WorldConfig& config);
+///@}
 
 /// An empty plan with concrete walls: facets of a metre, uneven by millimetres.
 [[nodiscard]] WorldPlan concrete_plan(const WorldConfig& config);
@@ -61,18 +66,24 @@ struct WallSite {
   double side = 1.0;        ///< +1 or -1.
   double half_width = 5.0;  ///< Of the tunnel, metres.
 
+  /// Unit direction to the left of the line, on whichever side the site is.
   [[nodiscard]] Vector3 left() const { return Vector3::UnitZ().cross(foot.direction); }
   /// The point `lateral` metres from the line towards the site's side and `along` metres further on.
   [[nodiscard]] Vector3 at(double lateral, double along = 0.0) const {
     return foot.position + left() * (side * lateral) + foot.direction * along;
   }
 };
+/// Free space in the wall: 1.8 m wide, 0.9 m deep, from 0.12 to 2.1 m above the floor.
 [[nodiscard]] Solid niche(const WallSite& site);
+/// Matter at the wall: 1.1 m along it, 1.9 m high, it stands out by 0.45 m.
 [[nodiscard]] Solid cabinet(const WallSite& site);
 /// A wheel loader parked along the tunnel, its middle `lateral` metres from the line.
 [[nodiscard]] std::vector<Solid> machine(const WallSite& site, double lateral);
+/// Adds a niche to the level spaces of the plan, the others to its obstacles.
+///@{
 void add_niche(WorldPlan& plan, const WallSite& site);
 void add_cabinet(WorldPlan& plan, const WallSite& site);
 void add_machine(WorldPlan& plan, const WallSite& site, double lateral);
+///@}
 
 }  // namespace adit

@@ -14,48 +14,54 @@ namespace adit {
 
 /// A convex cross-section, counter-clockwise, as (metres to the left of the line, metres above it).
 using Profile = std::vector<Eigen::Vector2d>;
+/// Points that straight segments join.
 using Polyline = std::vector<Vector3>;
 
 /// Flat floor, upright walls and a half-ellipse above them.
 struct Arch {
-  double width = 10.0;
-  double height = 7.0;
+  double width = 10.0;         ///< From wall to wall.
+  double height = 7.0;         ///< Of the crown above the floor.
   double spring_height = 2.0;  ///< Where the walls end and the vault begins.
   int num_facets = 40;         ///< Of the vault. 40 keep a vault of 5 m radius within 4 mm.
 };
+/// Its floor lies at height 0, its middle on the line.
 [[nodiscard]] Profile arch_profile(const Arch& arch);
+/// A rectangle from `bottom` to `top` metres above the line, its middle on it.
 [[nodiscard]] Profile box_profile(double width, double bottom, double top);
 /// The profile moved to the left of its line.
 [[nodiscard]] Profile shifted(Profile profile, double left);
 
+/// The points p with normal . p = offset.
 struct Plane {
-  Vector3 normal;  ///< Unit length, pointing out of the piece.
-  double offset = 0.0;
+  Vector3 normal;       ///< Unit length, pointing out of the piece.
+  double offset = 0.0;  ///< Metres from the origin.
+  /// Positive outside of the piece.
   [[nodiscard]] double distance(const Vector3& p) const { return normal.dot(p) - offset; }
 };
 
 /// The intersection of half-spaces. The first `num_walls` planes carry surface; the others are the joints to
 /// the neighbouring pieces of the same solid.
 struct ConvexPiece {
-  std::vector<Plane> planes;
-  std::size_t num_walls = 0;
-  Eigen::AlignedBox3d box;
+  std::vector<Plane> planes;  ///< Walls first.
+  std::size_t num_walls = 0;  ///< At most the number of planes.
+  Eigen::AlignedBox3d box;    ///< Around its corners.
 };
 
 /// A convex polygon of the surface; the corners run counter-clockwise as seen from the side `normal` points
 /// to.
 struct Face {
-  std::vector<Vector3> corners;
-  Vector3 normal;
+  std::vector<Vector3> corners;  ///< Three or more, in one plane.
+  Vector3 normal;                ///< Of unit length.
 };
 
 /// `faces` look into the pieces.
 struct Solid {
-  std::vector<ConvexPiece> pieces;
-  std::vector<Face> faces;
-  Eigen::AlignedBox3d box;
+  std::vector<ConvexPiece> pieces;  ///< Side by side; together they are the solid.
+  std::vector<Face> faces;          ///< One per wall of a piece; joints have none.
+  Eigen::AlignedBox3d box;          ///< Around all pieces.
 };
 
+/// Whether a sweep has a wall at its end.
 enum class Ends { open, closed };
 
 /// Sweeps `profile` along a level polyline of at least two points. Neighbouring segments meet in their mitre
@@ -64,10 +70,10 @@ enum class Ends { open, closed };
 
 /// From the point `first` of a line to its point `last`.
 struct LinePart {
-  std::size_t first = 0;
-  std::size_t last = 1;
-  Ends begin = Ends::closed;
-  Ends end = Ends::closed;
+  std::size_t first = 0;      ///< Index of a point.
+  std::size_t last = 1;       ///< The same, behind `first`.
+  Ends begin = Ends::closed;  ///< At `first`.
+  Ends end = Ends::closed;    ///< At `last`.
 };
 /// A part of such a sweep. Two parts that share a point of the line meet there in the same corners, to the
 /// last bit.

@@ -21,7 +21,7 @@ namespace adit {
 struct Surfacing {
   double max_edge =
       1.0;  ///< Longer edges are halved; edges within the plane z = 0 too unless the floor is flat.
-  bool flat_floor = true;
+  bool flat_floor = true;  ///< Whether the floor (z = 0) stays plane, so that large triangles do for it.
   std::function<Vector3(const Vector3&)> displaced;  ///< Maps points of the smooth surface to their place.
 };
 
