@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The adit authors
 # SPDX-License-Identifier: MIT
-# Format, layers, length of functions, paper map, and clang-tidy on the library, the program and the examples as far as they
-# changed since the last release: the newest tag v*, or the commit that .ci/last-release names. Where the clone holds
-# neither, clang-tidy reads every file.
+# Format, layers, length of functions, paper map, descriptions of public symbols, and clang-tidy on the library, the program
+# and the examples as far as they changed since the last release: the newest tag v*, or the commit that .ci/last-release
+# names. Where the clone holds neither, clang-tidy reads every file.
 #   tools/lint.sh [FILE...]     clang-tidy on those files only, tests too
 #   ADIT_LINT_ANALYZER=0        without clang's path-sensitive analyzer, which doubles the time
 set -euo pipefail
@@ -14,6 +14,7 @@ clang-format --dry-run --Werror "${sources[@]}"
 tools/check_layers
 tools/check_functions
 tools/check_paper_map
+tools/api.sh
 
 last_release() {
   local name
@@ -24,12 +25,17 @@ last_release() {
 # The first .cpp file that includes a header; nothing where none does.
 including() { git grep -lF "\"$1\"" -- 'src/*.cpp' 'apps/*.cpp' 'examples/*.cpp' ':!*_test.cpp' | head -1 || true; }
 
+code_of() { sed 's,//.*,,' | tr -d '[:space:]'; }
+# Whether more than comments of a file changed.
+has_new_code() { [ "$(git show "$1:$2" 2>/dev/null | code_of)" != "$(code_of <"$2")" ]; }
+
 # The .cpp files whose compilation shows clang-tidy all that changed: those that changed, and for a header the file of its
 # own name, or the first that includes it.
 files_to_tidy() {
   local base=$1 file own
   { git diff --name-only --diff-filter=d "$base" -- '*.cpp' '*.hpp'; git ls-files -o --exclude-standard '*.cpp' '*.hpp'; } |
     grep '^src/\|^apps/\|^examples/' | grep -v '_test\.cpp$' | sort -u | while read -r file; do
+      has_new_code "$base" "$file" || continue
       case $file in
         *.cpp) echo "$file" ;;
         *)

@@ -4,7 +4,6 @@
 #include "adit/fleet/agent.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <iterator>
 #include <utility>
 
@@ -37,9 +36,12 @@ std::vector<MessageBody> request_of(const PeerSession& session) {
   return request ? std::vector<MessageBody>{*request} : std::vector<MessageBody>{};
 }
 
-/// Those that registration accepted.
-std::vector<LoopClosure> accepted(std::vector<LoopClosure> loops) {
-  std::erase_if(loops, [](const LoopClosure& loop) { return loop.verdict != LoopVerdict::accepted; });
+/// Accepted loops that registration does not leave free to slide: in tunnels of equal blocks the others make
+/// false alignments that pass (decision 0059).
+std::vector<LoopClosure> without_sliding(std::vector<LoopClosure> loops) {
+  std::erase_if(loops, [](const LoopClosure& loop) {
+    return loop.verdict != LoopVerdict::accepted || loop.is_free_to_slide();
+  });
   return loops;
 }
 
@@ -224,7 +226,8 @@ Agent::Replies Agent::begin_check(RobotId peer) {
   std::vector<LoopClosure> loops;
   for (const auto& [ends, loop] : known().loops)
     if (ends.first.robot == map_->id && ends.second.robot == peer) loops.push_back(loop);
-  checks_.insert_or_assign(peer, checker_of(accepted(std::move(loops)), chain_by(map_->id), chain_by(peer)));
+  checks_.insert_or_assign(peer,
+                           checker_of(without_sliding(std::move(loops)), chain_by(map_->id), chain_by(peer)));
   return go_on_checking(peer);
 }
 
@@ -281,8 +284,7 @@ void Agent::find_revisits() {
     }
     ledger_.add_own(loop);
   }
-  loops = accepted(std::move(loops));
-  std::erase_if(loops, &LoopClosure::is_free_to_slide);  // odometry already says more
+  loops = without_sliding(std::move(loops));
   if (loops.empty()) return;
   MergeChecker check = checker_of(loops, chain, chain);
   PlaceComparer comparer(*map_, discernment(), config_.registration_in_use());
@@ -331,11 +333,9 @@ Discernment& Agent::discernment() {
   return *discernment_;
 }
 
-MergeChecker Agent::checker_of(std::vector<LoopClosure> loops, const OdometryChain& own,
+MergeChecker Agent::checker_of(const std::vector<LoopClosure>& loops, const OdometryChain& own,
                                const OdometryChain& theirs) {
   LoopsBetween between{own, theirs, {}, {}};
-  const auto sliding = std::ranges::stable_partition(loops, std::not_fn(&LoopClosure::is_free_to_slide));
-  between.num_sliding = sliding.size();
   for (const LoopClosure& loop : loops) {
     between.loops.push_back(pcm_loop_of(loop));
     if (loop.from.robot == loop.to.robot)

@@ -143,7 +143,7 @@ class Agent {
   [[nodiscard]] std::vector<LoopCandidate> candidates_with(RobotId peer);
   [[nodiscard]] OdometryChain chain_by(RobotId robot) const;
   [[nodiscard]] Discernment& discernment();
-  [[nodiscard]] MergeChecker checker_of(std::vector<LoopClosure> loops, const OdometryChain& own,
+  [[nodiscard]] MergeChecker checker_of(const std::vector<LoopClosure>& loops, const OdometryChain& own,
                                         const OdometryChain& theirs);
 
   std::shared_ptr<const RobotMap> map_;

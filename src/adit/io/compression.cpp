@@ -7,6 +7,7 @@
 #include <lz4frame.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "adit/core/check.hpp"
@@ -32,7 +33,7 @@ Result<std::string> decompress_zstd(std::string_view bytes, std::size_t size) {
   // The frame says its size as well; a claim that differs is damage, found before memory is taken.
   const unsigned long long stated = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
   if (stated == ZSTD_CONTENTSIZE_ERROR) return fail("not a zstd frame");
-  if (stated != ZSTD_CONTENTSIZE_UNKNOWN && stated > size)
+  if (stated != ZSTD_CONTENTSIZE_UNKNOWN && stated != size)
     return fail(format("holds {} bytes, not {}", stated, size));
   if (const Result<> possible = check_claim(bytes, size, kMostOfZstd); !possible)
     return tl::unexpected(possible.error());
@@ -66,18 +67,35 @@ Result<std::string> decompress_lz4(std::string_view bytes, std::size_t size) {
   return out;
 }
 
+/// Takes memory as the data fill it: so few bytes of bzip2 may hold so much that a damaged size passes the
+/// check.
 Result<std::string> decompress_bz2(std::string_view bytes, std::size_t size) {
+  constexpr std::size_t kFirst = std::size_t{1} << 20U;
   if (const Result<> possible = check_claim(bytes, size, kMostOfBz2); !possible)
     return tl::unexpected(possible.error());
-  std::string out(size, '\0');
-  auto got = static_cast<unsigned>(size);
+  bz_stream stream = {};
+  ADIT_CHECK(BZ2_bzDecompressInit(&stream, 0, 0) == BZ_OK, "out of memory");
+  const std::unique_ptr<bz_stream, decltype(&BZ2_bzDecompressEnd)> owner(&stream, &BZ2_bzDecompressEnd);
   std::string in(bytes);  // the library's argument is not const
-  const int code =
-      BZ2_bzBuffToBuffDecompress(out.data(), &got, in.data(), static_cast<unsigned>(in.size()), 0, 0);
-  if (code == BZ_OUTBUFF_FULL) return fail(format("bz2 data expand to more than {} bytes", size));
-  if (code != BZ_OK) return fail(format("damaged bz2 data (code {})", code));
-  if (got != size) return fail(format("bz2 data expand to {} bytes, not {}", got, size));
-  return out;
+  stream.next_in = in.data();
+  stream.avail_in = static_cast<unsigned>(in.size());
+  const std::size_t most = size + 1;  // a byte more tells whether the data end there
+  std::string out(std::min(most, kFirst), '\0');
+  for (std::size_t done = 0;;) {
+    stream.next_out = out.data() + done;
+    stream.avail_out = static_cast<unsigned>(out.size() - done);
+    const int code = BZ2_bzDecompress(&stream);
+    done = out.size() - stream.avail_out;
+    if (code == BZ_STREAM_END) {
+      if (done != size) return fail(format("bz2 data expand to {} bytes, not {}", done, size));
+      out.resize(size);
+      return out;
+    }
+    if (code != BZ_OK) return fail(format("damaged bz2 data (code {})", code));
+    if (stream.avail_out > 0) return fail(format("bz2 data end early, after {} of {} bytes", done, size));
+    if (done == most) return fail(format("bz2 data expand to more than {} bytes", size));
+    out.resize(std::min(most, 2 * out.size()));
+  }
 }
 
 }  // namespace

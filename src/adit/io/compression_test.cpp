@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "adit/io/compression.hpp"
 
+#include <bzlib.h>
 #include <gtest/gtest.h>
 
 #include "adit/io/crc32.hpp"
@@ -34,7 +35,26 @@ TEST(Compression, AClaimThatSoFewBytesCannotHoldTakesNoMemory) {
     EXPECT_ERROR(decompress(std::string("\x04\x22\x4D\x18 and some more", 18), compression, 1U << 30U),
                  compression == std::string("lz4") ? "cannot hold" : "not a zstd frame");
   const std::string few = compress_zstd("few");
-  EXPECT_ERROR(decompress(few, "zstd", 1U << 30U), "cannot hold");
+  EXPECT_ERROR(decompress(few, "zstd", 1U << 30U), "holds 3 bytes");
+}
+
+TEST(Compression, Bz2OfAnySizeAndItsDamage) {
+  for (const std::size_t size : {0U, 1U, 100U, 1U << 20U, (1U << 20U) + 1U, 5'000'000U}) {
+    std::string text;
+    for (std::size_t i = 0; i < size; ++i) text += static_cast<char>(i * i / 1000 % 251);
+    std::string packed(2 * size + 1000, '\0');
+    auto packed_size = static_cast<unsigned>(packed.size());
+    ASSERT_EQ(BZ2_bzBuffToBuffCompress(packed.data(), &packed_size, text.data(), static_cast<unsigned>(size),
+                                       9, 0, 0),
+              BZ_OK);
+    packed.resize(packed_size);
+    EXPECT_EQ(decompress(packed, "bz2", size), text) << size;
+    EXPECT_ERROR(decompress(packed, "bz2", size + 1), "expand to");
+    EXPECT_FALSE(decompress(packed, "bz2", std::size_t{1} << 30U));
+    if (size == 0) continue;
+    EXPECT_ERROR(decompress(packed, "bz2", size - 1), "expand to");
+    EXPECT_FALSE(decompress(packed.substr(0, packed.size() / 2), "bz2", size));
+  }
 }
 
 TEST(Compression, Lz4Frames) {

@@ -80,10 +80,10 @@ ADIT_WIDE_VECTORS void sum_rigid(const Correspondences::Block& block, double ker
          simd::sum(cx),      simd::sum(cy),      simd::sum(cz)};
 }
 
-NormalEquations<6> rigid_equations(const Correspondences::Block& block, double kernel_scale) {
+ScanEquations<6> rigid_equations(const Correspondences::Block& block, double kernel_scale) {
   RigidSums s;
   sum_rigid(block, kernel_scale, s);
-  NormalEquations<6> out;
+  ScanEquations<6> out;
   out.H.topLeftCorner<3, 3>().diagonal().setConstant(s.weights);
   out.H.topRightCorner<3, 3>() = -so3::hat({s.x, s.y, s.z});
   out.H.bottomLeftCorner<3, 3>() = so3::hat({s.x, s.y, s.z});
@@ -119,10 +119,10 @@ ADIT_WIDE_VECTORS void sum_unicycle(const Correspondences::Block& block, Unicycl
   out = {simd::sum(found), simd::sum(squares), simd::sum(y), simd::sum(xx_yy), simd::sum(rx), simd::sum(c)};
 }
 
-NormalEquations<2> unicycle_equations(const Correspondences::Block& block) {
+ScanEquations<2> unicycle_equations(const Correspondences::Block& block) {
   UnicycleSums s;
   sum_unicycle(block, s);
-  NormalEquations<2> out;
+  ScanEquations<2> out;
   out.H << s.found, -s.y, -s.y, s.xx_yy;
   out.g << s.rx, s.c;
   out.squared_residuals = s.squares;
@@ -193,14 +193,14 @@ bool is_within_trust(const Pose& correction, const ScanToMapConfig& config) {
          correction.angle() <= config.max_turn_deg * kDegree;
 }
 
-NormalEquations<6> linearize_rigid(Correspondences& pairs, const Pose& T_map_base, double kernel_scale) {
-  return sum_of_blocks<NormalEquations<6>>(pairs, T_map_base, [&](const Correspondences::Block& block) {
+ScanEquations<6> linearize_rigid(Correspondences& pairs, const Pose& T_map_base, double kernel_scale) {
+  return sum_of_blocks<ScanEquations<6>>(pairs, T_map_base, [&](const Correspondences::Block& block) {
     return rigid_equations(block, kernel_scale);
   });
 }
 
-NormalEquations<2> linearize_unicycle(Correspondences& pairs, const Pose& T_map_base) {
-  return sum_of_blocks<NormalEquations<2>>(pairs, T_map_base, unicycle_equations);
+ScanEquations<2> linearize_unicycle(Correspondences& pairs, const Pose& T_map_base) {
+  return sum_of_blocks<ScanEquations<2>>(pairs, T_map_base, unicycle_equations);
 }
 
 Alignment align_point_to_point(std::span<const Eigen::Vector3f> source, const LocalMap& map,
@@ -208,7 +208,7 @@ Alignment align_point_to_point(std::span<const Eigen::Vector3f> source, const Lo
   Correspondences pairs(source, map, 3.0 * sigma);
   return gauss_newton(
       T_prediction, config, [&](const Pose& T_map_base) { return linearize_rigid(pairs, T_map_base, sigma); },
-      [](const NormalEquations<6>& equations) -> Vector6 {
+      [](const ScanEquations<6>& equations) -> Vector6 {
         return solve_symmetric(equations.H, -equations.g);
       });
 }
@@ -219,7 +219,7 @@ Alignment align_unicycle(std::span<const Eigen::Vector3f> source, const LocalMap
   std::optional<double> beta;
   return gauss_newton(
       T_prediction, config, [&](const Pose& T_map_base) { return linearize_unicycle(pairs, T_map_base); },
-      [&](const NormalEquations<2>& equations) -> Vector6 {
+      [&](const ScanEquations<2>& equations) -> Vector6 {
         const double n = equations.num_correspondences;
         if (!beta) beta = 1.0 / (equations.squared_residuals / n + kMinSquaredResidual);
         Eigen::Matrix2d H = equations.H / n;

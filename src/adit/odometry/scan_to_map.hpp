@@ -37,7 +37,7 @@ struct ScanToMapConfig {
 
 /// Normal equations of a Gauss-Newton step in N unknowns, and the unweighted sum of squared residuals.
 template <int N>
-struct NormalEquations {
+struct ScanEquations {
   /// Sum of J^T W J.
   Eigen::Matrix<double, N, N> H = Eigen::Matrix<double, N, N>::Zero();
   /// Sum of J^T W r: the step x solves H x = -g.
@@ -46,7 +46,7 @@ struct NormalEquations {
   int num_correspondences = 0;     ///< Whose residuals were summed.
 
   /// Of the residuals of both.
-  NormalEquations& operator+=(const NormalEquations& other) {
+  ScanEquations& operator+=(const ScanEquations& other) {
     H += other.H;
     g += other.g;
     squared_residuals += other.squared_residuals;
@@ -57,12 +57,12 @@ struct NormalEquations {
 
 /// KISS-ICP eq. (10)-(11): point-to-point with the Geman-McClure weight (k / (k + r^2))^2, in the tangent of
 /// a right perturbation of T_map_base.
-[[nodiscard]] NormalEquations<6> linearize_rigid(Correspondences& pairs, const Pose& T_map_base,
-                                                 double kernel_scale);
+[[nodiscard]] ScanEquations<6> linearize_rigid(Correspondences& pairs, const Pose& T_map_base,
+                                               double kernel_scale);
 
 /// Kinematic-ICP (Guadagnino et al., ICRA 2025), section III-B: the same residual, unweighted, in the two
 /// motions of a vehicle that does not slip sideways: forward and about its z axis.
-[[nodiscard]] NormalEquations<2> linearize_unicycle(Correspondences& pairs, const Pose& T_map_base);
+[[nodiscard]] ScanEquations<2> linearize_unicycle(Correspondences& pairs, const Pose& T_map_base);
 
 /// Where iterating ended. With too few correspondences or after divergence the pose is the prediction.
 struct Alignment {

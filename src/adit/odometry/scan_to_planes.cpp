@@ -81,9 +81,9 @@ std::vector<Eigen::Vector3f> points_near(std::span<const Eigen::Vector3f> source
   return near;
 }
 
-NormalEquations<6> linearize_planes(const std::vector<PlaneResidual>& residuals, double sigma) {
+ScanEquations<6> linearize_planes(const std::vector<PlaneResidual>& residuals, double sigma) {
   const double scale = kKernelSigmas * kKernelSigmas * sigma * sigma;
-  NormalEquations<6> out;
+  ScanEquations<6> out;
   for (const PlaneResidual& residual : residuals) {
     const double r2 = residual.value * residual.value;
     const double root = geman_mcclure_root(scale, r2);
@@ -100,7 +100,7 @@ NormalEquations<6> linearize_planes(const std::vector<PlaneResidual>& residuals,
 // What the residuals say in the directions that the scene fixes. In the others they say little, and that is
 // wrong: rings that repeat from scan to scan fit best where they were (solution remapping: J. Zhang, M.
 // Kaess, S. Singh, "On degeneracy of optimization-based state estimation problems", ICRA 2016).
-void take_out_open_directions(const Observability& seen, NormalEquations<6>& equations) {
+void take_out_open_directions(const Observability& seen, ScanEquations<6>& equations) {
   if (!seen.degenerate) return;
   equations.H = (seen.onto_fixed.transpose() * equations.H * seen.onto_fixed).eval();
   equations.g = (seen.onto_fixed.transpose() * equations.g).eval();
@@ -111,7 +111,7 @@ PlaneAlignment refined(const Problem& problem, const Planes& planes, PlaneAlignm
   so_far.seen = observability(residuals_at(problem.source, planes, so_far.T_map_base), problem.source, 1.0,
                               problem.config.degeneracy_threshold);
   for (int i = 0; i < problem.config.max_iterations; ++i) {
-    NormalEquations<6> equations =
+    ScanEquations<6> equations =
         linearize_planes(residuals_at(problem.source, planes, so_far.T_map_base), problem.sigma);
     take_out_open_directions(so_far.seen, equations);
     equations += linearize_prior(problem.prior, so_far.T_map_base);
@@ -150,10 +150,10 @@ Start start_of(const Problem& problem) {
 
 }  // namespace
 
-NormalEquations<6> linearize_prior(const PosePrior& prior, const Pose& T_map_base) {
+ScanEquations<6> linearize_prior(const PosePrior& prior, const Pose& T_map_base) {
   const Vector6 off = (prior.T_map_base.inverse() * T_map_base).log();
   const Matrix6 J = Pose::right_jacobian_inverse(off);
-  NormalEquations<6> out;
+  ScanEquations<6> out;
   out.H = J.transpose() * prior.information * J;
   out.g = J.transpose() * prior.information * off;
   return out;
@@ -183,7 +183,7 @@ PlaneAlignment align_point_to_plane(std::span<const Eigen::Vector3f> source, con
   }
   const std::vector<PlaneResidual> residuals = residuals_at(source, planes, out.T_map_base);
   out.seen.information = information_by_regions(residuals, points_near(source, planes), out.seen.onto_fixed);
-  NormalEquations<6> at_end = linearize_planes(residuals, sigma);
+  ScanEquations<6> at_end = linearize_planes(residuals, sigma);
   take_out_open_directions(out.seen, at_end);
   out.information = at_end.H;
   out.share_near = share_found(planes);

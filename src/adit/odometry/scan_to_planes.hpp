@@ -19,7 +19,7 @@ struct PosePrior {
 
 /// Normal equations of the prior's cost, half of d^T information d with d = log(prior^-1 T_map_base), in the
 /// tangent of a right perturbation of T_map_base.
-[[nodiscard]] NormalEquations<6> linearize_prior(const PosePrior& prior, const Pose& T_map_base);
+[[nodiscard]] ScanEquations<6> linearize_prior(const PosePrior& prior, const Pose& T_map_base);
 
 /// Where `align_point_to_plane` ended. After a failure `information` and `share_near` are zero.
 struct PlaneAlignment : Alignment {

@@ -128,7 +128,7 @@ TEST(LinearizePrior, IsTheDerivativeOfItsCost) {
     const Vector6 off = (T_prior.inverse() * T_map_base * Pose::exp(step)).log();
     return 0.5 * off.dot(prior.information * off);
   };
-  const NormalEquations<6> equations = linearize_prior(prior, T_map_base);
+  const ScanEquations<6> equations = linearize_prior(prior, T_map_base);
   for (int k = 0; k < 6; ++k) {
     const Vector6 step = 1e-6 * Vector6::Unit(k);
     EXPECT_NEAR((cost(step) - cost(-step)) / 2e-6, equations.g[k], 1e-6 * equations.g.norm()) << k;

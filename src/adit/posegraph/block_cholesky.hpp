@@ -36,8 +36,6 @@ class BlockSymbolic;
 /// Analyzes a pattern whose columns begin with their diagonal blocks, as `of_pairs` makes it. Ordering:
 /// approximate minimum degree.
 [[nodiscard]] std::shared_ptr<const BlockSymbolic> analyze(const BlockPattern& pattern);
-/// Multiplications and additions in one factorization, for block size 1.
-[[nodiscard]] double factorization_work(const BlockSymbolic& symbolic);
 
 /// Multifrontal Cholesky factorization of a sparse symmetric positive definite matrix of square blocks. Each
 /// supernode of the elimination tree is a dense matrix; subtrees run in parallel; the bytes do not depend on

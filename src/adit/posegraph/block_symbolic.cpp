@@ -364,6 +364,5 @@ BlockPattern BlockPattern::of_pairs(Index size, std::vector<std::pair<Index, Ind
 std::shared_ptr<const BlockSymbolic> analyze(const BlockPattern& pattern) {
   return std::make_shared<const BlockSymbolic>(pattern);
 }
-double factorization_work(const BlockSymbolic& symbolic) { return symbolic.work; }
 
 }  // namespace adit

@@ -216,8 +216,10 @@ typename IncrementalOptimizer<P>::Update IncrementalOptimizer<P>::update(int max
   else
     impl.minimize(u, max_iterations);
   impl.is_settled = u.status == SolveStatus::converged;
-  if (u.status != SolveStatus::converged && u.status != SolveStatus::max_iterations)
+  if (u.status != SolveStatus::converged && u.status != SolveStatus::max_iterations) {
     impl.model.put_back(impl.before);
+    return u;
+  }
   for (std::size_t node = 0; node < impl.moved_in.size(); ++node)
     if (impl.moved_in[node] == impl.num_updates) u.moved.push_back(node);
   return u;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "adit/posegraph/factors.hpp"
@@ -251,7 +252,7 @@ struct RobustIncremental<P>::Impl {
   bool drop_contradicted(Step& step) {
     if (!is_solved) return true;
     for (std::size_t round = 0; round < kDroppedPerStep; ++round) {
-      std::size_t worst = 0;
+      std::optional<std::size_t> worst;
       double largest = bounds[1] * variance_limit;
       if (!std::ranges::is_sorted(moved)) std::ranges::sort(moved);
       moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
@@ -263,11 +264,11 @@ struct RobustIncremental<P>::Impl {
           worst = e;
         }
       }
-      if (worst == 0) {
+      if (!worst) {
         moved.clear();
         return true;
       }
-      drop(worst, step);
+      drop(*worst, step);
       if (!solve(step)) return false;
     }
     return true;

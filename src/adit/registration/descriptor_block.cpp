@@ -86,6 +86,7 @@ DescriptorQuery::DescriptorQuery(const Descriptor& descriptor) : squared_norm(sq
 }
 
 void DescriptorBlock::append(const Descriptor& descriptor, std::uint32_t index) {
+  ADIT_CHECK(count < kLanes, "the block is full");
   for (std::size_t d = 0; d < descriptor.size(); ++d) pairs[d / 2][count][d % 2] = descriptor[d];
   squared_norms[count] = squared_norm_of(descriptor);
   indices[count++] = index;

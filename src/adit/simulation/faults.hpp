@@ -24,7 +24,8 @@ struct FaultKind {
 };
 
 /// The faults in the order of the text, with the name of the sensor. Fails on a kind that is not among
-/// `kinds`, an end that is not after the begin, a number that is missing, not finite or one too many.
+/// `kinds`, a begin below 0, an end that is not after the begin, a number that is missing, not finite or one
+/// too many.
 [[nodiscard]] Result<std::vector<SensorFault>> parse_faults(const std::string& text,
                                                             const std::string& sensor,
                                                             std::span<const FaultKind> kinds, Stamp start);

@@ -46,7 +46,7 @@ Item draw_item(double along, Rng& rng) {
   return item;
 }
 
-/// Things along a tunnel of `length` metres that keep `margin` metres from its ends.
+/// Things along a tunnel of `length` metres that keep `kMargin` metres from its ends.
 std::vector<Item> draw_items(double length, double spacing, Rng& rng) {
   constexpr double kMargin = 9.0;
   constexpr double kTogether = 7.0;  // Things nearer to one another would stand in each other's walls.

@@ -54,7 +54,7 @@ Face face_towards(std::vector<Vector3> corners, const Vector3& inside) {
   return {std::move(corners), normal};
 }
 
-Plane plane_behind(const Face& face) { return {-face.normal, -face.normal.dot(face.corners[0])}; }
+HalfSpace plane_behind(const Face& face) { return {-face.normal, -face.normal.dot(face.corners[0])}; }
 
 void add_wall(Solid& solid, ConvexPiece& piece, Face face) {
   piece.planes.push_back(plane_behind(face));
@@ -182,7 +182,7 @@ double distance_to(std::span<const Solid> obstacles, const Vector3& point) {
   for (const Solid& obstacle : obstacles)
     for (const ConvexPiece& piece : obstacle.pieces) {
       double distance = -std::numeric_limits<double>::infinity();
-      for (const Plane& plane : piece.planes) distance = std::max(distance, plane.distance(point));
+      for (const HalfSpace& plane : piece.planes) distance = std::max(distance, plane.distance(point));
       nearest = std::min(nearest, distance);
     }
   return nearest;

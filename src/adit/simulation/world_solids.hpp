@@ -32,7 +32,7 @@ struct Arch {
 [[nodiscard]] Profile shifted(Profile profile, double left);
 
 /// The points p with normal . p = offset.
-struct Plane {
+struct HalfSpace {
   Vector3 normal;       ///< Unit length, pointing out of the piece.
   double offset = 0.0;  ///< Metres from the origin.
   /// Positive outside of the piece.
@@ -42,9 +42,9 @@ struct Plane {
 /// The intersection of half-spaces. The first `num_walls` planes carry surface; the others are the joints to
 /// the neighbouring pieces of the same solid.
 struct ConvexPiece {
-  std::vector<Plane> planes;  ///< Walls first.
-  std::size_t num_walls = 0;  ///< At most the number of planes.
-  Eigen::AlignedBox3d box;    ///< Around its corners.
+  std::vector<HalfSpace> planes;  ///< Walls first.
+  std::size_t num_walls = 0;      ///< At most the number of planes.
+  Eigen::AlignedBox3d box;        ///< Around its corners.
 };
 
 /// A convex polygon of the surface; the corners run counter-clockwise as seen from the side `normal` points

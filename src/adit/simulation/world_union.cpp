@@ -17,7 +17,7 @@ constexpr double kMinArea = 1e-10;  ///< Square metres; what is smaller only tou
 enum class Side { behind, ahead };
 
 /// The part of a convex polygon on one side of a plane; corners on the plane belong to both sides.
-Corners clipped(const Corners& corners, const Plane& plane, Side side) {
+Corners clipped(const Corners& corners, const HalfSpace& plane, Side side) {
   const double sign = side == Side::behind ? 1.0 : -1.0;
   Corners out;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -39,7 +39,7 @@ double area_of(const Corners& corners) {
   return 0.5 * sum.norm();
 }
 
-bool lies_in(const Corners& corners, const Plane& plane) {
+bool lies_in(const Corners& corners, const HalfSpace& plane) {
   return std::ranges::all_of(corners,
                              [&](const Vector3& p) { return std::abs(plane.distance(p)) <= kOnPlane; });
 }
@@ -57,7 +57,7 @@ bool sheltered(const Face& face, const ConvexPiece& piece, Coplanar rule) {
 
 bool meets(const Face& face, const ConvexPiece& piece) {
   Corners inside = face.corners;
-  for (const Plane& plane : piece.planes) {
+  for (const HalfSpace& plane : piece.planes) {
     inside = clipped(inside, plane, Side::behind);
     if (inside.size() < 3) return false;
   }
@@ -71,7 +71,7 @@ void subtract(const Face& face, const ConvexPiece& piece, Coplanar rule, std::ve
     return;
   }
   Corners rest = face.corners;
-  for (const Plane& plane : piece.planes) {
+  for (const HalfSpace& plane : piece.planes) {
     Corners outside = clipped(rest, plane, Side::ahead);
     if (!lies_in(outside, plane) && area_of(outside) > kMinArea)
       out.push_back({std::move(outside), face.normal});

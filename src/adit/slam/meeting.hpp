@@ -18,7 +18,8 @@ struct Meeting {
   std::vector<std::shared_ptr<const RobotMap>> maps;  ///< As given, in that order.
   std::vector<Agent> agents;                          ///< One per map.
   std::vector<std::uint64_t> bytes_sent;              ///< One per agent.
-  std::vector<std::string> failures;  ///< Messages that an agent could not take, one line each.
+  std::vector<std::string>
+      failures;  ///< Messages and earlier findings that an agent could not take, one line each.
 };
 
 /// Robots that met before they were saved, and what all of them had found by then. Those whose test was

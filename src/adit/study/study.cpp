@@ -12,6 +12,7 @@
 #include "adit/slam/naming.hpp"
 #include "adit/slam/session_pages.hpp"
 #include "adit/study/judging.hpp"
+#include "adit/study/merge_worlds.hpp"
 
 namespace adit {
 namespace {
@@ -24,7 +25,7 @@ Provenance provenance_of(const Study& study, const SlamConfig& config,
   provenance.robots.clear();
   for (const RobotRun* run : runs)
     provenance.robots.push_back({run->result.name, std::string(to_string(config.robot.odometry.method)),
-                                 study.config.simulation.lidar.name, run->map->odometry.size(), ""});
+                                 sensors_text(study.config.simulation), run->map->odometry.size(), ""});
   return provenance;
 }
 
@@ -130,7 +131,7 @@ Result<StudyResult> run_study(const Study& study, const World& world) {
   StudyResult result;
   result.version = version();
   result.world = world.name;
-  result.lidar = study.config.simulation.lidar.name;
+  result.lidar = sensors_text(study.config.simulation);
   result.seed = study.config.simulation.seed;
   result.configuration = study.provenance.configuration;
   result.command = study.provenance.command;

@@ -17,17 +17,10 @@ namespace adit {
 
 /// What all robots of a fleet share, because the evidence of several is added up: constants, no settings.
 struct FleetEvidence {
-<<<<<<< HEAD
-  double agreement_if_true = 0.92;
-  double least_chance = 0.2;
-  double copied = 0.002;
-  double copy_goes_on = 0.95;
-=======
-  double agreement_if_true = 0.95;  ///< P(a place shows no change of structure that is new | one tunnel).
+  double agreement_if_true = 0.92;  ///< P(a place shows no change of structure that is new | one tunnel).
   double least_chance = 0.2;        ///< Least P(look-alikes agree at one more place), whatever was measured.
   double copied = 0.002;            ///< Share of look-alikes that were built to the same plan.
   double copy_goes_on = 0.95;       ///< P(one built to the same plan agrees at one more distinctive place).
->>>>>>> docB
 };
 /// The values in use.
 inline constexpr FleetEvidence kFleetEvidence;

@@ -213,20 +213,18 @@ std::vector<TestedPlace> Hypothesis::places_at_best(bool distinctive_only) const
   return places;
 }
 
-namespace {
-
-/// Adds the sets of the loops `rest` that agree, the largest first.
-void add_hypotheses(std::vector<std::size_t> rest, std::size_t num_competing, const LoopsBetween& between,
-                    double reach_m, const AdaptiveConfig& config, std::vector<Hypothesis>& hypotheses) {
+std::vector<Hypothesis> hypotheses_of(const LoopsBetween& between, double reach_m,
+                                      const AdaptiveConfig& config) {
   const MergeCheckConfig& check = config.merge_check;
+  std::vector<Hypothesis> hypotheses;
+  std::vector<std::size_t> rest(between.loops.size());
+  std::iota(rest.begin(), rest.end(), std::size_t{0});
   while (!rest.empty() && hypotheses.size() < static_cast<std::size_t>(check.max_hypotheses)) {
     Hypothesis hypothesis(config);
     for (const std::size_t l : pcm(between.own, between.theirs, picked(between.loops, rest)).largest)
       hypothesis.loops.push_back(rest[l]);
     std::erase_if(rest, [&](std::size_t l) { return std::ranges::binary_search(hypothesis.loops, l); });
     hypothesis.loops = without_misplaced(hypothesis.loops, between, check);
-    hypothesis.share_of_loops =
-        static_cast<double>(hypothesis.loops.size()) / static_cast<double>(num_competing);
     for (const Hypothesis& other : hypotheses)
       hypothesis.apart_m.push_back(
           apart_m(picked(between.loops, other.loops), picked(between.loops, hypothesis.loops), between));
@@ -239,20 +237,6 @@ void add_hypotheses(std::vector<std::size_t> rest, std::size_t num_competing, co
     }
     hypotheses.push_back(std::move(hypothesis));
   }
-}
-
-}  // namespace
-
-std::vector<Hypothesis> hypotheses_of(const LoopsBetween& between, double reach_m,
-                                      const AdaptiveConfig& config) {
-  const std::size_t num_held = between.loops.size() - between.num_sliding;
-  std::vector<std::size_t> held(num_held);
-  std::iota(held.begin(), held.end(), std::size_t{0});
-  std::vector<std::size_t> sliding(between.num_sliding);
-  std::iota(sliding.begin(), sliding.end(), num_held);
-  std::vector<Hypothesis> hypotheses;
-  add_hypotheses(std::move(held), num_held, between, reach_m, config, hypotheses);
-  add_hypotheses(std::move(sliding), between.loops.size(), between, reach_m, config, hypotheses);
   return hypotheses;
 }
 

@@ -59,10 +59,9 @@ struct Hypothesis {
   explicit Hypothesis(const AdaptiveConfig& config)
       : model(config.merge_check.evidence), offsets(config.registration.relief) {}
 
-  EvidenceModel model;                  ///< Says which differences are one object.
-  std::vector<std::size_t> loops;       ///< Indices, ascending.
-  double share_of_loops = 1.0;          ///< Of those that do not slide; where its own do, of all.
-  std::vector<PlannedComparison> plan;  ///< Places of the claimed overlap.
+  EvidenceModel model;                                         ///< Says which differences are one object.
+  std::vector<std::size_t> loops;                              ///< Indices, ascending.
+  std::vector<PlannedComparison> plan;                         ///< Places of the claimed overlap.
   std::vector<std::optional<PlannedComparison>> second_looks;  ///< Of each place of the plan, until taken.
   std::vector<PlannedComparison> wall_plan;     ///< Pairs between the places, where walls have to decide.
   std::size_t num_walls_compared = 0;           ///< Of the first pairs of that plan.
@@ -114,13 +113,12 @@ struct LoopsBetween {
   const OdometryChain& theirs;  ///< Must outlive this. For revisits `own` itself, no copy of it.
   std::vector<PcmLoop> loops;   ///< All that registration accepted.
   std::vector<double> known_before =
-      {};                       ///< Evidence of each that does not come from comparing scans; or empty.
-  std::size_t num_sliding = 0;  ///< So many of the loops, the last ones, are free to slide along a tunnel.
+      {};  ///< Evidence of each that does not come from comparing scans; or empty.
 };
 
 /// Disjoint sets of loops that agree, the largest first, without loops that most of their neighbours
-/// contradict and without sets that put the other robot where one before does; those of loops that are free
-/// to slide after all others. Places are compared up to `reach_m` along the path from the nearest loop.
+/// contradict and without sets that put the other robot where one before does. Places are compared up to
+/// `reach_m` along the path from the nearest loop.
 [[nodiscard]] std::vector<Hypothesis> hypotheses_of(const LoopsBetween& between, double reach_m,
                                                     const AdaptiveConfig& config);
 

@@ -11,14 +11,6 @@ namespace {
 
 using test::kAgrees;
 using test::kDiffers;
-using test::kTrueLoops;
-using test::loop_at;
-
-std::vector<Hypothesis> hypotheses_where(const std::vector<PcmLoop>& loops, std::size_t num_sliding) {
-  const OdometryChain own = test::along_x(test::kNum);
-  const OdometryChain theirs = own;
-  return hypotheses_of({own, theirs, loops, {}, num_sliding}, 50.0, AdaptiveConfig());
-}
 
 TEST(Changes, CountAnObjectOnceHoweverOftenItIsSeen) {
   Changes things{5.0};
@@ -94,30 +86,6 @@ TEST(Hypothesis, BesideAKnownChangeAPlaceStaysDistinctiveByWhatShowsElsewhere) {
   EXPECT_EQ(outcome_by({{far}, {near, far}}), PlaceOutcome::distinctive);
   EXPECT_EQ(outcome_by({{far}, {near}}), PlaceOutcome::agrees) << "one way only the change shows";
   EXPECT_EQ(outcome_by({}), PlaceOutcome::agrees);
-}
-
-TEST(Hypotheses, OfLoopsThatSlideComeAfterAllOthersAndCountAgainstAll) {
-  std::vector<PcmLoop> loops = kTrueLoops;
-  for (const std::size_t a : {60U, 70U, 110U, 120U}) loops.push_back(loop_at(a, 30.0));
-  const std::vector<Hypothesis> by_size = hypotheses_where(loops, 0);
-  ASSERT_EQ(by_size.size(), 2U);
-  EXPECT_EQ(by_size.front().loops, (std::vector<std::size_t>{3, 4, 5, 6}));
-  EXPECT_DOUBLE_EQ(by_size.front().share_of_loops, 4.0 / 7.0);
-  const std::vector<Hypothesis> sliding_last = hypotheses_where(loops, 4);
-  ASSERT_EQ(sliding_last.size(), 2U);
-  EXPECT_EQ(sliding_last.front().loops, (std::vector<std::size_t>{0, 1, 2}));
-  EXPECT_DOUBLE_EQ(sliding_last.front().share_of_loops, 1.0);
-  EXPECT_EQ(sliding_last.back().loops, (std::vector<std::size_t>{3, 4, 5, 6}));
-  EXPECT_DOUBLE_EQ(sliding_last.back().share_of_loops, 4.0 / 7.0);
-}
-
-TEST(Hypotheses, OfLoopsThatSlideAreTestedWhereThereIsNoOtherOfThatAlignment) {
-  EXPECT_EQ(hypotheses_where(kTrueLoops, kTrueLoops.size()).size(), 1U);
-  std::vector<PcmLoop> loops = kTrueLoops;
-  loops.push_back(loop_at(70, 2.0));  // has slid
-  const std::vector<Hypothesis> same = hypotheses_where(loops, 1);
-  ASSERT_EQ(same.size(), 1U);
-  EXPECT_EQ(same.front().loops, (std::vector<std::size_t>{0, 1, 2}));
 }
 
 }  // namespace

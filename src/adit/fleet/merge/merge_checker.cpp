@@ -79,7 +79,7 @@ double MergeChecker::evidence(const Hypothesis& h) const {
 }
 
 double MergeChecker::prior_evidence(const Hypothesis& h) const {
-  return h.known_before + std::log(h.share_of_loops);
+  return h.known_before + std::log(static_cast<double>(h.loops.size()) / static_cast<double>(loops_.size()));
 }
 
 double MergeChecker::evidence_of_scans(const Hypothesis& h) const {

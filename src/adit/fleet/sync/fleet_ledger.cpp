@@ -6,6 +6,7 @@
 #include <iterator>
 #include <variant>
 
+#include "adit/core/check.hpp"
 #include "adit/core/decompositions.hpp"
 #include "adit/fleet/sync/parts.hpp"
 
@@ -82,7 +83,9 @@ bool FleetLedger::restore(const MessageBody& finding) {
 
 void FleetLedger::overrule(MergeCheck check) {
   const RobotId author = check.a;
-  add(MergeChecks{author, static_cast<std::uint32_t>(size_of(checks_by_, author)), {std::move(check)}});
+  const auto num = static_cast<std::uint32_t>(size_of(checks_by_, author));
+  const bool is_taken = add(MergeChecks{author, num, {std::move(check)}});
+  ADIT_CHECK(is_taken, "a check names the smaller robot first");
 }
 
 bool FleetLedger::add(const Loops& part) {
