@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 #include <memory>
+#include <mutex>
 
 #include "adit/odometry/methods.hpp"
 #include "adit/robot/nothing_mapped.hpp"
@@ -46,15 +47,31 @@ OdometryRun odometry(const Recording& recording, const py::object& config, const
   return without_gil([&] { return value_of(run_odometry(recording, values)); });
 }
 
-/// A method, for scans that come one by one.
-std::unique_ptr<Odometry> method_of(const Eigen::Matrix4d& T_base_lidar, const py::object& config,
-                                    const std::string& profile) {
-  return make_odometry(run_config(config, profile).slam.robot.odometry, Pose::from_matrix(T_base_lidar));
-}
+/// A method, for scans that come one by one. Calls from several Python threads wait for one another.
+class ScanByScan {
+ public:
+  explicit ScanByScan(std::unique_ptr<Odometry> odometry) : odometry_(std::move(odometry)) {}
 
-OdometryStep register_scan(Odometry& odometry, const Scan& scan, const SensedMotion* motion) {
-  const py::gil_scoped_release release;
-  return odometry.register_scan(scan, motion == nullptr ? SensedMotion{} : *motion);
+  OdometryStep register_scan(const Scan& scan, const SensedMotion* motion) {
+    const py::gil_scoped_release release;  // before the lock: who holds it may need the interpreter
+    const std::scoped_lock lock(mutex_);
+    return odometry_->register_scan(scan, motion == nullptr ? SensedMotion{} : *motion);
+  }
+  std::vector<Eigen::Vector3f> points_of_last_scan() {
+    const py::gil_scoped_release release;
+    const std::scoped_lock lock(mutex_);
+    return odometry_->cloud_of_last_scan().points;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::unique_ptr<Odometry> odometry_;
+};
+
+std::unique_ptr<ScanByScan> method_of(const Eigen::Matrix4d& T_base_lidar, const py::object& config,
+                                      const std::string& profile) {
+  return std::make_unique<ScanByScan>(
+      make_odometry(run_config(config, profile).slam.robot.odometry, Pose::from_matrix(T_base_lidar)));
 }
 
 void add_step(py::module_& m) {
@@ -73,12 +90,12 @@ void add_step(py::module_& m) {
 
 void add_odometry(py::module_& m) {
   add_step(m);
-  py::class_<Odometry>(m, "Odometry")
+  py::class_<ScanByScan>(m, "Odometry")
       .def(py::init(&method_of), identity_by_default("T_base_lidar"), py::arg("config") = py::none(),
            py::arg("profile") = "default")
-      .def("register_scan", &register_scan, py::arg("scan"), py::arg("motion") = py::none())
+      .def("register_scan", &ScanByScan::register_scan, py::arg("scan"), py::arg("motion") = py::none())
       .def_property_readonly("points_of_last_scan",
-                             [](const Odometry& o) { return array_of(o.cloud_of_last_scan().points); });
+                             [](ScanByScan& o) { return array_of(o.points_of_last_scan()); });
   py::class_<OdometryRun>(m, "OdometryRun")
       .def_readonly("trajectory", &OdometryRun::trajectory)
       .def_readonly("statuses", &OdometryRun::statuses)

@@ -102,9 +102,11 @@ std::vector<Loop> loops_of_session(const RunSession& s) {
 }
 
 void save(RunSession& s, const std::filesystem::path& path) {
-  OutputDir out = value_of(OutputDir::create(path));
-  value_of(write_slam(out.path(), s.run, s.job));
-  value_of(out.commit());
+  without_gil([&] {
+    OutputDir out = value_of(OutputDir::create(path));
+    value_of(write_slam(out.path(), s.run, s.job));
+    value_of(out.commit());
+  });
 }
 
 std::vector<std::string> failures_of(const RunSession& s) {

@@ -85,6 +85,27 @@ class Odometry(unittest.TestCase):
         np.testing.assert_array_equal(poses, adit.odometry(recording, {"check_sensors": False}).trajectory.poses)
         self.assertGreater(len(odometry.points_of_last_scan), 1000)
 
+    def test_threads_that_share_one_wait_for_one_another(self):
+        recording = robots()[0][:20]
+        odometry = adit.Odometry(recording.T_base_lidar, {"robot.odometry.method": "kiss-icp"})
+        steps = []
+        scan = recording[0]  # where all scans are the same, the order of the threads does not matter
+
+        def register():
+            for _ in range(20):
+                steps.append(odometry.register_scan(scan))
+                self.assertGreater(len(odometry.points_of_last_scan), 1000)
+
+        threads = [threading.Thread(target=register) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(steps), 60)
+        self.assertEqual(sum(step.status == "no_map" for step in steps), 1)
+        for step in steps:
+            np.testing.assert_allclose(step.T_odom_base, np.eye(4), atol=0.01)
+
     def test_wheels_of_the_caller_count(self):
         recording = robots()[0][:2]
         wheels = np.eye(4)
