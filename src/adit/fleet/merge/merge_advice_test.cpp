@@ -44,7 +44,7 @@ struct Met {
       const std::vector<double> at_places = evidence_at_places(places, kChances);
       return std::accumulate(at_places.begin(), at_places.end(), 0.0);
     };
-    stretch.missing = 2.0;
+    stretch.missing = 1.0;
   }
   [[nodiscard]] std::size_t num_passed() const { return stretch.places.size(); }
 

@@ -269,7 +269,7 @@ TEST(MergeChecker, ARefutedHypothesisIsNotTestedToTheEnd) {
   MergeChecker checker = a_check(kTrueLoops);
   const MergeCheck check = run(checker, [](const PlannedComparison&) { return kDiffers; });
   EXPECT_FALSE(check.accepted);
-  EXPECT_EQ(check.num_checked, 8U);
+  EXPECT_LE(check.num_checked, 24U) << "of 34";
 }
 
 TEST(MergeChecker, WhatIsRefutedNeedsNoMeasuringOfTheOwnMap) {
@@ -300,7 +300,7 @@ TEST(MergeChecker, WhereLookAlikesGoOnForLongALongerStretchIsNeeded) {
   const MergeCheck check = run(checker, [](const PlannedComparison&) { return kAgrees; });
   EXPECT_FALSE(check.accepted);
   EXPECT_EQ(check.hypotheses.at(0).outcome, HypothesisOutcome::unsure);
-  // Every further 3 m bring log(0.99 / 0.9); what is missing, rounded up to 10 m.
+  // What every further 3 m bring, and what is missing, rounded up to 10 m.
   const double metres =
       3.0 * std::ceil((check.needed - check.evidence) / std::log(kFleetEvidence.agreement_if_true / 0.9));
   const std::string asked =

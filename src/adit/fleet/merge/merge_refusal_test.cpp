@@ -92,7 +92,7 @@ TEST(MergeRefusal, ChangesAmongPlacesThatAgreeAreNoOtherTunnel) {
   const MergeCheck often = check_of_changes(3, 0.4);
   EXPECT_NE(often.reason.find("scans differ at 12 of 34 places"), std::string::npos) << often.reason;
   EXPECT_NE(often.reason.find("the others speak for one tunnel"), std::string::npos) << often.reason;
-  const MergeCheck seldom = check_of_changes(5, 0.5);
+  const MergeCheck seldom = check_of_changes(4, 0.5);
   EXPECT_NE(seldom.reason.find("evidence"), std::string::npos) << seldom.reason;
   EXPECT_NE(seldom.reason.find("which speaks for one tunnel that has changed"), std::string::npos)
       << seldom.reason;
