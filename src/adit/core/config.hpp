@@ -43,8 +43,8 @@ struct Field {
   std::string key;                        ///< "voxel_size"; with the module's prefix "kiss_icp.voxel_size".
   FieldTarget target;                     ///< Points into the struct that `fields_of` was given.
   std::string unit;                       ///< "m", "deg", "" ...
-  double min = 0.0;                       ///< Inclusive range of a number.
-  double max = 0.0;                       ///< As `min`. Texts and bools have no range.
+  double min = 0.0;                       ///< The least that a number may be.
+  double max = 0.0;                       ///< The most. Texts and bools have no range.
   std::string meaning;                    ///< One line.
   std::vector<std::string> choices = {};  ///< Allowed values of a text; empty: any.
 

@@ -70,7 +70,7 @@ struct MergePair {
 
   /// Whether their paths alone would allow a merge.
   [[nodiscard]] bool shares_enough() const { return shared_m >= kMergeableStretch; }
-  /// Whether their surroundings do as well.
+  /// Whether their paths and surroundings would.
   [[nodiscard]] bool mergeable() const { return shares_enough() && distinctive_m >= kDistinctiveStretch; }
 };
 

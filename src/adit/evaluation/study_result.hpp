@@ -155,7 +155,7 @@ struct JointResult {
   LoopCounts loops;                                 ///< Those selected for the solution, before GNC.
   int wrong_loops_in_solution = 0;                  ///< As in `PairResult`.
   std::vector<std::uint64_t> bytes_sent_per_robot;  ///< In the order of `robots`; may be empty.
-  std::vector<std::string> refusals;                ///< "robot_0 and robot_3 were not merged: ...".
+  std::vector<std::string> refusals;  ///< Of each pair that is not merged: "robot_0 and robot_3: ...".
   std::vector<PointCloud>
       maps;          ///< Each robot's map in the common frame, thinned, for the figure; may be empty.
   LoopMap loop_map;  ///< Of the joint solution.

@@ -22,7 +22,7 @@ struct NeighborPairs {
     std::uint32_t begin = 0;  ///< Of the first.
     std::uint32_t end = 0;    ///< Behind the last.
   };
-  std::vector<Row> rows;            ///< One per point, in any order of `neighbors`.
+  std::vector<Row> rows;            ///< One per point; their ranges are in no order.
   std::vector<Neighbor> neighbors;  ///< Each pair once. Those of a row are side by side.
 
   /// As many as were searched, with neighbours or without.

@@ -21,7 +21,7 @@ class CdrWriter {
  public:
   CdrWriter() : bytes_("\0\1\0\0", 4) {}
 
-  /// Aligned to its size. Returns the writer, like `text` and `blob`, for one call after the other.
+  /// Aligned to its size. Returns the writer, as `text` and `blob` do, so that calls can be chained.
   template <class T>
   CdrWriter& number(T value) {
     while ((bytes_.size() - 4) % sizeof(T) != 0) bytes_ += '\0';
@@ -72,7 +72,7 @@ class MessageReader {
     body_ = bytes.substr(4);
   }
 
-  /// The next one, in CDR from where it is aligned.
+  /// The next number; in CDR behind the padding that aligns it.
   template <class T>
   [[nodiscard]] T number() {
     if (encoding_ == MessageEncoding::cdr) offset_ = (offset_ + sizeof(T) - 1) / sizeof(T) * sizeof(T);

@@ -24,7 +24,7 @@ struct FolderMount {
   std::string assumption;  ///< "" when nothing was assumed.
 };
 
-/// Whether the folder has wheel odometry. It is of the base, so an assumed mount will not do with it.
+/// Whether the folder has wheel odometry. That is of the base: with it a mount must not be assumed.
 enum class Wheels { absent, present };
 
 /// The mount in the order that scan_folder.hpp gives. `clouds` are the files in order; a few of them are

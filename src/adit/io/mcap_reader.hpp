@@ -32,8 +32,8 @@ struct Contents {
   std::map<std::uint16_t, Channel> channels;  ///< By id. All that messages refer to are there.
   std::vector<Metadata> metadata;             ///< Whole records, in the order of the file or its index.
   std::vector<ChunkIndex> chunks;             ///< In the order of the file or its index.
-  std::vector<MessageRef> messages;           ///< By log time; equal times in file order.
-  std::string torn;                           ///< Where the file breaks off and why; "" where it is whole.
+  std::vector<MessageRef> messages;  ///< By log time; equal times in the order of the file or its indexes.
+  std::string torn;                  ///< Where the file breaks off and why; "" where it is whole.
 };
 
 /// A file that is open, with its index in memory.

@@ -64,7 +64,7 @@ struct TransformMessage {
 };
 /// A pose with the covariances that its message states; its twist is not read, and written as zero.
 struct OdometryMessage : TransformMessage {
-  WheelCovariance covariance = {};  ///< As they stand in the message.
+  WheelCovariance covariance = {};  ///< As the message states it, not checked.
 };
 /// In CDR. The stamp must fit: see `fits_ros`.
 [[nodiscard]] std::string encode_odometry(const OdometryMessage& odometry);

@@ -77,7 +77,7 @@ struct SavedLoop {
   ///@{
   Stamp from_stamp, to_stamp;
   ///@}
-  LoopClosure loop;        ///< Ends, transform, inliers, overlap and verdict.
+  LoopClosure loop;        ///< Without information, and without the robots of its ends.
   bool in_clique = false;  ///< LoopOutcome::is_selected.
   double weight = 0.0;     ///< LoopOutcome::weight; 0 where the loop took no part.
 

@@ -41,7 +41,7 @@ inline constexpr double kRivalShare = 0.2;
 inline constexpr std::size_t kDecisiveCluster = 12;  ///< Loops; in a smaller cluster all may be one mistake.
 
 // Where loops fit better than their information says, the bound shrinks.
-inline constexpr double kVarianceHeadroom = 4.0;  ///< Times the variance of the loops kept still passes.
+inline constexpr double kVarianceHeadroom = 4.0;  ///< So many times the variance of kept loops still passes.
 /// Of the kept loops' chi2, compared with that of the chi-square distribution.
 inline constexpr double kFitQuantile = 0.9;
 inline constexpr double kBoundRelease = 30.0;  ///< Times the fitted bound, when it is widened once.
@@ -81,7 +81,7 @@ inline double first_mu(double largest_chi2, double bound) {
   return largest_chi2 > bound ? std::max(kSmallestMu, bound / (2.0 * largest_chi2 - bound)) : kLargestMu;
 }
 
-/// Exactly: outside the band of mu, where a larger mu changes nothing. At a small mu true loops weigh little.
+/// Whether all are exactly 0 or 1: a larger mu then changes nothing. At a small mu true loops weigh little.
 inline bool all_binary(const std::vector<double>& weights) {
   return std::ranges::all_of(weights, [](double w) { return w == 0.0 || w == 1.0; });
 }
@@ -97,7 +97,7 @@ BasicPoseGraph<P> moved(BasicPoseGraph<P> graph, const std::vector<P>& poses) {
 template <class P>
 class GncSearch {
  public:
-  /// Loops with a chi2 above `bound` are false. Graph and settings must outlive the search.
+  /// Loops with a chi2 above `bound` count as false. Graph and settings must outlive the search.
   GncSearch(const BasicPoseGraph<P>& graph, const GncConfig& config, double bound)
       : graph_(graph), config_(config), bound_(bound) {}
 

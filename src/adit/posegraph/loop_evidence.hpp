@@ -75,10 +75,10 @@ class LoopEvidence {
 
   /// As given.
   [[nodiscard]] const LoopClusters& clusters() const { return clusters_; }
-  [[nodiscard]] double bound() const { return bound_; }  ///< chi2 of a loop that may be true.
+  [[nodiscard]] double bound() const { return bound_; }  ///< Largest chi2 of a loop that may be true.
   [[nodiscard]] double scale() const { return scale_; }  ///< Variance by that which is stated, at most 1.
 
-  /// Where long cycles close far worse than short ones, false loops hold the long ones.
+  /// False where long cycles close far worse than short ones: false loops then hold the long ones.
   [[nodiscard]] bool has_right_scale(const Solution<P>& s) const {
     return variance_of(graph_, s, edge_costs(graph_, s.poses)) <= kScaleHeadroom * scale_;
   }

@@ -28,12 +28,12 @@ inline constexpr std::size_t kTrialNodesOfParts = 20'000;
 ///@}
 inline constexpr std::size_t kMaxTrials = 100;  ///< Of one pass at most, however small the graph.
 inline constexpr std::size_t kMistake = 5;      ///< Loops of a rejected cluster that is hardly chance.
-inline constexpr double kMisfitHeadroom = 3.0;  ///< Times the variance of the solution still passes.
+inline constexpr double kMisfitHeadroom = 3.0;  ///< So many times the variance of the solution still passes.
 /// Pieces that are strained by more than so many times the median of all groups are tried.
 inline constexpr double kStrained = 1.5;
-inline constexpr double kOpenShare = 1e-9;      ///< Of the largest information: an open direction.
-inline constexpr double kTrueShare = 0.99;      ///< Of the groups that stay, at least: asked of the odds.
-inline constexpr double kLikeSize = 2.0 / 3.0;  ///< Of the loops of a group: another is as strong.
+inline constexpr double kOpenShare = 1e-9;  ///< Of the largest information: what an open direction is given.
+inline constexpr double kTrueShare = 0.99;  ///< Of the groups that stay so many are to be true, at least.
+inline constexpr double kLikeSize = 2.0 / 3.0;  ///< Of a group's loops: clusters with so many are as strong.
 
 /// Which groups are tried: all clusters, or the pieces of those too large to be tried as a whole. Where there
 /// are only a few groups all are.

@@ -21,7 +21,7 @@ using Descriptor = std::array<std::uint8_t, kDescriptorSize>;
 /// What registration needs of a cloud; compute it once per keyframe and keep it (57 bytes per point). All
 /// three vectors are equally long. Points without a reliable descriptor are left out.
 struct Features : OrientedPoints {
-  std::vector<Descriptor> descriptors;  ///< What lies within `feature_radius_voxels` of each point.
+  std::vector<Descriptor> descriptors;  ///< Of the surface around each point (fpfh.hpp).
 };
 
 /// Thins the cloud to one point (the mean) per voxel and describes each. `cloud` is in the frame of the

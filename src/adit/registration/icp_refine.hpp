@@ -34,7 +34,7 @@ struct PointPair {
 /// The same to some millimetres, from fewer points: a start for `align_to_planes`.
 struct Approach {
   Pose T_a_b;                ///< Where the steps ended.
-  bool has_arrived = false;  ///< The last step was shorter than a centimetre: a minimum is near.
+  bool has_arrived = false;  ///< The last step [m; rad] was shorter than 0.01: a minimum is near.
 };
 /// `refine_max_iterations` or too few pairs may end it before it has arrived.
 [[nodiscard]] Approach approach_planes(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,

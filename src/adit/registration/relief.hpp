@@ -40,7 +40,7 @@ struct PatchOffset {
 /// The share of equal signs: how often two pairs of scans that saw a patch put the wall on the same side.
 /// 0.5, as by chance, where no patch was seen twice.
 struct EqualSignShare {
-  std::size_t num_patches = 0;  ///< Seen twice.
+  std::size_t num_patches = 0;  ///< On which two pairs of scans or more put the wall on a side.
   double share = 0.5;           ///< 0 to 1.
   double sigma = 0.5;           ///< Standard deviation of that share.
   double noise_m = 0.0;  ///< Of the offset of one pair of scans, about its patch: one standard deviation.

@@ -14,7 +14,7 @@
 namespace adit {
 
 inline constexpr double kFigureWidth = 800.0;  ///< Pixels: of every map, and of the box plots.
-inline constexpr double kMapFooter = 44.0;     ///< Room for the scale bar.
+inline constexpr double kMapFooter = 44.0;     ///< Pixels: room for the scale bar.
 
 /// The smallest box around everything that a figure shows; `extend` skips what is not finite.
 class MapExtent {

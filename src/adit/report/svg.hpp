@@ -42,7 +42,7 @@ struct TextStyle {
   double size = 14.0;             ///< Of the font, pixels.
   Anchor anchor = Anchor::start;  ///< Also what the text turns about.
   int weight = 400;               ///< As in CSS: 400 plain, 600 semi-bold.
-  double halo = 0.0;              ///< White rim in pixels, for text over lines.
+  double halo = 0.0;              ///< Width of a white line, half of it behind the letters; pixels.
   double turn_deg = 0.0;          ///< About the anchor, clockwise.
 };
 

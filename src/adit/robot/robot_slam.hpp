@@ -53,7 +53,7 @@ class RobotSlam {
   /// `motion`: what other sensors measured from the scan before to this one.
   RobotStep process(const Scan& scan, const SensedMotion& motion);
 
-  /// Of all scans so far; the clouds of older keyframes change no more.
+  /// Of all scans so far. Only the newest keyframe may still change.
   [[nodiscard]] const RobotMap& map() const { return map_; }
 
  private:

@@ -18,7 +18,7 @@ namespace adit {
 /// What is wrong with a sensor.
 enum class Finding {
   imu_in_g,               ///< Accelerations in units of gravity.
-  imu_without_gravity,    ///< Of the whole drive, or of its begin.
+  imu_without_gravity,    ///< Over the whole drive, or at its start.
   imu_wrong_unit,         ///< Neither m/s^2 nor g.
   imu_in_degrees,         ///< Degrees per second.
   imu_wrong_axes,         ///< The mount does not agree with gravity.

@@ -31,7 +31,7 @@ struct DrivingVehicle {
   std::size_t robot = 0;  ///< On whose path.
   Stamp met;              ///< When it is beside that robot.
   double pace = 2.0;      ///< Negative: it comes towards the robot.
-  double left = 2.0;      ///< Metres from the path to its middle.
+  double left = 2.0;      ///< Metres from the path to its middle; negative: to the right.
   double width = 1.9;     ///< Metres; less than that of kVehicle in a narrow tunnel.
 };
 

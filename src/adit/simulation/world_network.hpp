@@ -130,7 +130,7 @@ struct NetworkPath {
 /// left that leaves both ends straight, and level for `landing` metres there.
 struct LineShape {
   double sagitta = 0.0;   ///< Metres; negative: to the right.
-  int waves = 1;          ///< 1 or 2.
+  int waves = 1;          ///< 1: a bow, 2: a double bend.
   double landing = 10.0;  ///< Metres at each end.
 };
 /// Points about 1.5 m apart in plan. The first is `from` and the last one `to`.

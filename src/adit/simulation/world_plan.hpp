@@ -63,7 +63,7 @@ void add_closed_tunnel(WorldPlan& plan, const Profile& profile, const Polyline& 
 /// A place beside a tunnel: `distance` along its line, on its left (+1) or right (-1).
 struct WallSite {
   LinePoint foot;           ///< On the line.
-  double side = 1.0;        ///< +1 or -1.
+  double side = 1.0;        ///< +1: left, -1: right.
   double half_width = 5.0;  ///< Of the tunnel, metres.
 
   /// Unit direction to the left of the line, on whichever side the site is.

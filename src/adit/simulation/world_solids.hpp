@@ -31,7 +31,7 @@ struct Arch {
 /// The profile moved to the left of its line.
 [[nodiscard]] Profile shifted(Profile profile, double left);
 
-/// The points p with normal . p = offset.
+/// The points p with normal . p <= offset.
 struct HalfSpace {
   Vector3 normal;       ///< Unit length, pointing out of the piece.
   double offset = 0.0;  ///< Metres from the origin.

@@ -27,7 +27,7 @@ struct LoopStudy {
 /// has. Fails where the graph cannot be read or its true edges cannot be solved.
 Result<> run_graph(const ListedGraph& listed, const LoopStudy& study);
 
-/// What of a list is run.
+/// The graphs of a list that are run, and which are left out.
 struct ChosenGraphs {
   std::vector<ListedGraph> graphs;  ///< In the order of the list.
   std::vector<std::string> notes;   ///< One line per graph that is left out because its file is absent.

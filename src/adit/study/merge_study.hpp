@@ -20,7 +20,7 @@ struct WorldChoice {
   std::vector<std::string> only;    ///< or if not empty those of these names.
 };
 
-/// What of a list is run.
+/// The worlds of a list that are run, and which are left out.
 struct ChosenWorlds {
   std::vector<ListedWorld> worlds;  ///< In the order of the list.
   std::vector<std::string> notes;   ///< One line per world that is left out because its files are absent.

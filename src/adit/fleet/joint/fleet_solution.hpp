@@ -40,7 +40,7 @@ struct LoopOutcome {
   LoopClosure loop;          ///< As it was registered; both of its keyframes are known.
   bool is_selected = false;  ///< By PCM or by an accepted merge check (always true where neither is on).
   double weight = 0.0;       ///< Final GNC weight; 0 where it was not selected.
-  /// Whether it holds its map together. Loops of pairs that are not merged have weight 0.
+  /// Whether the solution relies on it. Loops of pairs that are not merged have weight 0.
   [[nodiscard]] bool in_use() const { return weight >= 0.5; }
 };
 

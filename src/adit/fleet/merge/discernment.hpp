@@ -56,9 +56,10 @@ class Discernment {
   /// The keyframes that stand displaced from this one along the path, to either side, by the distance that
   /// makes a place distinctive; fewer at the ends of the path.
   [[nodiscard]] std::vector<std::uint32_t> displaced_from(std::uint32_t keyframe) const;
-  /// Path, in metres, over which odometry leads to within `reach_off_m` to the side: by how much its heading
-  /// differs from that of the scans. Between `shortest_reach_m`, which it is where too little could be
-  /// measured, too, and `longest_reach_m` (DiscernmentConfig).
+  /// Metres of path after which the odometries of two robots are `reach_off_m` apart to the side, one
+  /// standard deviation, by how the headings of the own one differ from those of scans. At least
+  /// `shortest_reach_m`, also where too little could be measured; at most `longest_reach_m`
+  /// (DiscernmentConfig).
   [[nodiscard]] double reach_m();
   /// How long look-alikes agree and how walls compare on the own map; valid as long as this.
   [[nodiscard]] const Measured& measured();

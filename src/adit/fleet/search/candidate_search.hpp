@@ -55,7 +55,7 @@ class CandidateSearch {
   CandidateSearch(std::shared_ptr<const RobotMap> map, OdometryChain chain, const PlaceIndexConfig& place,
                   const SearchConfig& config);
 
-  /// From which own keyframes are described, by the configuration.
+  /// As configured: the lanes from which own keyframes are described.
   [[nodiscard]] Lanes lanes() const { return {config_.lanes, config_.lane_m}; }
   /// Of the own map; made when it is first asked for, valid as long as this.
   [[nodiscard]] const SelfSimilarity& self_similarity();

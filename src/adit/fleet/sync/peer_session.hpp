@@ -43,7 +43,7 @@ class PeerSession {
   bool take(const Places& part);
   /// Forgets descriptors that no search has used; a later meeting sends them again.
   void forget_places();
-  /// Whether the last descriptor of the peer has come and the search has not taken them yet.
+  /// Whether all descriptors of the peer have come and the search has not taken them yet.
   [[nodiscard]] bool has_all_places() const { return has_all_places_; }
   /// Whether all places lie on the first `num_nodes` nodes of the peer's graph.
   [[nodiscard]] bool lie_within(std::size_t num_nodes) const;

@@ -109,7 +109,7 @@ struct Loops {
 enum class HypothesisOutcome : std::uint8_t {
   accepted,  ///< It joins the maps.
   refuted,   ///< Scans differ at more places than a true alignment leaves.
-  unsure,    ///< The best one, with less evidence than needed.
+  unsure,    ///< The best one, without a rival, but with too little evidence or too few loops.
   rival,     ///< Its evidence and that of another one differ by less than what is needed.
   behind,    ///< Its evidence is less than that of the best one by at least what is needed.
 };
