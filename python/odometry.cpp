@@ -53,7 +53,8 @@ class ScanByScan {
   explicit ScanByScan(std::unique_ptr<Odometry> odometry) : odometry_(std::move(odometry)) {}
 
   OdometryStep register_scan(const Scan& scan, const SensedMotion* motion) {
-    const py::gil_scoped_release release;  // before the lock: who holds it may need the interpreter
+    const py::gil_scoped_release
+        release;  // first: other Python threads run while this one waits for the lock
     const std::scoped_lock lock(mutex_);
     return odometry_->register_scan(scan, motion == nullptr ? SensedMotion{} : *motion);
   }

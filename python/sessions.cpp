@@ -102,11 +102,9 @@ std::vector<Loop> loops_of_session(const RunSession& s) {
 }
 
 void save(RunSession& s, const std::filesystem::path& path) {
-  without_gil([&] {
-    OutputDir out = value_of(OutputDir::create(path));
-    value_of(write_slam(out.path(), s.run, s.job));
-    value_of(out.commit());
-  });
+  OutputDir out = value_of(OutputDir::create(path));
+  value_of(write_slam(out.path(), s.run, s.job));
+  value_of(out.commit());
 }
 
 std::vector<std::string> failures_of(const RunSession& s) {

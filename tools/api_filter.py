@@ -266,6 +266,11 @@ def functions_of_fields(text):
     return [text[match.start():text.find("\n}", match.end()) + 2] for match in starts]
 
 
+def of_file(header):
+    """A description before `#pragma once` is of the header; Doxygen would take it for that of what comes next."""
+    return re.sub(r"^// SPDX-License-Identifier: .*\n(?=///)", "/// \\\\file\n", header, count=1, flags=re.MULTILINE)
+
+
 def module_sources(path):
     """The functions of fields in the folder of src/adit that holds a header."""
     parents = list(path.resolve().parents)
@@ -326,6 +331,8 @@ Fields fields_of(A& c) {  // {"rate", &c.rate, "", 0, 0, "wrong"}
     result = filtered(header, functions_of_fields(source))
     assert result == expected, result
     assert result.count("\n") == header.count("\n")
+    about = of_file("// SPDX-License-Identifier: MIT\n/// What is here.\n#pragma once\n")
+    assert about == "/// \\file\n/// What is here.\n#pragma once\n", about
     print("api_filter: self-test passed")
 
 
@@ -333,10 +340,13 @@ def main():
     if sys.argv[1:] == ["--self-test"]:
         self_test()
         return
+    if len(sys.argv) != 2:
+        sys.exit("usage: tools/api_filter.py HEADER | --self-test")
     path = Path(sys.argv[1])
     header = path.read_text(encoding="utf-8")
     sources = module_sources(path) if re.search(r"^ *struct ", header, re.MULTILINE) else []
-    sys.stdout.write(filtered(header, sources))
+    sys.stdout.reconfigure(encoding="utf-8")
+    sys.stdout.write(of_file(filtered(header, sources)))
 
 
 main()

@@ -25,7 +25,7 @@ last_release() {
 # The first .cpp file that includes a header; nothing where none does.
 including() { git grep -lF "\"$1\"" -- 'src/*.cpp' 'apps/*.cpp' 'examples/*.cpp' ':!*_test.cpp' | head -1 || true; }
 
-code_of() { sed 's,//.*,,' | tr -d '[:space:]'; }
+code_of() { sed -E '/NOLINT/!s,(^|[[:space:]])//.*,,' | tr -d '[:space:]'; }
 # Whether more than comments of a file changed.
 has_new_code() { [ "$(git show "$1:$2" 2>/dev/null | code_of)" != "$(code_of <"$2")" ]; }
 

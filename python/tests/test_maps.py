@@ -86,25 +86,30 @@ class Odometry(unittest.TestCase):
         self.assertGreater(len(odometry.points_of_last_scan), 1000)
 
     def test_threads_that_share_one_wait_for_one_another(self):
-        recording = robots()[0][:20]
-        odometry = adit.Odometry(recording.T_base_lidar, {"robot.odometry.method": "kiss-icp"})
-        steps = []
-        scan = recording[0]  # where all scans are the same, the order of the threads does not matter
+        recording = robots()[0][:30]
+        alone = adit.odometry(recording, {"check_sensors": False})
+        odometry = adit.Odometry(recording.T_base_lidar)
+        is_over = threading.Event()
+        errors = []
 
-        def register():
-            for _ in range(20):
-                steps.append(odometry.register_scan(scan))
-                self.assertGreater(len(odometry.points_of_last_scan), 1000)
+        def look_on():
+            try:
+                while not is_over.is_set():
+                    points = odometry.points_of_last_scan
+                    if not np.isfinite(points).all():
+                        errors.append("points that are no numbers")
+            except Exception as error:  # shown below: what a thread throws fails no test
+                errors.append(error)
 
-        threads = [threading.Thread(target=register) for _ in range(3)]
+        threads = [threading.Thread(target=look_on) for _ in range(2)]
         for thread in threads:
             thread.start()
+        poses = [odometry.register_scan(recording[i], recording.motion_before(i)).T_odom_base for i in range(30)]
+        is_over.set()
         for thread in threads:
             thread.join()
-        self.assertEqual(len(steps), 60)
-        self.assertEqual(sum(step.status == "no_map" for step in steps), 1)
-        for step in steps:
-            np.testing.assert_allclose(step.T_odom_base, np.eye(4), atol=0.01)
+        self.assertEqual(errors, [])
+        np.testing.assert_array_equal(poses, alone.trajectory.poses)
 
     def test_wheels_of_the_caller_count(self):
         recording = robots()[0][:2]

@@ -22,9 +22,11 @@
 
 namespace adit::simd {
 
-/// Four floats and four integers: one register of 16 bytes, aligned to it.
+/// Four floats or four integers: one register of 16 bytes, aligned to it.
+///@{
 using Float4 [[gnu::vector_size(16)]] = float;
 using Int4 [[gnu::vector_size(16)]] = std::int32_t;
+///@}
 
 /// `N` values of type T anywhere in memory, so that an array of T can be read and written through it.
 /// Not `using`: GCC 12 then drops the size.
@@ -38,16 +40,23 @@ struct Unaligned {
 /// bytes, on every machine, whether it has registers of 32 bytes or not.
 using Double4 = Unaligned<double, 4>::Type;
 
+/// Four floats from anywhere in memory.
 [[nodiscard]] inline Float4 load4(const float* x) {
   return Float4(*reinterpret_cast<const Unaligned<float, 4>::Type*>(x));
 }
+/// The same value in every lane.
 [[nodiscard]] inline Float4 all4(float x) { return Float4{x, x, x, x}; }
+/// Lane by lane. Where `a` is NaN: `min` gives b, `max` a.
+///@{
 [[nodiscard]] inline Float4 min(Float4 a, Float4 b) { return a < b ? a : b; }
 [[nodiscard]] inline Float4 max(Float4 a, Float4 b) { return a < b ? b : a; }
+///@}
 
 /// Over the lanes, always in this order.
+///@{
 [[nodiscard]] inline float sum(Float4 v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 [[nodiscard]] inline double sum(const Double4& v) { return (v[0] + v[1]) + (v[2] + v[3]); }
+///@}
 /// The smallest of the four; no lane is NaN.
 [[nodiscard]] inline float least(Float4 v) {
   const Float4 half = min(v, Float4{v[2], v[3], v[0], v[1]});

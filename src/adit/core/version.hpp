@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+/// Multi-robot LiDAR SLAM for tunnels, mines and caves.
 namespace adit {
 /// "0.1.0", from the build.
 [[nodiscard]] std::string_view version();

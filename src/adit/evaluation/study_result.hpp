@@ -166,7 +166,7 @@ struct JointResult {
 struct StudyResult {
   std::string version;                ///< Of adit.
   std::string world;                  ///< Its name; empty where none was simulated.
-  std::string lidar;                  ///< Name of the simulated model; empty likewise.
+  std::string lidar;                  ///< Names of the simulated LiDARs; empty likewise.
   std::uint64_t seed = 0;             ///< Of the noise of all sensors.
   double wall_s = 0.0;                ///< Time that passed; 0 where it was not taken.
   double peak_rss_mb = 0.0;           ///< Most memory of the process; 0 where it was not taken.

@@ -36,8 +36,8 @@ std::vector<MessageBody> request_of(const PeerSession& session) {
   return request ? std::vector<MessageBody>{*request} : std::vector<MessageBody>{};
 }
 
-/// Accepted loops that registration does not leave free to slide: in tunnels of equal blocks the others make
-/// false alignments that pass (decision 0059).
+/// Accepted loops that registration does not leave free to slide: in tunnels of equal blocks the others would
+/// let false alignments pass (decision 0059).
 std::vector<LoopClosure> without_sliding(std::vector<LoopClosure> loops) {
   std::erase_if(loops, [](const LoopClosure& loop) {
     return loop.verdict != LoopVerdict::accepted || loop.is_free_to_slide();

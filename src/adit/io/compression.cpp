@@ -30,10 +30,12 @@ Result<> check_claim(std::string_view bytes, std::size_t size, std::size_t most_
 }
 
 Result<std::string> decompress_zstd(std::string_view bytes, std::size_t size) {
-  // The frame says its size as well; a claim that differs is damage, found before memory is taken.
+  // A frame states its size as well. Where it is the only one, a claim that differs is damage, found before
+  // memory is taken.
   const unsigned long long stated = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
   if (stated == ZSTD_CONTENTSIZE_ERROR) return fail("not a zstd frame");
-  if (stated != ZSTD_CONTENTSIZE_UNKNOWN && stated != size)
+  const bool is_only_one = ZSTD_findFrameCompressedSize(bytes.data(), bytes.size()) == bytes.size();
+  if (stated != ZSTD_CONTENTSIZE_UNKNOWN && (is_only_one ? stated != size : stated > size))
     return fail(format("holds {} bytes, not {}", stated, size));
   if (const Result<> possible = check_claim(bytes, size, kMostOfZstd); !possible)
     return tl::unexpected(possible.error());
@@ -67,8 +69,8 @@ Result<std::string> decompress_lz4(std::string_view bytes, std::size_t size) {
   return out;
 }
 
-/// Takes memory as the data fill it: so few bytes of bzip2 may hold so much that a damaged size passes the
-/// check.
+/// A few bytes of bzip2 can stand for so much that `check_claim` passes a damaged size: memory is taken only
+/// as data come.
 Result<std::string> decompress_bz2(std::string_view bytes, std::size_t size) {
   constexpr std::size_t kFirst = std::size_t{1} << 20U;
   if (const Result<> possible = check_claim(bytes, size, kMostOfBz2); !possible)
@@ -91,6 +93,7 @@ Result<std::string> decompress_bz2(std::string_view bytes, std::size_t size) {
       out.resize(size);
       return out;
     }
+    ADIT_CHECK(code != BZ_MEM_ERROR, "out of memory");
     if (code != BZ_OK) return fail(format("damaged bz2 data (code {})", code));
     if (stream.avail_out > 0) return fail(format("bz2 data end early, after {} of {} bytes", done, size));
     if (done == most) return fail(format("bz2 data expand to more than {} bytes", size));

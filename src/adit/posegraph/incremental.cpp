@@ -218,6 +218,7 @@ typename IncrementalOptimizer<P>::Update IncrementalOptimizer<P>::update(int max
   impl.is_settled = u.status == SolveStatus::converged;
   if (u.status != SolveStatus::converged && u.status != SolveStatus::max_iterations) {
     impl.model.put_back(impl.before);
+    u.cost = impl.model.cost();
     return u;
   }
   for (std::size_t node = 0; node < impl.moved_in.size(); ++node)

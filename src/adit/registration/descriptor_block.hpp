@@ -31,7 +31,7 @@ struct alignas(32) DescriptorBlock {
   std::uint32_t indices[kLanes] = {};             ///< Of the descriptors, as the caller counts them.
   std::uint32_t count = 0;                        ///< Lanes in use, the first ones.
 
-  /// Squared norm at most 32767, as in DescriptorIndex.
+  /// Squared norm at most 32767, as in DescriptorIndex. Throws ContractViolation where all lanes are in use.
   void append(const Descriptor& descriptor, std::uint32_t index);
 };
 

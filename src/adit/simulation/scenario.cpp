@@ -286,6 +286,14 @@ Result<std::vector<LidarConfig>> lidars_of(const ScenarioConfig& config) {
   return lidars;
 }
 
+std::string sensors_text(const ScenarioConfig& simulation) {
+  if (simulation.lidars.empty()) return simulation.lidar.name;
+  std::string text;
+  for (const char c : simulation.lidars)
+    if (c != ' ') text += c == ',' ? ", " : std::string(1, c);
+  return text;
+}
+
 void set_conditions(Conditions conditions, ScenarioConfig& config) {
   const bool field = conditions == Conditions::field;
   config.lidar_errors = field ? field_lidar_errors() : LidarErrorConfig();

@@ -74,6 +74,8 @@ void set_conditions(Conditions conditions, ScenarioConfig& config);
 
 /// The LiDARs that robots have in turn: those that `lidars` names, or `lidar`. Fails on an unknown name.
 [[nodiscard]] Result<std::vector<LidarConfig>> lidars_of(const ScenarioConfig& config);
+/// Their names, for tables: "os2-32, os1-64".
+[[nodiscard]] std::string sensors_text(const ScenarioConfig& simulation);
 
 /// Drives every route of the world at the same time, each robot on a clock that starts at 0. One recording
 /// per route, in their order. No scan is cast or stored now: `read_scan(i)` casts scan i on demand, always

@@ -189,14 +189,6 @@ ScenarioConfig scenario_of(const ListedWorld& world, ScenarioConfig simulation) 
   return simulation;
 }
 
-std::string sensors_text(const ScenarioConfig& simulation) {
-  if (simulation.lidars.empty()) return simulation.lidar.name;
-  std::string text;
-  for (const char c : simulation.lidars)
-    if (c != ' ') text += c == ',' ? ", " : std::string(1, c);
-  return text;
-}
-
 std::string conditions_text(const ScenarioConfig& simulation) {
   const auto text_of = [](ScenarioConfig config) { return to_toml(adit::fields_of(config)); };
   for (const Conditions conditions : kConditions) {

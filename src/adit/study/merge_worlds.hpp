@@ -35,8 +35,6 @@ Result<std::vector<ListedWorld>> read_world_list(const std::filesystem::path& li
 /// How the robots of that world are simulated where a study has `simulation`: with the world's own seed, and
 /// with its sensors and conditions where it states them.
 [[nodiscard]] ScenarioConfig scenario_of(const ListedWorld& world, ScenarioConfig simulation);
-/// The LiDARs that robots have in turn, for tables: "os2-32, os1-64".
-[[nodiscard]] std::string sensors_text(const ScenarioConfig& simulation);
 /// "ideal" or "field" where the fields that conditions set are theirs, else "other".
 [[nodiscard]] std::string conditions_text(const ScenarioConfig& simulation);
 

@@ -113,6 +113,7 @@ Result<RobotRun> run_robot(const Recording& recording, RobotId id, const RunConf
   run.paper_map = drives.size() == 1 ? run.map : std::make_shared<const RobotMap>(drives.back().map());
   if (run.map->keyframes.empty() || run.paper_map->keyframes.empty())
     return fail(why_nothing_mapped(recording));
+  run.lidar = recording.lidar;
   run.truth = recording.truth;
   run.result = robot_facts(*run.map, run.truth);
   comparison.add_result(run.truth, run.result.odometry);

@@ -12,7 +12,6 @@
 #include "adit/slam/naming.hpp"
 #include "adit/slam/session_pages.hpp"
 #include "adit/study/judging.hpp"
-#include "adit/study/merge_worlds.hpp"
 
 namespace adit {
 namespace {
@@ -25,7 +24,7 @@ Provenance provenance_of(const Study& study, const SlamConfig& config,
   provenance.robots.clear();
   for (const RobotRun* run : runs)
     provenance.robots.push_back({run->result.name, std::string(to_string(config.robot.odometry.method)),
-                                 sensors_text(study.config.simulation), run->map->odometry.size(), ""});
+                                 run->lidar, run->map->odometry.size(), ""});
   return provenance;
 }
 

@@ -43,7 +43,8 @@ class FleetLedger {
   /// What `findings` named when this robot was saved, its own among it: before it adds or takes anything.
   /// False as above.
   bool restore(const MessageBody& finding);
-  /// Replaces the verdict on its two robots, whoever decided it.
+  /// Replaces the verdict on its two robots, whoever decided it. Throws ContractViolation unless `check.a <=
+  /// check.b`.
   void overrule(MergeCheck check);
 
   /// How much is known of each robot.

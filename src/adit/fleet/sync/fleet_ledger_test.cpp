@@ -6,6 +6,8 @@
 
 #include <variant>
 
+#include "adit/core/check.hpp"
+
 namespace adit {
 namespace {
 
@@ -94,6 +96,7 @@ TEST(FleetLedger, AnOverruledCheckIsTheLatest) {
   FleetLedger later(kSelf, graph_with(1), MergePolicy::adaptive);
   for (const MessageBody& finding : ledger.findings()) EXPECT_TRUE(later.restore(finding));
   EXPECT_TRUE(later.known().checks.at({kOther, kSelf}).accepted);
+  EXPECT_THROW(ledger.overrule(check(kSelf, kOther)), ContractViolation);
 }
 
 TEST(FleetLedger, PartsAfterALostOneWaitForIt) {
