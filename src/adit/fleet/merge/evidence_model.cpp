@@ -20,7 +20,7 @@ struct Origin {
 
 constexpr std::string_view kChosen = "chosen: the rate that is aimed at";
 constexpr std::string_view kOfForty = "1410 false and 130 true hypotheses of 40 worlds (decision 0048)";
-constexpr std::string_view kTrueOfEighteen = "38 true pairs of 18 field worlds (decision 0059)";
+constexpr std::string_view kTrueOfEleven = "38 true pairs of eleven field worlds (decision 0059)";
 constexpr std::string_view kWalksOfFifteen =
     "106 first steps of look-alikes on 15 maps of five tuning worlds (decision 0043)";
 constexpr std::string_view kJudgement = "judgement: no site was counted (decision 0043)";
@@ -30,7 +30,7 @@ constexpr std::string_view kOfScans = "pairs of scans of the tuning worlds (deci
 constexpr std::string_view kOfWalls = "three tuning worlds (decision 0015)";
 
 constexpr std::array kOrigins = {
-    Origin{"fleet.agreement_if_true", kTrueOfEighteen, "2026-11-27"},
+    Origin{"fleet.agreement_if_true", kTrueOfEleven, "2026-11-27"},
     Origin{"fleet.least_chance", "places 3 m apart see in part the same (decision 0043)", "2026-11-25"},
     Origin{"fleet.copied", kOfForty, "2026-11-25"},
     Origin{"fleet.copy_goes_on", kJudgement, "2026-11-25"},
