@@ -160,7 +160,7 @@ Result<RobotRun> read_robot(const std::vector<Drives>& drives, std::size_t robot
   if (!paper_map) return tl::unexpected(paper_map.error());
   Result<Trajectory> truth = read_tum(truth_file(drives.front().folder, robot));
   if (!truth) return tl::unexpected(truth.error());
-  RobotRun run{*map, *paper_map, std::move(*truth), {}};
+  RobotRun run{*map, *paper_map, {}, std::move(*truth), {}};
   run.result = robot_facts(*run.map, run.truth);
   return run;
 }

@@ -15,7 +15,7 @@ namespace adit {
 struct RobotRun {
   std::shared_ptr<const RobotMap> map;        ///< By the configured odometry.
   std::shared_ptr<const RobotMap> paper_map;  ///< By `paper_odometry`; the same map where that is the same.
-  std::string lidar;                          ///< As the recording names it.
+  std::string lidar;                          ///< As the recording names it; empty where maps were read.
   Trajectory truth;                           ///< For evaluation alone.
   RobotResult result;                         ///< What tables say of the drive.
 
