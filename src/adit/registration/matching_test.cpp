@@ -9,6 +9,7 @@
 
 #include "adit/core/check.hpp"
 #include "adit/core/rng.hpp"
+#include "adit/registration/descriptor_block.hpp"
 #include "adit/registration/descriptor_index.hpp"
 
 namespace adit {
@@ -70,6 +71,13 @@ TEST(DescriptorBlock, AgreesWithTheDefinition) {
     for (std::size_t i = 0; i < all.size(); ++i)
       EXPECT_EQ(distances[i], squared_distance(descriptor, all[i]));
   }
+}
+
+TEST(DescriptorBlock, TakesNoMoreThanItHasLanesFor) {
+  DescriptorBlock block;
+  for (std::uint32_t i = 0; i < DescriptorBlock::kLanes; ++i) block.append(Descriptor{}, i);
+  EXPECT_THROW(block.append(Descriptor{}, 16), ContractViolation);
+  EXPECT_EQ(block.count, DescriptorBlock::kLanes);
 }
 
 TEST(DescriptorIndex, KeepsToItsBound) {
