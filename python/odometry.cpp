@@ -53,8 +53,8 @@ class ScanByScan {
   explicit ScanByScan(std::unique_ptr<Odometry> odometry) : odometry_(std::move(odometry)) {}
 
   OdometryStep register_scan(const Scan& scan, const SensedMotion* motion) {
-    const py::gil_scoped_release
-        release;  // first: other Python threads run while this one waits for the lock
+    // First, so that other Python threads run while this one waits for the lock.
+    const py::gil_scoped_release release;
     const std::scoped_lock lock(mutex_);
     return odometry_->register_scan(scan, motion == nullptr ? SensedMotion{} : *motion);
   }
