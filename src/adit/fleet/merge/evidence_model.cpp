@@ -34,7 +34,7 @@ constexpr std::array kOrigins = {
     Origin{"fleet.least_chance", "places 3 m apart see in part the same (decision 0043)", "2026-11-25"},
     Origin{"fleet.copied", kOfForty, "2026-11-25"},
     Origin{"fleet.copy_goes_on", kJudgement, "2026-11-25"},
-    Origin{"error_rate", kOfForty, "2026-11-25"},
+    Origin{"error_rate", "one wrong merge of some 720 pairs that share nothing (decision 0060)", "2026-11-27"},
     Origin{"refusal_rate", kChosen, "2026-11-21"},
     Origin{"usual_share", kOfScans, "2026-11-21"},
     Origin{"allowance", kOfScans, "2026-11-21"},
