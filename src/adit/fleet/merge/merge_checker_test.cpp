@@ -133,7 +133,7 @@ TEST(MergeChecker, WhereLittleIsMissingMorePairsOfTheWallsDecide) {
   constexpr std::size_t kPlaces = 34;  // along the whole drive
   std::size_t num_pairs = 0;
   const auto check = [&](const MergeCheckConfig& config, bool all_equal) {
-    MergeChecker checker = checker_of(kTrueLoops, measured(look_alikes(0.865), shares), config);
+    MergeChecker checker = checker_of(kTrueLoops, measured(look_alikes(0.84), shares), config);
     num_pairs = 0;
     return run(checker, [&](const PlannedComparison& c) {
       ++num_pairs;  // first the places, then what lies between them
@@ -203,7 +203,7 @@ TEST(MergeChecker, PlacesThatAgreeJoinTheMaps) {
   EXPECT_TRUE(check.accepted) << check.reason;
   EXPECT_EQ(check.num_passed, check.num_checked);
   EXPECT_NEAR(check.evidence, check.num_checked * std::log(kFleetEvidence.agreement_if_true / 0.5), 1e-9);
-  EXPECT_NEAR(check.needed, std::log(200.0), 1e-9);
+  EXPECT_NEAR(check.needed, std::log(500.0), 1e-9);
   const std::vector<std::pair<std::uint32_t, std::uint32_t>> loops = {{80, 119}, {90, 109}, {100, 99}};
   EXPECT_EQ(check.loops, loops);
   ASSERT_EQ(check.hypotheses.size(), 1U);
