@@ -34,7 +34,8 @@ constexpr std::array kOrigins = {
     Origin{"fleet.least_chance", "places 3 m apart see in part the same (decision 0043)", "2026-11-25"},
     Origin{"fleet.copied", kOfForty, "2026-11-25"},
     Origin{"fleet.copy_goes_on", kJudgement, "2026-11-25"},
-    Origin{"error_rate", "one wrong merge of some 720 pairs that share nothing (decision 0060)", "2026-11-27"},
+    Origin{"error_rate", "one wrong merge of some 720 pairs that share nothing (decision 0060)",
+           "2026-11-27"},
     Origin{"refusal_rate", kChosen, "2026-11-21"},
     Origin{"usual_share", kOfScans, "2026-11-21"},
     Origin{"allowance", kOfScans, "2026-11-21"},
@@ -85,7 +86,8 @@ double number_of(const Field& field) {
 Fields fields_of(EvidenceModel& c) {
   Fields fields = {
       {"error_rate", &c.error_rate, "", 1e-12, 0.5,
-       "largest chance that a wrong merge passes, by this model; measured: 1 of some 720, at 0.005 (decision 0060)"},
+       "largest chance that a wrong merge passes, by this model; measured: 1 of some 720, at 0.005 (decision "
+       "0060)"},
       {"refusal_rate", &c.refusal_rate, "", 1e-12, 0.5,
        "chance that a true merge is refused because scans differ"},
       {"usual_share", &c.usual_share, "", 0.0, 1.0,
