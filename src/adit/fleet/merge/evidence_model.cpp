@@ -86,8 +86,7 @@ double number_of(const Field& field) {
 Fields fields_of(EvidenceModel& c) {
   Fields fields = {
       {"error_rate", &c.error_rate, "", 1e-12, 0.5,
-       "largest chance that a wrong merge passes, by this model; measured: 1 of some 720, at 0.005 (decision "
-       "0060)"},
+       "largest chance that a wrong merge passes, by this model (measured: decision 0060)"},
       {"refusal_rate", &c.refusal_rate, "", 1e-12, 0.5,
        "chance that a true merge is refused because scans differ"},
       {"usual_share", &c.usual_share, "", 0.0, 1.0,
