@@ -55,7 +55,12 @@ TEST_F(Growing, InStepsGivesWhatAllAtOnceGives) {
   const std::string three = drive("ahead") + " " + drive("behind") + " " + drive("later");
   expect_done("slam " + three + " --out " + in("at_once"));
   expect_done("slam " + drive("ahead") + " " + drive("behind") + " --out " + in("grown"));
-  expect_done("slam --session " + in("grown") + " " + drive("later"));
+  // As if an earlier version had saved it.
+  put_file(folder_ / "grown/session.toml",
+           text_of("grown/session.toml") + "\n[configuration.gone]\nsetting = 1.0\n");
+  const test::ProgramRun growth = run_adit("slam --session " + in("grown") + " " + drive("later"));
+  EXPECT_EQ(growth.exit_code, 0) << growth.err;
+  EXPECT_NE(growth.err.find("unknown configuration key 'gone.setting'"), std::string::npos) << growth.err;
   expect_same_results("at_once", "grown", {"ahead", "behind", "later"});
   const SavedSession grown = read_session(in("grown")).value();
   EXPECT_EQ(grown.components.size(), 1U);

@@ -11,12 +11,13 @@
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
-#include "adit/geometry/kd_tree.hpp"
+#include "adit/geometry/point_grid.hpp"
 
 namespace adit {
 namespace {
 
 constexpr int kDirections = 720;
+constexpr double kBaseCell = 5.0;  ///< Metres: edge of the cells of the grid of bases.
 
 struct Looked {
   std::vector<std::size_t> free;
@@ -48,7 +49,7 @@ class Grid {
       bases.push_back(scan.T_world_base.translation().cast<float>());
       T_base_world_.push_back(scan.T_world_base.inverse());
     }
-    bases_ = KdTree(bases);
+    bases_ = PointGrid(bases, kBaseCell);
     const double margin = config.reach_m + 2.0 * config.resolution_m;
     const auto cell = [&](double metres) { return std::floor(metres / config.resolution_m); };
     first_ = {cell(low.x() - margin), cell(low.y() - margin)};
@@ -120,7 +121,7 @@ class Grid {
   Eigen::Vector2d first_;  ///< Of the cells, in cells from the world's origin.
   std::size_t width_ = 0;
   std::size_t height_ = 0;
-  KdTree bases_;
+  PointGrid bases_;
   std::vector<Pose> T_base_world_;
 };
 

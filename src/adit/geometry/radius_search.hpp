@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "adit/geometry/kd_tree.hpp"
+#include "adit/geometry/neighbor.hpp"
 
 namespace adit {
 

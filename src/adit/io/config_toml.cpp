@@ -40,12 +40,17 @@ Result<> set_node(const Fields& fields, const std::string& key, const toml::node
   return {};
 }
 
-Result<> set_table(const Fields& fields, const std::string& prefix, const toml::table& table) {
+/// Where `not_taken` is given, values that cannot be set are told there instead of ending it.
+Result<> set_table(const Fields& fields, const std::string& prefix, const toml::table& table,
+                   std::vector<std::string>* not_taken = nullptr) {
   for (const auto& [name, node] : table) {
     const std::string key = prefix + std::string(name.str());
-    const auto* nested = node.as_table();
-    Result<> set = nested != nullptr ? set_table(fields, key + ".", *nested) : set_node(fields, key, node);
-    if (!set) return set;
+    if (const auto* nested = node.as_table()) {
+      if (Result<> set = set_table(fields, key + ".", *nested, not_taken); !set) return set;
+    } else if (Result<> set = set_node(fields, key, node); !set) {
+      if (not_taken == nullptr) return set;
+      not_taken->push_back(set.error().message);
+    }
   }
   return {};
 }
@@ -124,6 +129,13 @@ std::string toml_value(const Field& field) {
 
 Result<> parse_config(const Fields& fields, std::string_view toml) {
   return with_parsed(toml, [&](const toml::table& file) { return set_table(fields, "", file); });
+}
+
+Result<std::vector<std::string>> parse_saved_config(const Fields& fields, std::string_view toml) {
+  std::vector<std::string> not_taken;
+  return with_parsed(toml, [&](const toml::table& file) {
+           return set_table(fields, "", file, &not_taken);
+         }).map([&] { return not_taken; });
 }
 
 Result<> load_config(const std::filesystem::path& path, const Fields& fields) {

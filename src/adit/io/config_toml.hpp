@@ -19,7 +19,10 @@ namespace adit {
 /// wrong type or out of range with what is allowed, each with its line. On failure the fields before it may
 /// have been set.
 Result<> parse_config(const Fields& fields, std::string_view toml);
-/// The same of a file, which errors name.
+/// The same of a configuration that another version may have saved: what this one does not know, or does not
+/// take any more, stays as it is. Returns a line about each of those.
+Result<std::vector<std::string>> parse_saved_config(const Fields& fields, std::string_view toml);
+/// `parse_config` of a file, which errors name.
 Result<> load_config(const std::filesystem::path& path, const Fields& fields);
 
 /// A file that is a list: every table of the array `name`, written [[name]], sets the fields that `entry`

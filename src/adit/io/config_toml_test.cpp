@@ -54,6 +54,21 @@ TEST(ConfigToml, ErrorsNameTheLine) {
   EXPECT_ERROR(load_config("/absent.toml", fields), "/absent.toml: no such file");
 }
 
+TEST(ConfigToml, SavedByAnotherVersionKeepsWhatThisOneTakes) {
+  TestConfig config;
+  const Fields fields = fields_of(config);
+  const Result<std::vector<std::string>> not_taken =
+      parse_saved_config(fields, "on = true\n[icp]\nvoxel = 20.0\ncount = 4\n[icp.gone]\nkernel = 1.0\n");
+  ASSERT_TRUE(not_taken) << not_taken.error().message;
+  ASSERT_EQ(not_taken->size(), 2U);
+  EXPECT_NE((*not_taken)[0].find("unknown configuration key 'icp.gone.kernel'"), std::string::npos);
+  EXPECT_NE((*not_taken)[1].find("line 3: icp.voxel"), std::string::npos);
+  EXPECT_TRUE(config.on);
+  EXPECT_EQ(config.count, 4);
+  EXPECT_EQ(config.voxel, 1.0);
+  EXPECT_ERROR(parse_saved_config(fields, "on = \n"), "line 1");
+}
+
 struct ListEntry {
   std::string name;
   int size = 1;

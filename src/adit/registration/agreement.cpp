@@ -35,13 +35,34 @@ std::size_t place(int row, int column) {
   return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
 }
 
+/// The angle of (x, y) to 1e-5 radians (Abramowitz, Stegun, "Handbook of Mathematical Functions", 4.4.49).
+float rough_angle(float y, float x) {
+  constexpr float kHalfPi = 0.5F * std::numbers::pi_v<float>;
+  const float larger = std::max(std::abs(x), std::abs(y));
+  const float t = larger > 0.0F ? std::min(std::abs(x), std::abs(y)) / larger : 0.0F;
+  const float t2 = t * t;
+  const float octant =
+      t * (0.9998660F + t2 * (-0.3302995F + t2 * (0.1801410F + t2 * (-0.0851330F + t2 * 0.0208351F))));
+  const float quadrant = std::abs(y) > std::abs(x) ? kHalfPi - octant : octant;
+  const float upper = x < 0.0F ? 2.0F * kHalfPi - quadrant : quadrant;
+  return y < 0.0F ? -upper : upper;
+}
+
+/// Which of `num` parts of `whole` radians, the middle one beginning at 0, holds the angle of (x, y). The
+/// exact angle is computed only where a rough one does not tell.
+int part_of_angle(float y, float x, float whole, int num) {
+  constexpr float kUnsure = 1e-3F;
+  const auto parts = [&](float angle) { return (angle / whole + 0.5F) * static_cast<float>(num); };
+  const float rough = parts(rough_angle(y, x));
+  const float within = rough - std::floor(rough);
+  const bool is_sure = within > kUnsure && within < 1.0F - kUnsure;
+  return std::clamp(static_cast<int>(is_sure ? rough : parts(std::atan2(y, x))), 0, num - 1);
+}
+
 std::size_t cell_of(const Eigen::Vector3f& direction) {
-  const float elevation =
-      std::atan2(direction.z(), direction.head<2>().norm()) / std::numbers::pi_v<float> + 0.5F;
-  const float azimuth = std::atan2(direction.y(), direction.x()) / (2.0F * std::numbers::pi_v<float>)+0.5F;
-  const int row = std::clamp(static_cast<int>(elevation * kRows), 0, kRows - 1);
-  const int column = std::clamp(static_cast<int>(azimuth * kColumns), 0, kColumns - 1);
-  return place(row, column);
+  constexpr float kPi = std::numbers::pi_v<float>;
+  return place(part_of_angle(direction.z(), direction.head<2>().norm(), kPi, kRows),
+               part_of_angle(direction.y(), direction.x(), 2.0F * kPi, kColumns));
 }
 
 OrientedPoints every_nth(const OrientedPoints& all) {
@@ -100,7 +121,7 @@ Compared compared(const SeenSurface& a, const Eigen::Vector3f& p, const Eigen::V
   const float margin = kMarginVoxels * voxel + kMarginShare * range + between_rings(ray, range, normal);
   if (range > seen.farthest + margin) return Compared::unseen;  // hidden
   if (range < seen.nearest - margin) return Compared::differs;
-  const auto near = a.tree().nearest(p, reach);
+  const auto near = a.grid().nearest(p, reach);
   if (!near) return Compared::unseen;  // between the beams
   const Eigen::Vector3f& a_normal = a.points().normals[near->index];
   const float off = a_normal.dot(p - a.points().points[near->index]);
@@ -163,15 +184,13 @@ void SeenSurface::Ranges::add(const Ranges& other) {
 }
 
 SeenSurface::SeenSurface(OrientedPoints points, const Vector3& viewpoint, double voxel_m)
-    : points_(std::move(points)),
-      some_(every_nth(points_)),
-      tree_(points_.points),
-      viewpoint_(viewpoint.cast<float>()),
+    : SearchableSurface(std::move(points), viewpoint, voxel_m),
+      some_(every_nth(this->points())),
       ranges_(std::size_t{kRows} * kColumns),
-      thinness_(thinness_of(points_, viewpoint_, static_cast<float>(voxel_m))) {
+      thinness_(thinness_of(this->points(), this->viewpoint(), static_cast<float>(voxel_m))) {
   std::vector<Ranges> own(ranges_.size());
-  for (const Eigen::Vector3f& p : points_.points) {
-    const Eigen::Vector3f ray = p - viewpoint_;
+  for (const Eigen::Vector3f& p : this->points().points) {
+    const Eigen::Vector3f ray = p - this->viewpoint();
     const float range = ray.norm();
     own[cell_of(ray)].add({range, range});
     lowest_ = std::min(lowest_, ray.z() / range);
@@ -195,14 +214,16 @@ const SeenSurface::Ranges& SeenSurface::towards(const Eigen::Vector3f& direction
 }
 
 std::size_t SeenSurface::num_bytes() const {
-  // The tree takes 20 bytes per point.
-  return (points_.size() + some_.size()) * 2 * sizeof(Eigen::Vector3f) + 20 * points_.size() +
+  return SearchableSurface::num_bytes() + 2 * some_.size() * sizeof(Eigen::Vector3f) +
          ranges_.size() * sizeof(Ranges);
 }
 
 Agreement agreement(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
-                    const RegistrationConfig& config) {
-  const std::array<Counts, 2> both = {seen_by(a, b, T_a_b, config), seen_by(b, a, T_a_b.inverse(), config)};
+                    const RegistrationConfig& config, double below) {
+  std::array<Counts, 2> both;
+  both[0] = seen_by(a, b, T_a_b, config);
+  if (!(both[0].largest_difference < below)) return {};
+  both[1] = seen_by(b, a, T_a_b.inverse(), config);
   Agreement out{1.0, 0.0, both[1].structures, both[1].things};
   for (const DifferingPatch& patch : both[0].structures)
     out.structures.push_back({T_a_b * patch.position, patch.num_points});
@@ -217,23 +238,27 @@ Agreement agreement(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_
   return out;
 }
 
-LocalFit fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b, double enough,
-                  const RegistrationConfig& config, FitFrom from) {
-  LocalFit best{T_a_b, {}};
+namespace {
+
+/// The fit with the smallest difference `below` that many points; `T_a_b` and a difference of `below` where
+/// there is none.
+LocalFit best_fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b, double enough,
+                       const RegistrationConfig& config, FitFrom from, double below) {
+  LocalFit best{T_a_b, {.largest_difference = below}};
   if (a.points().empty() || b.points().empty()) return best;
   RegistrationConfig narrow = config;
   narrow.refine_max_iterations = std::min(config.refine_max_iterations, kMaxIterations);
   RegistrationConfig wide = narrow;
   wide.refine_distance_voxels = kWideVoxels;
   const auto fit_from = [&](const Pose& start) {
-    const auto [near, has_arrived] = approach_planes(a.points(), a.tree(), b.some(), start, narrow);
-    const Pose T = has_arrived ? align_to_planes(a.points(), a.tree(), b.some(), near, narrow) : near;
+    const auto [near, has_arrived] = approach_planes(a.points(), a.grid(), b.some(), start, narrow);
+    const Pose T = has_arrived ? align_to_planes(a.points(), a.grid(), b.some(), near, narrow) : near;
     if (!((T.translation() - T_a_b.translation()).norm() < kMaxCorrection)) return;
-    const Agreement found = agreement(a, b, T, config);
+    const Agreement found = agreement(a, b, T, config, best.agreement.largest_difference);
     if (found.largest_difference < best.agreement.largest_difference) best = {T, found};
   };
   const auto found = [&](const Pose& guess) {
-    fit_from(approach_planes(a.points(), a.tree(), b.some(), guess, wide).T_a_b);
+    fit_from(approach_planes(a.points(), a.grid(), b.some(), guess, wide).T_a_b);
     return best.agreement.largest_difference <= enough;
   };
   fit_from(T_a_b);
@@ -243,6 +268,22 @@ LocalFit fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
     if (found(T_a_b * Pose::translation_of(ahead, 0.0, 0.0))) break;
   }
   return best;
+}
+
+}  // namespace
+
+LocalFit fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b, double enough,
+                  const RegistrationConfig& config, FitFrom from) {
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  return best_fit_near(a, b, T_a_b, enough, config, from, kAny);
+}
+
+std::optional<Pose> agreeing_fit(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b, double enough,
+                                 const RegistrationConfig& config) {
+  const double below = std::nextafter(enough, std::numeric_limits<double>::infinity());
+  const LocalFit found = best_fit_near(a, b, T_a_b, enough, config, FitFrom::guess, below);
+  if (!found.agreement.is_comparable()) return {};
+  return found.T_a_b;
 }
 
 }  // namespace adit

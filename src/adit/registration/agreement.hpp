@@ -5,17 +5,18 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "adit/core/pose.hpp"
-#include "adit/geometry/kd_tree.hpp"
 #include "adit/registration/oriented_points.hpp"
 #include "adit/registration/registration_config.hpp"
+#include "adit/registration/searchable_surface.hpp"
 
 namespace adit {
 
-/// A scan as the surfaces that were seen from one point, with the free space in between.
-class SeenSurface {
+/// A scan: surfaces, and the free space between them and the point they were seen from.
+class SeenSurface : public SearchableSurface {
  public:
   /// Ranges of the surfaces in and around one direction, metres; empty where nothing was seen.
   struct Ranges {
@@ -31,27 +32,18 @@ class SeenSurface {
   /// `voxel_m`: points are one per voxel of this edge.
   SeenSurface(OrientedPoints points, const Vector3& viewpoint, double voxel_m);
 
-  /// All of them, as given.
-  [[nodiscard]] const OrientedPoints& points() const { return points_; }
   /// A sample of the points, spread over all, that suffices for alignment.
   [[nodiscard]] const OrientedPoints& some() const { return some_; }
-  /// Finds indices of `points`.
-  [[nodiscard]] const KdTree& tree() const { return tree_; }
-  /// Where the sensor stood, in the frame of the points, metres.
-  [[nodiscard]] const Eigen::Vector3f& viewpoint() const { return viewpoint_; }
   /// Nothing was seen above and below the sensor's field of view, however near a surface ends there.
   [[nodiscard]] const Ranges& towards(const Eigen::Vector3f& direction) const;
   /// Into how many points, one per voxel, a sensor that leaves no gaps would see each of these, near the
   /// robot: what sparse and dense sensors see differ is compared by its area.
   [[nodiscard]] double thinness() const { return thinness_; }
-  /// About what this takes, tree and ranges included.
+  /// About what this takes, grid and ranges included.
   [[nodiscard]] std::size_t num_bytes() const;
 
  private:
-  OrientedPoints points_;
   OrientedPoints some_;
-  KdTree tree_;
-  Eigen::Vector3f viewpoint_;
   std::vector<Ranges> ranges_;
   double thinness_ = 1.0;
   float lowest_ = 1.0F;  ///< Sines of the elevations between which something was seen.
@@ -86,9 +78,11 @@ struct Agreement {
   [[nodiscard]] bool is_comparable() const { return confirmed > 0.0; }  ///< Points of both scans count.
 };
 
-/// `T_a_b` brings the points of b into the frame of a. Scans with nothing in common are not comparable.
+/// `T_a_b` brings the points of b into the frame of a. Scans with nothing in common are not comparable, and
+/// it is not found out whether they are where the difference is not `below` that many points.
 [[nodiscard]] Agreement agreement(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
-                                  const RegistrationConfig& config);
+                                  const RegistrationConfig& config,
+                                  double below = std::numeric_limits<double>::infinity());
 
 /// A guess from odometry, corrected by the surfaces, and their agreement there.
 struct LocalFit {
@@ -106,5 +100,9 @@ enum class FitFrom {
 /// comparable.
 [[nodiscard]] LocalFit fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b, double enough,
                                 const RegistrationConfig& config, FitFrom from = FitFrom::along_the_path);
+/// The fit that `fit_near` finds from the guess, if its difference is at most `enough` points; in less time,
+/// as it is not asked by how much the others differ.
+[[nodiscard]] std::optional<Pose> agreeing_fit(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
+                                               double enough, const RegistrationConfig& config);
 
 }  // namespace adit

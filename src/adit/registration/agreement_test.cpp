@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+#include <numbers>
+
 #include "adit/registration/features.hpp"
 #include "support/synthetic_scan.hpp"
 
@@ -137,6 +141,50 @@ TEST(FitNear, DoesNotMatchTwoBlocksThatAreFarApart) {
   const SeenSurface a = seen_at(with_block(5.0), 0.0, 1);
   const SeenSurface b = seen_at(with_block(10.0), 0.0, 2);
   EXPECT_GT(fit_near(a, b, Pose(), kNoise, {}).agreement.largest_difference, 2.0 * kNoise);
+}
+
+TEST(AgreeingFit, IsTheFitFromTheGuessWhereThatAgrees) {
+  const SeenSurface a = seen_at(with_block(), 0.0, 1);
+  const SeenSurface b = seen_at(with_block(), 2.0, 2);
+  const SeenSurface nothing({}, Vector3::Zero(), RegistrationConfig().voxel_size);
+  std::size_t num_agreeing = 0;
+  for (const double x : {1.0, 1.6, 2.0, 2.4, 2.9, 3.4, 3.8, 6.0}) {
+    const LocalFit fit = fit_near(a, b, Pose::planar(x, 0.1, 0.01), kNoise, {}, FitFrom::guess);
+    const std::optional<Pose> agreeing = agreeing_fit(a, b, Pose::planar(x, 0.1, 0.01), kNoise, {});
+    ASSERT_EQ(agreeing.has_value(), fit.agreement.largest_difference <= kNoise) << x;
+    if (!agreeing) continue;
+    ++num_agreeing;
+    EXPECT_EQ(agreeing->matrix(), fit.T_a_b.matrix());
+  }
+  EXPECT_GT(num_agreeing, 1U);
+  EXPECT_LT(num_agreeing, 8U);
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(agreeing_fit(a, nothing, Pose(), kAny, {}).has_value());
+}
+
+TEST(SeenSurface, WasSeenInTheCellOfADirection) {
+  // By the definition: cells of three degrees.
+  const auto cell = [](double degrees) { return static_cast<int>(std::floor(degrees / 3.0)); };
+  OrientedPoints one;
+  one.points = {{10.0F, 0.1F, 0.1F}};
+  one.normals = {-Eigen::Vector3f::UnitX()};
+  for (const double elevation : {-0.5, 0.5}) {  // the point lies between: what is beyond the view is empty
+    one.points.push_back({-20.0F, 0.0F, static_cast<float>(20.0 * std::tan(elevation))});
+    one.normals.push_back(Eigen::Vector3f::UnitX());
+  }
+  const SeenSurface seen(one, Vector3::Zero(), 0.3);
+  const double at = std::atan2(0.1, 10.0) * 180.0 / std::numbers::pi;
+  for (int step = -3600; step < 3600; ++step) {
+    const double degrees = 0.02501 * step;
+    const double radians = degrees * std::numbers::pi / 180.0;
+    const Eigen::Vector3f direction(static_cast<float>(std::cos(radians)),
+                                    static_cast<float>(std::sin(radians)), 0.01F);
+    const bool was_seen = cell(degrees) == cell(at);
+    EXPECT_EQ(!seen.towards(direction).empty(), was_seen) << degrees;
+    if (was_seen) {
+      EXPECT_FLOAT_EQ(seen.towards(direction).farthest, one.points.front().norm());
+    }
+  }
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ bool continues_a_wall(const SeenSurface& scan, std::size_t point, const std::vec
   if (std::abs(normal.z()) > kWallNormal) return false;
   const Eigen::Vector3f along = normal.cross(Eigen::Vector3f::UnitZ()).normalized();
   return std::ranges::any_of(std::array{-3.0F, -2.0F, 2.0F, 3.0F}, [&](float voxels) {
-    const auto near = scan.tree().nearest(p + voxels * voxel * along, voxel);
+    const auto near = scan.grid().nearest(p + voxels * voxel * along, voxel);
     return near && compared[near->index] == Compared::same_surface &&
            std::abs(normal.dot(scan.points().points[near->index] - p)) < kOffPlaneVoxels * voxel &&
            normal.dot(scan.points().normals[near->index]) > kSameWall;
@@ -97,8 +97,8 @@ bool may_be_a_thing(const SeenSurface& scan, std::span<const std::size_t> patch,
                     const std::vector<Compared>& compared, const RegistrationConfig& config) {
   Eigen::AlignedBox3f box;
   for (const std::size_t i : patch) box.extend(scan.points().points[i]);
-  const std::optional<float> floor = floor_under(scan, box);
   if (box.isEmpty() || box.sizes().head<2>().norm() > kLongest) return false;
+  const std::optional<float> floor = floor_under(scan, box);
   if (!floor || box.min().z() > *floor + kHighestFoot || box.max().z() > *floor + kTallest) return false;
   const auto num_continuing = std::ranges::count_if(patch, [&](std::size_t i) {
     return continues_a_wall(scan, i, compared, static_cast<float>(config.voxel_size));

@@ -68,7 +68,7 @@ std::vector<Pose> starts_around(const Pose& T_a_b) {
 
 }  // namespace
 
-std::vector<PointPair> associate(const KdTree& tree_a, const OrientedPoints& b, const Pose& T_a_b,
+std::vector<PointPair> associate(const PointGrid& grid_a, const OrientedPoints& b, const Pose& T_a_b,
                                  double max_distance) {
   constexpr auto kNone = static_cast<std::uint32_t>(-1);
   const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
@@ -77,7 +77,7 @@ std::vector<PointPair> associate(const KdTree& tree_a, const OrientedPoints& b, 
   parallel_for_each(
       b.size(),
       [&](std::size_t j) {
-        const auto nearest = tree_a.nearest(R * b.points[j] + t, static_cast<float>(max_distance));
+        const auto nearest = grid_a.nearest(R * b.points[j] + t, static_cast<float>(max_distance));
         pairs[j] = {nearest ? nearest->index : kNone, static_cast<std::uint32_t>(j)};
       },
       kPointsPerPart);
@@ -85,33 +85,33 @@ std::vector<PointPair> associate(const KdTree& tree_a, const OrientedPoints& b, 
   return pairs;
 }
 
-Pose align_to_planes(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,
+Pose align_to_planes(const OrientedPoints& a, const PointGrid& grid_a, const OrientedPoints& b,
                      const Pose& T_a_b, const RegistrationConfig& config) {
   constexpr double kLastStep = 1e-4;
   const double max_distance = config.refine_distance_voxels * config.voxel_size;
-  PlaneAligner aligner(a, tree_a, b, stride_for(b.size(), kSample), max_distance);
+  PlaneAligner aligner(a, grid_a, b, stride_for(b.size(), kSample), max_distance);
   return descend(std::move(aligner), T_a_b, kLastStep, config).T_a_b;
 }
 
-Approach approach_planes(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,
+Approach approach_planes(const OrientedPoints& a, const PointGrid& grid_a, const OrientedPoints& b,
                          const Pose& T_a_b, const RegistrationConfig& config) {
   const double max_distance = config.refine_distance_voxels * config.voxel_size;
-  PlaneAligner aligner(a, tree_a, b, stride_for(b.size(), kSearchSample), max_distance);
+  PlaneAligner aligner(a, grid_a, b, stride_for(b.size(), kSearchSample), max_distance);
   const Minimum found = descend(std::move(aligner), T_a_b, kLastStepOfSearch, config);
   return {found.T_a_b, found.last_step < kArrived};
 }
 
-Pose refine_point_to_plane(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,
+Pose refine_point_to_plane(const OrientedPoints& a, const PointGrid& grid_a, const OrientedPoints& b,
                            const Pose& T_a_b, const RegistrationConfig& config) {
   const double max_distance = config.refine_distance_voxels * config.voxel_size;
-  const PlaneAligner aligner(a, tree_a, b, stride_for(b.size(), kSearchSample), max_distance);
+  const PlaneAligner aligner(a, grid_a, b, stride_for(b.size(), kSearchSample), max_distance);
   std::vector<Minimum> minima;
   for (const Pose& start : starts_around(T_a_b)) minima.push_back({start});
   parallel_for_each(minima.size(), [&](std::size_t s) {
     minima[s] = descend(aligner, minima[s].T_a_b, kLastStepOfSearch, config);
   });
   const auto best = std::ranges::min_element(minima, {}, &Minimum::misfit);
-  return align_to_planes(a, tree_a, b, best->T_a_b, config);
+  return align_to_planes(a, grid_a, b, best->T_a_b, config);
 }
 
 }  // namespace adit

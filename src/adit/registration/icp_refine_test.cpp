@@ -26,9 +26,9 @@ OrientedPoints corner(std::size_t n, std::uint64_t seed) {
 TEST(RefinePointToPlane, RecoversThePoseOfACorner) {
   const OrientedPoints a = corner(3000, 2);
   const OrientedPoints b = corner(3000, 3);
-  const KdTree tree(a.points);
+  const PointGrid grid(a.points, 1.0);
   const Pose guess = Pose::exp((Vector6() << 0.15, -0.1, 0.12, 0.02, -0.03, 0.02).finished());
-  const Pose refined = refine_point_to_plane(a, tree, b, guess, {});
+  const Pose refined = refine_point_to_plane(a, grid, b, guess, {});
   EXPECT_LT(refined.translation().norm(), 1e-3);
   EXPECT_LT(refined.angle(), 1e-3);
 }
@@ -40,7 +40,7 @@ TEST(RefinePointToPlane, LeavesOpenDirectionsAlone) {
     a.normals[k] = Eigen::Vector3f::UnitZ();
   }
   const Pose guess = Pose::translation_of(0.3, 0.2, 0.1);
-  const Pose refined = refine_point_to_plane(a, KdTree(a.points), a, guess, {});
+  const Pose refined = refine_point_to_plane(a, PointGrid(a.points, 1.0), a, guess, {});
   EXPECT_NEAR(refined.translation().x(), 0.3, 1e-3);
   EXPECT_NEAR(refined.translation().y(), 0.2, 1e-3);
   EXPECT_NEAR(refined.translation().z(), 0.0, 1e-3);
@@ -49,8 +49,8 @@ TEST(RefinePointToPlane, LeavesOpenDirectionsAlone) {
 TEST(RefinePointToPlane, WithoutNeighborsReturnsTheGuess) {
   const OrientedPoints a = corner(100, 2);
   const Pose guess = Pose::translation_of(500.0, 0.0, 0.0);
-  EXPECT_EQ(refine_point_to_plane(a, KdTree(a.points), a, guess, {}).matrix(), guess.matrix());
-  EXPECT_TRUE(associate(KdTree(), a, Pose(), 1.0).empty());
+  EXPECT_EQ(refine_point_to_plane(a, PointGrid(a.points, 1.0), a, guess, {}).matrix(), guess.matrix());
+  EXPECT_TRUE(associate(PointGrid(), a, Pose(), 1.0).empty());
 }
 
 }  // namespace

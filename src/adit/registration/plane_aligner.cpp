@@ -85,10 +85,10 @@ PlaneEquations& PlaneEquations::operator+=(const PlaneEquations& other) {
   return *this;
 }
 
-PlaneAligner::PlaneAligner(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b,
+PlaneAligner::PlaneAligner(const OrientedPoints& a, const PointGrid& grid_a, const OrientedPoints& b,
                            std::size_t stride, double max_distance)
     : a_(a),
-      tree_a_(tree_a),
+      grid_a_(grid_a),
       max_distance_(static_cast<float>(max_distance)),
       sample_size_((b.size() + stride - 1) / stride),
       blocks_((sample_size_ + kWidth - 1) / kWidth) {
@@ -110,7 +110,7 @@ PlaneAligner::PlaneAligner(const OrientedPoints& a, const KdTree& tree_a, const 
 void PlaneAligner::search(Block& block, const Row (&q)[3], std::size_t k) const {
   constexpr float kRounding = 0.9999F;
   const float reach = kReach * max_distance_;
-  const auto found = tree_a_.nearest_alone({q[0][k], q[1][k], q[2][k]}, reach * reach);
+  const auto found = grid_a_.nearest_alone({q[0][k], q[1][k], q[2][k]}, reach * reach);
   block.others[k] =
       kRounding * (found ? std::sqrt(found->others_squared_distance) : 2.0F * (reach - max_distance_));
   for (int d = 0; d < 3; ++d) {

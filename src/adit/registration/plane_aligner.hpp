@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "adit/core/pose.hpp"
-#include "adit/geometry/kd_tree.hpp"
+#include "adit/geometry/point_grid.hpp"
 #include "adit/registration/oriented_points.hpp"
 
 namespace adit {
@@ -30,9 +30,9 @@ struct PlaneEquations {
 /// pairs are always exact, and near convergence nothing is searched.
 class PlaneAligner {
  public:
-  /// Takes every `stride`-th point of b. Pairs lie within `max_distance` metres. `a` and `tree_a` must
+  /// Takes every `stride`-th point of b. Pairs lie within `max_distance` metres. `a` and `grid_a` must
   /// outlive the aligner.
-  PlaneAligner(const OrientedPoints& a, const KdTree& tree_a, const OrientedPoints& b, std::size_t stride,
+  PlaneAligner(const OrientedPoints& a, const PointGrid& grid_a, const OrientedPoints& b, std::size_t stride,
                double max_distance);
 
   /// The planes of both clouds count (Rusinkiewicz, "A symmetric objective function for ICP", 2019), and only
@@ -64,7 +64,7 @@ class PlaneAligner {
                 Terms& out) const;
 
   const OrientedPoints& a_;
-  const KdTree& tree_a_;
+  const PointGrid& grid_a_;
   float max_distance_;
   std::size_t sample_size_;
   std::vector<Block> blocks_;

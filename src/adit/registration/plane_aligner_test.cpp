@@ -75,8 +75,8 @@ void expect_near(const PlaneEquations& sum, const PlaneEquations& expected) {
 TEST(PlaneAligner, AgreesWithTheDefinitionAtEachPoseOfADescent) {
   const OrientedPoints a = rough_corner(1500, 1);
   const OrientedPoints b = rough_corner(1300, 2);
-  const KdTree tree(a.points);
-  PlaneAligner aligner(a, tree, b, 3, 0.5);
+  const PointGrid grid(a.points, 1.0);
+  PlaneAligner aligner(a, grid, b, 3, 0.5);
   const Vector6 off = (Vector6() << 0.2, -0.1, 0.3, 0.03, -0.02, 0.05).finished();
   for (const double share : {1.0, 0.4, 0.41, 0.1, 0.03, 0.02, 0.0199, 0.0, 0.6}) {  // large steps, small ones
     const Pose T_a_b = Pose::exp(share * off);
@@ -87,22 +87,22 @@ TEST(PlaneAligner, AgreesWithTheDefinitionAtEachPoseOfADescent) {
 TEST(PlaneAligner, SameBytesWithAnyNumberOfThreads) {
   const OrientedPoints a = rough_corner(4000, 1);
   const OrientedPoints b = rough_corner(4000, 2);
-  const KdTree tree(a.points);
+  const PointGrid grid(a.points, 1.0);
   set_num_threads(1);
-  const PlaneEquations one = PlaneAligner(a, tree, b, 1, 0.5).linearize(Pose(), 0.1);
+  const PlaneEquations one = PlaneAligner(a, grid, b, 1, 0.5).linearize(Pose(), 0.1);
   set_num_threads(4);
-  const PlaneEquations four = PlaneAligner(a, tree, b, 1, 0.5).linearize(Pose(), 0.1);
+  const PlaneEquations four = PlaneAligner(a, grid, b, 1, 0.5).linearize(Pose(), 0.1);
   EXPECT_EQ(one.H, four.H);
   EXPECT_EQ(one.g, four.g);
 }
 
 TEST(PlaneAligner, PointsFarFromEverythingTakeNoPart) {
   const OrientedPoints a = rough_corner(100, 1);
-  const KdTree tree(a.points);
-  PlaneAligner aligner(a, tree, a, 1, 0.5);
+  const PointGrid grid(a.points, 1.0);
+  PlaneAligner aligner(a, grid, a, 1, 0.5);
   EXPECT_EQ(aligner.linearize(Pose::translation_of(500.0, 0.0, 0.0), 0.1).num_pairs, 0.0);
   EXPECT_EQ(aligner.linearize(Pose(), 0.1).num_pairs, 100.0);
-  const KdTree nothing;
+  const PointGrid nothing;
   PlaneAligner alone(a, nothing, a, 1, 0.5);
   EXPECT_EQ(alone.linearize(Pose(), 0.1).num_pairs, 0.0);
 }

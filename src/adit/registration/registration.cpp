@@ -9,8 +9,8 @@
 
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
-#include "adit/geometry/kd_tree.hpp"
 #include "adit/geometry/max_clique.hpp"
+#include "adit/geometry/point_grid.hpp"
 #include "adit/registration/correspondence_graph.hpp"
 #include "adit/registration/gnc_registration.hpp"
 #include "adit/registration/icp_refine.hpp"
@@ -57,12 +57,12 @@ MatchedPoints pruned(const MatchedPoints& points, const RegistrationConfig& conf
 
 Registration with_evidence(Registration registration, const Features& a, const Features& b,
                            const RegistrationConfig& config) {
-  const KdTree tree_a(a.points);
-  const KdTree tree_b(b.points);
+  const PointGrid grid_a(a.points, kCellVoxels * config.voxel_size);
+  const PointGrid grid_b(b.points, kCellVoxels * config.voxel_size);
   if (config.refine) {
-    registration.T_a_b = refine_point_to_plane(a, tree_a, b, *registration.T_a_b, config);
+    registration.T_a_b = refine_point_to_plane(a, grid_a, b, *registration.T_a_b, config);
   }
-  const Evidence evidence = gather_evidence(a, tree_a, b, tree_b, *registration.T_a_b, config);
+  const Evidence evidence = gather_evidence(a, grid_a, b, grid_b, *registration.T_a_b, config);
   registration.overlap = evidence.overlap;
   registration.information = evidence.information;
   registration.weak_axis = evidence.weak_axis;
@@ -108,7 +108,8 @@ Pose align_clouds(const PointCloud& a, const PointCloud& b, const Pose& T_a_b,
   const std::array<const PointCloud*, 2> clouds = {&a, &b};
   std::array<OrientedPoints, 2> surfaces;
   parallel_for_each(2, [&](std::size_t k) { surfaces[k] = compute_surface(*clouds[k], config); });
-  return align_to_planes(surfaces[0], KdTree(surfaces[0].points), surfaces[1], T_a_b, config);
+  return align_to_planes(surfaces[0], PointGrid(surfaces[0].points, kCellVoxels * config.voxel_size),
+                         surfaces[1], T_a_b, config);
 }
 
 }  // namespace adit

@@ -205,7 +205,8 @@ TEST(Registration, APlaneAloneIsRejectedAndItsEvidenceIsOpenInTwoDirections) {
 
   const Features a = compute_features(plane, {});
   const Features b = compute_features(moved, {});
-  const Evidence evidence = gather_evidence(a, KdTree(a.points), b, KdTree(b.points), T_b_a.inverse(), {});
+  const Evidence evidence =
+      gather_evidence(a, PointGrid(a.points, 1.0), b, PointGrid(b.points, 1.0), T_b_a.inverse(), {});
   EXPECT_GT(evidence.overlap, 0.9);
   EXPECT_LT(evidence.weak_axis, kWeakAxis);
   EXPECT_LT(std::abs(evidence.weak_direction.z()), 0.1) << "it slides in the plane, not out of it";

@@ -126,8 +126,9 @@ std::int32_t side_of(const Eigen::Vector3f& normal) {
 
 }  // namespace
 
-std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
-                                       const Pose& T_map_a, const RegistrationConfig& registration) {
+std::vector<PatchOffset> patch_offsets(const SearchableSurface& a, const SearchableSurface& b,
+                                       const Pose& T_a_b, const Pose& T_map_a,
+                                       const RegistrationConfig& registration) {
   const ReliefConfig& config = registration.relief;
   const Eigen::Matrix3f R = T_a_b.rotation_matrix().cast<float>();
   const Eigen::Vector3f t = T_a_b.translation().cast<float>();
@@ -143,7 +144,7 @@ std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& 
   for (std::size_t i = 0; i < b.points().size(); ++i) {
     const Eigen::Vector3f p = R * b.points().points[i] + t;
     if ((p - a.viewpoint()).norm() > max_range) continue;
-    const auto near = a.tree().nearest(p, pairing_distance);
+    const auto near = a.grid().nearest(p, pairing_distance);
     if (!near) continue;
     const WallPair pair{a.points().points[near->index], p, a.points().normals[near->index]};
     const float off = pair.normal.dot(p - pair.seen_by_a);

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "adit/core/pose.hpp"
-#include "adit/registration/agreement.hpp"
 #include "adit/registration/registration_config.hpp"
+#include "adit/registration/searchable_surface.hpp"
 #include "adit/registration/sensor_difference.hpp"
 
 namespace adit {
@@ -33,7 +33,7 @@ struct PatchOffset {
 
 /// One offset per patch near a that both scans saw well. `T_a_b` is the fit of the points of b to a, in the
 /// frame of a; `T_map_a` brings those of a into the frame of the map whose patches are meant.
-[[nodiscard]] std::vector<PatchOffset> patch_offsets(const SeenSurface& a, const SeenSurface& b,
+[[nodiscard]] std::vector<PatchOffset> patch_offsets(const SearchableSurface& a, const SearchableSurface& b,
                                                      const Pose& T_a_b, const Pose& T_map_a,
                                                      const RegistrationConfig& config);
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "adit/core/rng.hpp"
+#include "adit/registration/agreement.hpp"
 #include "adit/registration/features.hpp"
 
 namespace adit {

@@ -98,7 +98,7 @@ double robust_sigma(const Eigen::VectorXd& residuals) {
 
 }  // namespace
 
-SensorTermsOf::SensorTermsOf(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b)
+SensorTermsOf::SensorTermsOf(const SearchableSurface& a, const SearchableSurface& b, const Pose& T_a_b)
     : viewpoint_a_(a.viewpoint()),
       viewpoint_b_((T_a_b * b.viewpoint().cast<double>()).cast<float>()),
       up_a_(Eigen::Vector3f::UnitZ()),

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "adit/core/pose.hpp"
-#include "adit/registration/agreement.hpp"
+#include "adit/registration/searchable_surface.hpp"
 
 namespace adit {
 
@@ -35,7 +35,7 @@ struct WallPair {
 class SensorTermsOf {
  public:
   /// Keeps the viewpoints, and the z axes as the upward axes of the robots.
-  SensorTermsOf(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b);
+  SensorTermsOf(const SearchableSurface& a, const SearchableSurface& b, const Pose& T_a_b);
   /// Adds those of one pair, times `weight`, to `sum`.
   void add(const WallPair& pair, double weight, SensorTerms& sum) const;
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "adit/core/rng.hpp"
+#include "adit/registration/agreement.hpp"
 #include "adit/registration/features.hpp"
 #include "adit/registration/relief.hpp"
 

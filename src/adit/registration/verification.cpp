@@ -111,12 +111,12 @@ std::string holding(const Registration& r) {
 
 }  // namespace
 
-Evidence gather_evidence(const Features& a, const KdTree& tree_a, const Features& b, const KdTree& tree_b,
-                         const Pose& T_a_b, const RegistrationConfig& config) {
+Evidence gather_evidence(const Features& a, const PointGrid& grid_a, const Features& b,
+                         const PointGrid& grid_b, const Pose& T_a_b, const RegistrationConfig& config) {
   const double overlap_distance = config.overlap_distance_voxels * config.voxel_size;
   const double min_sigma = 0.03 * config.voxel_size;  // two copies of one cloud are not infinitely certain
-  const std::vector<PointPair> pairs = associate(tree_a, b, T_a_b, overlap_distance);
-  const std::size_t num_back = associate(tree_b, a, T_a_b.inverse(), overlap_distance).size();
+  const std::vector<PointPair> pairs = associate(grid_a, b, T_a_b, overlap_distance);
+  const std::size_t num_back = associate(grid_b, a, T_a_b.inverse(), overlap_distance).size();
   Evidence out{.overlap = std::min(share(pairs.size(), b.size()), share(num_back, a.size()))};
   const PairSums sums = sum_over_pairs(a, b, pairs, T_a_b, config.refine_kernel_voxels * config.voxel_size);
   if (sums.num_pairs < 1.0) return out;

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "adit/core/pose.hpp"
-#include "adit/geometry/kd_tree.hpp"
+#include "adit/geometry/point_grid.hpp"
 #include "adit/registration/features.hpp"
 #include "adit/registration/registration.hpp"
 #include "adit/registration/registration_config.hpp"
@@ -28,8 +28,8 @@ struct Evidence {
 /// degrees, 1 % of that across). The squares of the residuals count by regions of the cloud, within which
 /// they err alike (cluster-robust covariance, K.-Y. Liang and S. L. Zeger, "Longitudinal data analysis using
 /// generalized linear models", Biometrika 1986).
-[[nodiscard]] Evidence gather_evidence(const Features& a, const KdTree& tree_a, const Features& b,
-                                       const KdTree& tree_b, const Pose& T_a_b,
+[[nodiscard]] Evidence gather_evidence(const Features& a, const PointGrid& grid_a, const Features& b,
+                                       const PointGrid& grid_b, const Pose& T_a_b,
                                        const RegistrationConfig& config);
 
 /// Sets `verdict` and `reason` from the numbers in `registration`.

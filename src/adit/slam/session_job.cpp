@@ -18,7 +18,7 @@ void append_all(std::vector<std::string>& to, const std::vector<std::string>& mo
 /// matter.
 bool maps_alike(RunConfig config, const std::string& other_toml) {
   RunConfig other;
-  return parse_config(fields_of(other), other_toml) &&
+  return parse_saved_config(fields_of(other), other_toml) &&
          to_toml(fields_of(config.slam)) == to_toml(fields_of(other.slam));
 }
 
@@ -32,8 +32,12 @@ Result<SavedSessions> open_sessions(const std::vector<std::string>& paths) {
     if (!fleet) return tl::unexpected(fleet.error());
     const Provenance& one = fleet->provenance;
     if (saved.fleets.empty()) {
-      const Result<> set = parse_config(fields_of(saved.job.config), one.configuration);
-      if (!set) return fail(path + "/session.toml: configuration", set.error());
+      const Result<std::vector<std::string>> not_taken =
+          parse_saved_config(fields_of(saved.job.config), one.configuration);
+      if (!not_taken) return fail(path + "/session.toml: configuration", not_taken.error());
+      for (const std::string& setting : *not_taken)
+        fleet->notes.push_back(format("{}/session.toml: configuration, {}; the default of this version counts",
+                                      path, setting));
       all.world = one.world;
       all.profile = one.profile;
       all.settings = one.settings;

@@ -23,8 +23,8 @@ struct SavedSessions {
   std::vector<SavedFleet> fleets;  ///< In the order of the paths.
   Job job;  ///< With the configuration of the first, and a note where that of another one differs.
 };
-/// Reads session directories. Fails as read_fleet does, and on a configuration that this version does not
-/// know.
+/// Reads session directories. Fails as read_fleet does. Settings that this version does not know, as those of
+/// another one, are noted.
 [[nodiscard]] Result<SavedSessions> open_sessions(const std::vector<std::string>& paths);
 
 /// Writes the session into `dir`, which exists, with the provenance and the configuration of the job.

@@ -89,7 +89,7 @@ std::vector<double> TrueSurface::distances(const std::vector<Eigen::Vector3f>& m
   return distances;
 }
 
-Result<> TrueSurface::add_completeness(const KdTree& map, std::span<const Eigen::Vector3f> positions,
+Result<> TrueSurface::add_completeness(const PointGrid& map, std::span<const Eigen::Vector3f> positions,
                                        const SightConfig& config, MapAccuracy& accuracy) const {
   const Eyes eyes(positions, config);
   const Seen seen = parallel_sum(samples_.size(), kGrain, Seen{}, [&](std::size_t begin, std::size_t end) {
@@ -127,7 +127,7 @@ Result<MapAccuracy> TrueSurface::compare(const std::vector<Eigen::Vector3f>& map
   accuracy.median_m = median(errors);
   accuracy.p95_m = percentile(errors, 95.0);
   if (eyes.empty()) return accuracy;
-  return add_completeness(KdTree(points), eyes, config, accuracy).map([&] { return accuracy; });
+  return add_completeness(PointGrid(points, kCellVoxels * kMapSpacing), eyes, config, accuracy).map([&] { return accuracy; });
 }
 
 std::vector<Eigen::Vector3f> eyes_of(const Trajectory& truth, Stamp begin, Stamp end,

@@ -8,7 +8,7 @@
 
 #include "adit/core/config.hpp"
 #include "adit/evaluation/map_accuracy.hpp"
-#include "adit/geometry/kd_tree.hpp"
+#include "adit/geometry/point_grid.hpp"
 #include "adit/geometry/mesh_points.hpp"
 #include "adit/robot/robot_map.hpp"
 #include "adit/simulation/raycaster.hpp"
@@ -52,7 +52,7 @@ class TrueSurface {
   TrueSurface(Raycaster raycaster, std::vector<MeshPoint> samples)
       : raycaster_(std::move(raycaster)), samples_(std::move(samples)) {}
   [[nodiscard]] std::vector<double> distances(const std::vector<Eigen::Vector3f>& map) const;
-  [[nodiscard]] Result<> add_completeness(const KdTree& map, std::span<const Eigen::Vector3f> eyes,
+  [[nodiscard]] Result<> add_completeness(const PointGrid& map, std::span<const Eigen::Vector3f> eyes,
                                           const SightConfig& config, MapAccuracy& accuracy) const;
   Raycaster raycaster_;
   std::vector<MeshPoint> samples_;

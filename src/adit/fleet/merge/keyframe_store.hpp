@@ -104,8 +104,8 @@ class FeatureStore : public KeyframeStore<Features> {
 
 /// A keyframe made ready for comparing it.
 struct SeenPlace {
-  SeenSurface view;  ///< Of its scan and those beside it, as if all had been seen from where it stood.
-  SeenSurface scan;  ///< Of its scan alone: what no other keyframe's scan has part in.
+  SeenSurface view;        ///< Of its scan and those beside it, as if all had been seen from where it stood.
+  SearchableSurface scan;  ///< Of its scan alone: what no other keyframe's scan has part in.
 
   /// Both clouds and `viewpoint`, that of the LiDAR, in the base frame of the keyframe.
   SeenPlace(const PointCloud& of_view, const PointCloud& of_scan, const Vector3& viewpoint,
@@ -118,7 +118,7 @@ struct SeenPlace {
 class SurfaceStore : public KeyframeStore<SeenPlace> {
  public:
   /// Default of `max_bytes`.
-  static constexpr std::size_t kMaxBytes = 128'000'000;
+  static constexpr std::size_t kMaxBytes = 384'000'000;
   /// The view of keyframe k is submap(map, k, view_config).
   SurfaceStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
                const SubmapConfig& view_config, std::size_t max_bytes = kMaxBytes);

@@ -33,9 +33,7 @@ bool PlaceComparer::agrees_displaced(std::uint32_t own, const SeenPlace& theirs,
                                      const Pose& T_own_theirs) const {
   return std::ranges::any_of(discernment_.displaced_from(own), [&](std::uint32_t displaced) {
     const SeenSurface& there = discernment_.surfaces().at(displaced).view;
-    const LocalFit fit =
-        fit_near(there, theirs.view, T_own_theirs, discernment_.limit(), registration_, FitFrom::guess);
-    return !discernment_.differ(fit.agreement);
+    return agreeing_fit(there, theirs.view, T_own_theirs, discernment_.limit(), registration_).has_value();
   });
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-#include "adit/geometry/kd_tree.hpp"
+#include "adit/geometry/point_grid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -48,16 +48,16 @@ std::vector<Neighbor> sorted_by_brute_force(const Points& points, const Eigen::V
   return all;
 }
 
-void expect_same_as_brute_force(const Points& points, const Points& queries) {
-  const KdTree tree(points);
+void expect_same_as_brute_force(const Points& points, const Points& queries, double cell_size = 2.0) {
+  const PointGrid grid(points, cell_size);
   for (const Eigen::Vector3f& query : queries) {
     const std::vector<Neighbor> expected = sorted_by_brute_force(points, query);
-    const auto nearest = tree.nearest(query);
+    const auto nearest = grid.nearest(query);
     ASSERT_EQ(nearest.has_value(), !expected.empty());
     if (nearest) {
       EXPECT_EQ(*nearest, expected.front());
     }
-    const auto alone = tree.nearest_alone(query, 25.0F);
+    const auto alone = grid.nearest_alone(query, 25.0F);
     const bool is_near = !expected.empty() && expected[0].squared_distance <= 25.0F;
     ASSERT_EQ(alone.has_value(), is_near);
     if (alone) {
@@ -67,15 +67,15 @@ void expect_same_as_brute_force(const Points& points, const Points& queries) {
   }
 }
 
-TEST(KdTree, AgreesWithBruteForceOnTies) {
+TEST(PointGrid, AgreesWithBruteForceOnTies) {
   expect_same_as_brute_force(lattice_points(1, 700), lattice_points(2, 100));
 }
 
-TEST(KdTree, AgreesWithBruteForceOnStretchedClouds) {
+TEST(PointGrid, AgreesWithBruteForceOnStretchedClouds) {
   expect_same_as_brute_force(scattered_points(3, 900), scattered_points(4, 100));
 }
 
-TEST(KdTree, HandlesDegenerateClouds) {
+TEST(PointGrid, HandlesDegenerateClouds) {
   expect_same_as_brute_force({}, lattice_points(5, 3));
   expect_same_as_brute_force({{1.0F, 2.0F, 3.0F}}, lattice_points(6, 3));
   expect_same_as_brute_force(Points(200, {1.0F, 1.0F, 1.0F}), lattice_points(7, 20));
@@ -84,21 +84,39 @@ TEST(KdTree, HandlesDegenerateClouds) {
   expect_same_as_brute_force(line, lattice_points(8, 20));
 }
 
-TEST(KdTree, NeverFindsPointsThatAreNotFinite) {
+TEST(PointGrid, NeverFindsPointsThatAreNotFinite) {
   Points points = lattice_points(9, 100);
   points[3].x() = std::nanf("");
   points[50].z() = std::numeric_limits<float>::infinity();
   expect_same_as_brute_force(points, lattice_points(10, 20));
-  const KdTree tree(points);
-  EXPECT_EQ(tree.size(), 98U);
-  EXPECT_FALSE(tree.nearest({std::nanf(""), 0.0F, 0.0F}).has_value());
-  EXPECT_FALSE(tree.nearest_alone({std::nanf(""), 0.0F, 0.0F}, 10.0F).has_value());
+  const PointGrid grid(points, 1.0);
+  EXPECT_EQ(grid.size(), 98U);
+  EXPECT_FALSE(grid.nearest({std::nanf(""), 0.0F, 0.0F}).has_value());
+  EXPECT_FALSE(grid.nearest_alone({std::nanf(""), 0.0F, 0.0F}, 10.0F).has_value());
 }
 
-TEST(KdTree, NearestKeepsToTheLargestDistance) {
-  const KdTree tree(Points{{0.0F, 0.0F, 0.0F}, {5.0F, 0.0F, 0.0F}});
-  EXPECT_FALSE(tree.nearest({2.0F, 0.0F, 0.0F}, 1.9F).has_value());
-  EXPECT_EQ(tree.nearest({2.0F, 0.0F, 0.0F}, 2.0F)->index, 0U);  // inclusive
+TEST(PointGrid, AnswersDoNotDependOnTheCells) {
+  const Points points = scattered_points(11, 400);
+  for (const double cell_size : {1e-9, 0.3, 7.0, 1e6})
+    expect_same_as_brute_force(points, scattered_points(12, 50), cell_size);
+  expect_same_as_brute_force(points, {{1e6F, -1e6F, 0.0F}, {0.0F, 0.0F, 500.0F}}, 0.3);
+  Points far = lattice_points(13, 300);  // where floats are coarse
+  Points near_them = lattice_points(14, 50);
+  for (Points* shifted : {&far, &near_them})
+    for (Eigen::Vector3f& p : *shifted) p = 0.37F * p + Eigen::Vector3f(50000.0F, -70000.0F, 900.0F);
+  for (const double cell_size : {0.01, 0.37, 3.0}) expect_same_as_brute_force(far, near_them, cell_size);
+}
+
+TEST(PointGrid, TakesFewBytesHoweverFarPointsAre) {
+  const PointGrid grid(Points{{-1e9F, 0.0F, 0.0F}, {1e9F, 3.0F, 1e9F}, {0.0F, 0.0F, 0.0F}}, 0.1);
+  EXPECT_EQ(grid.nearest({1.0F, 0.0F, 0.0F})->index, 2U);
+  EXPECT_LT(grid.num_bytes(), 1000U);
+}
+
+TEST(PointGrid, NearestKeepsToTheLargestDistance) {
+  const PointGrid grid(Points{{0.0F, 0.0F, 0.0F}, {5.0F, 0.0F, 0.0F}}, 1.0);
+  EXPECT_FALSE(grid.nearest({2.0F, 0.0F, 0.0F}, 1.9F).has_value());
+  EXPECT_EQ(grid.nearest({2.0F, 0.0F, 0.0F}, 2.0F)->index, 0U);  // inclusive
 }
 
 }  // namespace
