@@ -133,9 +133,8 @@ Result<> parse_config(const Fields& fields, std::string_view toml) {
 
 Result<std::vector<std::string>> parse_saved_config(const Fields& fields, std::string_view toml) {
   std::vector<std::string> not_taken;
-  return with_parsed(toml, [&](const toml::table& file) {
-           return set_table(fields, "", file, &not_taken);
-         }).map([&] { return not_taken; });
+  return with_parsed(toml, [&](const toml::table& file) { return set_table(fields, "", file, &not_taken); })
+      .map([&] { return not_taken; });
 }
 
 Result<> load_config(const std::filesystem::path& path, const Fields& fields) {

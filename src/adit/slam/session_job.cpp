@@ -36,8 +36,8 @@ Result<SavedSessions> open_sessions(const std::vector<std::string>& paths) {
           parse_saved_config(fields_of(saved.job.config), one.configuration);
       if (!not_taken) return fail(path + "/session.toml: configuration", not_taken.error());
       for (const std::string& setting : *not_taken)
-        fleet->notes.push_back(format("{}/session.toml: configuration, {}; the default of this version counts",
-                                      path, setting));
+        fleet->notes.push_back(
+            format("{}/session.toml: configuration, {}; the default of this version counts", path, setting));
       all.world = one.world;
       all.profile = one.profile;
       all.settings = one.settings;

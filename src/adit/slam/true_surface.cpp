@@ -127,7 +127,9 @@ Result<MapAccuracy> TrueSurface::compare(const std::vector<Eigen::Vector3f>& map
   accuracy.median_m = median(errors);
   accuracy.p95_m = percentile(errors, 95.0);
   if (eyes.empty()) return accuracy;
-  return add_completeness(PointGrid(points, kCellVoxels * kMapSpacing), eyes, config, accuracy).map([&] { return accuracy; });
+  return add_completeness(PointGrid(points, kCellVoxels * kMapSpacing), eyes, config, accuracy).map([&] {
+    return accuracy;
+  });
 }
 
 std::vector<Eigen::Vector3f> eyes_of(const Trajectory& truth, Stamp begin, Stamp end,

@@ -8,8 +8,8 @@
 
 #include "adit/core/config.hpp"
 #include "adit/evaluation/map_accuracy.hpp"
-#include "adit/geometry/point_grid.hpp"
 #include "adit/geometry/mesh_points.hpp"
+#include "adit/geometry/point_grid.hpp"
 #include "adit/robot/robot_map.hpp"
 #include "adit/simulation/raycaster.hpp"
 
