@@ -35,7 +35,7 @@ class PointGrid {
  public:
   PointGrid() = default;  ///< Nothing is found in it.
   /// Copies what it needs of `points`. `cell_size`: edge of the cells, metres, positive; doubled until there
-  /// are no more than some cells per point.
+  /// are at most eight cells per point.
   PointGrid(const std::vector<Eigen::Vector3f>& points, double cell_size);
 
   /// The nearest point no farther than `max_distance` metres; none when there is none.
