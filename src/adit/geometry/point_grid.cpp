@@ -17,8 +17,8 @@ namespace {
 using simd::Float4;
 using simd::Int4;
 
-constexpr std::size_t kLanes = 4;  ///< Points that are compared at once.
-constexpr double kCellsPerPoint = 8.0;
+constexpr std::size_t kLanes = 4;       ///< Points that are compared at once.
+constexpr double kCellsPerPoint = 8.0;  ///< At most; each takes four bytes.
 
 Float4 vector_of(const Eigen::Vector3f& v) { return Float4{v.x(), v.y(), v.z(), 0.0F}; }
 

@@ -22,7 +22,7 @@ struct NearestAlone {
   bool operator==(const NearestAlone&) const = default;
 };
 
-/// Edge of the cells, in voxels, with which points of one per voxel are searched fastest.
+/// Edge of the cells, in voxels, for points of one per voxel (decision 0061).
 inline constexpr double kCellVoxels = 3.0;
 
 /// A copy of the points, sorted into the cubic cells of their bounding box (Bentley, Weide, Yao, "Optimal
@@ -38,11 +38,11 @@ class PointGrid {
   /// are at most eight cells per point.
   PointGrid(const std::vector<Eigen::Vector3f>& points, double cell_size);
 
-  /// The nearest point no farther than `max_distance` metres; none when there is none.
+  /// The nearest point within `max_distance` metres; empty where no point is so near.
   [[nodiscard]] std::optional<Neighbor> nearest(
       const Eigen::Vector3f& query, float max_distance = std::numeric_limits<float>::infinity()) const;
-  /// The nearest point whose squared distance is at most `bound`, and how far the second nearest is; none
-  /// when no point is so near.
+  /// The nearest point whose squared distance is at most `bound`, square metres, and how far the second
+  /// nearest is; empty where no point is so near.
   [[nodiscard]] std::optional<NearestAlone> nearest_alone(const Eigen::Vector3f& query, float bound) const;
 
   [[nodiscard]] std::size_t size() const { return index_.size(); }  ///< Finite points only.

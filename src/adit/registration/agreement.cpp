@@ -240,8 +240,8 @@ Agreement agreement(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_
 
 namespace {
 
-/// The fit with the smallest difference `below` that many points; `T_a_b` and a difference of `below` where
-/// there is none.
+/// The fit with the smallest difference; where no fit differs by less than `below` points, `T_a_b` itself,
+/// which is not comparable.
 LocalFit best_fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b, double enough,
                        const RegistrationConfig& config, FitFrom from, double below) {
   LocalFit best{T_a_b, {.largest_difference = below}};
@@ -280,6 +280,7 @@ LocalFit fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
 
 std::optional<Pose> agreeing_fit(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b, double enough,
                                  const RegistrationConfig& config) {
+  // A difference of exactly `enough` agrees.
   const double below = std::nextafter(enough, std::numeric_limits<double>::infinity());
   const LocalFit found = best_fit_near(a, b, T_a_b, enough, config, FitFrom::guess, below);
   if (!found.agreement.is_comparable()) return {};

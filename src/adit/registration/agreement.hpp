@@ -78,8 +78,9 @@ struct Agreement {
   [[nodiscard]] bool is_comparable() const { return confirmed > 0.0; }  ///< Points of both scans count.
 };
 
-/// `T_a_b` brings the points of b into the frame of a. Scans with nothing in common are not comparable, and
-/// it is not found out whether they are where the difference is not `below` that many points.
+/// `T_a_b` brings the points of b into the frame of a. Scans with nothing in common are not comparable.
+/// Where the difference is `below` points or more, the rest is not computed and the answer is not comparable,
+/// too.
 [[nodiscard]] Agreement agreement(const SeenSurface& a, const SeenSurface& b, const Pose& T_a_b,
                                   const RegistrationConfig& config,
                                   double below = std::numeric_limits<double>::infinity());
