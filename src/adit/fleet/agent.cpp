@@ -248,7 +248,7 @@ Agent::Replies Agent::go_on_checking(RobotId peer) {
 }
 
 Agent::Replies Agent::conclude_check(RobotId peer) {
-  const MergeChecker checker = checks_.extract(peer).mapped();
+  const MergeChecker checker = std::move(checks_.extract(peer).mapped());
   const std::size_t num_before = ledger_.num_own_checks();
   ledger_.add_own(with_advice(checker.verdict(map_->id, peer), checker));
   return ledger_.checks_since(map_->id, num_before);

@@ -80,6 +80,8 @@ Fields fields_of(ReliefModel& c) {
        "share of equal signs on other walls, where the own map has none to measure it on"},
       {"prior_sigma", &c.prior_sigma, "", 0.0, 5.0,
        "prior of the log share's standard deviation over look-alikes"},
+      {"stretch_sigma", &c.stretch_sigma, "", 0.0, 5.0,
+       "the log share's standard deviation along one of them, from one side of 10 m to the next"},
       {"prior_moulded", &c.prior_moulded, "", 0.0, 1.0,
        "share of the tunnels that agree, but are others, whose walls were cast in one mould,"},
       {"moulded", &c.moulded, "", 0.0, 1.0, "and where other walls of the own map were found to differ"},
@@ -89,7 +91,12 @@ Fields fields_of(ReliefModel& c) {
        "share of the stretches of one tunnel whose walls seem to be others: lined anew, or seen by sensors "
        "that "
        "err in another way than is estimated"},
-      {"min_patches", &c.min_patches, "", 1, 1000000, "patches needed before a share counts as evidence"}};
+      {"lined_anew", &c.lined_anew, "", 0.0, 1.0,
+       "share of the pairs of visits between which walls were moved: lined anew or widened"},
+      {"lined_share", &c.lined_share, "", 0.0, 1.0, "share of the sides of 10 m that this concerned then"},
+      {"few_patches", &c.few_patches, "", 1, 1000000,
+       "patches of the own map needed before their share is what a map is weighed against"},
+      {"min_patches", &c.min_patches, "", 1, 1000000, "patches of two maps needed before they are evidence"}};
 }
 
 Fields fields_of(RegistrationConfig& c) {

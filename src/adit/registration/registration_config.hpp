@@ -28,11 +28,15 @@ struct ReliefModel {
   double same_sigma = 0.015;
   double prior_other_share = 0.62;
   double prior_sigma = 0.5;
+  double stretch_sigma = 0.8;
   double prior_stretches = 4.0;
   double prior_moulded = 0.02;
   double moulded = 0.002;
   double changed = 0.01;
-  int min_patches = 100;
+  double lined_anew = 0.1;
+  double lined_share = 0.3;
+  int few_patches = 100;
+  int min_patches = 30;
 };
 /// The keys are the names of the fields.
 [[nodiscard]] Fields fields_of(ReliefModel& model);

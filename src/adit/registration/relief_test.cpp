@@ -58,35 +58,24 @@ WallOffsets driven(std::uint64_t first, std::uint64_t second, int num_pairs = 8,
   return offsets;
 }
 
-EqualSignShare found(double share, std::size_t num_patches = 1000) {
-  return {num_patches, share, 0.5 / std::sqrt(static_cast<double>(num_patches))};
+double evidence_of(const WallOffsets& offsets, const EqualSignShares& shares = EqualSignShares()) {
+  return shares.evidence(offsets.counted());
 }
 
-EqualSignShares where_others_agree(double share, int num_stretches = 5) {
+EqualSignShares of_rough_walls() {
   EqualSignShares shares;
-  for (int i = 0; i < num_stretches; ++i) shares.add_other(found(share));
+  for (int i = 0; i < 5; ++i) shares.add_other({1000, 0.65, 0.016});
   return shares;
 }
 
 PatchOffset offset_of(const WallPatch& patch, double metres) { return {patch, metres}; }
-
-// A thousand patches that two pairs saw, `num_equal` of them with equal signs, as many in front as behind.
-WallOffsets of_a_thousand(int num_equal) {
-  WallOffsets offsets;
-  for (int i = 0; i < 1000; ++i) {
-    const double metres = i % 2 == 0 ? 0.01 : -0.01;
-    for (const double one : {metres, i * 617 % 1000 < num_equal ? metres : -metres})
-      offsets.add({offset_of({i % 50, i / 50, 0, 0}, one)});
-  }
-  return offsets;
-}
 
 TEST(Relief, OffsetsOfTheSameWallsHaveRandomSigns) {
   for (const std::uint64_t tunnel : {1U, 2U, 3U}) {
     const WallOffsets offsets = driven(tunnel, tunnel);
     ASSERT_GT(offsets.counted().num_patches, 200U);
     EXPECT_NEAR(offsets.counted().share, 0.5, 0.06);
-    EXPECT_GT(offsets.evidence({}), 0.0);
+    EXPECT_GT(evidence_of(offsets), 0.0);
   }
 }
 
@@ -95,7 +84,7 @@ TEST(Relief, OffsetsOfOtherWallsHaveEqualSignsInAllScansThoughNoiseIsLarger) {
   for (const std::uint64_t tunnel : {1U, 2U, 3U}) {
     const WallOffsets offsets = driven(tunnel, tunnel + 10, 24);
     EXPECT_GT(offsets.counted().share, 0.6);
-    EXPECT_LT(offsets.evidence({}), 0.0);
+    EXPECT_LT(evidence_of(offsets), 0.0);
   }
 }
 
@@ -103,10 +92,10 @@ TEST(Relief, ASensorWhoseRangesAreTooLongIsNoOtherWall) {
   for (const double bias : {-0.03, -0.005, 0.01, 0.03, 0.06}) {
     const WallOffsets same = driven(1, 1, 12, 1.0, bias);
     EXPECT_NEAR(same.counted().share, 0.5, 0.06) << bias;
-    EXPECT_GT(same.evidence({}), 0.0) << bias;
+    EXPECT_GT(evidence_of(same), 0.0) << bias;
     const WallOffsets other = driven(1, 11, 12, 1.0, bias);
     EXPECT_GT(other.counted().share, 0.6) << bias;
-    EXPECT_LT(other.evidence({}), 0.0) << bias;
+    EXPECT_LT(evidence_of(other), 0.0) << bias;
   }
 }
 
@@ -128,14 +117,14 @@ TEST(Relief, TheShareIsTheSameForFewPairsOfScansAndForMany) {
 }
 
 TEST(Relief, SpeaksForOneTunnelAndAgainstTheOther) {
-  EXPECT_GT(driven(1, 1, 24).evidence(where_others_agree(0.65)), 3.0);
-  EXPECT_LT(driven(1, 11, 24).evidence(where_others_agree(0.65)), -3.0);
+  EXPECT_GT(evidence_of(driven(1, 1, 24), of_rough_walls()), 3.0);
+  EXPECT_LT(evidence_of(driven(1, 11, 24), of_rough_walls()), -3.0);
 }
 
 TEST(Relief, OnePairOfScansSaysNothing) {
   const WallOffsets offsets = driven(1, 11, 1);
   EXPECT_EQ(offsets.counted().num_patches, 0U);
-  EXPECT_EQ(offsets.evidence(where_others_agree(0.65)), 0.0);
+  EXPECT_EQ(evidence_of(offsets, of_rough_walls()), 0.0);
 }
 
 TEST(Relief, LargeOffsetsAreNotRelief) {
@@ -193,8 +182,8 @@ TEST(WallOffsets, EveryTwoPairsThatSawAPatchAreCompared) {
 }
 
 // 80 m of wall seen twice, of which the patches from 0 to `moved_m` stand in front both times.
-EqualSignShare with_moved(double moved_m, Visits visits = Visits::two) {
-  WallOffsets offsets({}, visits);
+EqualSignShare with_moved(double moved_m) {
+  WallOffsets offsets;
   for (int i = 0; i < 80; ++i)
     for (int k = 0; k < 10; ++k) {
       const double second = i < moved_m || (i + k) % 2 == 0 ? 0.01 : -0.01;
@@ -204,12 +193,15 @@ EqualSignShare with_moved(double moved_m, Visits visits = Visits::two) {
   return offsets.counted();
 }
 
-TEST(WallOffsets, AStretchThatWasMovedAsAWholeDoesNotCount) {
-  EXPECT_NEAR(with_moved(0.0).share, 0.5, 1e-9);
-  EXPECT_NEAR(with_moved(20.0).share, 0.5, 1e-9) << "fresh lining over 20 m";
-  EXPECT_EQ(with_moved(20.0).num_patches, 800U);
-  EXPECT_NEAR(with_moved(20.0, Visits::one).share, 0.625, 1e-9) << "nothing moves during one visit";
-  EXPECT_GT(with_moved(80.0).share, 0.99) << "more than half: other walls";
+TEST(WallOffsets, EverySideOfTenMetresHasItsShare) {
+  const EqualSignShare counted = with_moved(20.0);
+  EXPECT_EQ(counted.num_patches, 800U);
+  EXPECT_NEAR(counted.share, 0.625, 1e-9);
+  ASSERT_EQ(counted.stretches.size(), 8U);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_NEAR(counted.stretches[i].num, 100.0, 1e-9);
+    EXPECT_NEAR(counted.stretches[i].share(), i < 2 ? 1.0 : 0.5, 1e-9);
+  }
 }
 
 TEST(WallOffsets, SmallOffsetsHaveNoSign) {
@@ -222,12 +214,6 @@ TEST(WallOffsets, SmallOffsetsHaveNoSign) {
   };
   EXPECT_EQ(num_patches(0.0019), 0U);
   EXPECT_EQ(num_patches(0.0021), 100U);
-}
-
-TEST(WallOffsets, TheShareOfOneWallAndTheNumberOfPatchesAreSettings) {
-  EXPECT_LT(of_a_thousand(600).evidence({}), 0.0);
-  EXPECT_GT(of_a_thousand(600).evidence(EqualSignShares({.same_share = 0.6})), 0.0);
-  EXPECT_EQ(of_a_thousand(600).evidence(EqualSignShares({.min_patches = 1001})), 0.0);
 }
 
 TEST(WallOffsets, TheShareIsAsUncertainAsTheTossOfACoin) {
@@ -246,87 +232,6 @@ TEST(WallOffsets, TheShareIsAsUncertainAsTheTossOfACoin) {
   EXPECT_GT(squares, 0.4) << "stated a little too large: several pairs that saw one patch are no coins";
 }
 
-TEST(WallOffsets, SpeakForOtherWallsWhenMoreSignsAreEqualThanOnTheSame) {
-  EXPECT_GT(of_a_thousand(540).evidence({}), 0.0);
-  EXPECT_LT(of_a_thousand(600).evidence({}), 0.0);
-  EqualSignShares cluttered;  // at edges signs are equal even of one place
-  cluttered.set_same(found(0.6));
-  EXPECT_GT(of_a_thousand(600).evidence(cluttered), 0.0);
-  EXPECT_LT(of_a_thousand(680).evidence(cluttered), 0.0);
-}
-
-TEST(WallOffsets, WallsMayHaveChangedHoweverMuchTheyDiffer) {
-  const double floor = std::log(ReliefModel().changed);
-  for (const EqualSignShares& shares : {EqualSignShares(), where_others_agree(0.65)}) {
-    EXPECT_NEAR(of_a_thousand(1000).evidence(shares), floor, 0.1);
-    EXPECT_GE(of_a_thousand(700).evidence(shares), floor);
-    EXPECT_LE(of_a_thousand(700).evidence(shares), of_a_thousand(580).evidence(shares));
-  }
-}
-
-TEST(WallOffsets, AShareBelowHalfCountsAsChance) {
-  EXPECT_NEAR(of_a_thousand(400).evidence(where_others_agree(0.65)),
-              of_a_thousand(500).evidence(where_others_agree(0.65)), 0.5);
-}
-
-TEST(EqualSignShares, UseWhatWasMeasuredOrElseTheSetting) {
-  EqualSignShares shares;
-  const double believed = shares.same().mean;
-  EXPECT_GT(believed, 0.5);
-  EXPECT_FALSE(shares.other());
-  shares.set_same(found(0.45));
-  EXPECT_EQ(shares.same().mean, believed) << "less than chance is chance";
-  shares.set_same(found(0.9, 50));
-  EXPECT_EQ(shares.same().mean, believed) << "too few patches";
-  shares.set_same(found(0.6));
-  EXPECT_EQ(shares.same().mean, 0.6);
-}
-
-TEST(EqualSignShares, MoreLookAlikesSharpenThePredictionForOtherWalls) {
-  const auto one = where_others_agree(0.65, 1).other();
-  const auto many = where_others_agree(0.65, 20).other();
-  ASSERT_TRUE(one && many);
-  EXPECT_NEAR(one->mean_log, std::log(0.15), 1e-12);
-  EXPECT_LT(many->sigma_log, 0.6 * one->sigma_log);
-  EqualSignShares uneven;
-  for (const double share : {0.58, 0.62, 0.7, 0.8}) uneven.add_other(found(share));
-  EXPECT_GT(uneven.other()->sigma_log, where_others_agree(0.65, 4).other()->sigma_log);
-}
-
-TEST(WallOffsets, FewerEqualSignsThanOnTheOwnMapSpeakForOneWall) {
-  EqualSignShares cluttered;
-  cluttered.set_same(found(0.59));
-  EXPECT_GE(of_a_thousand(500).evidence(cluttered), of_a_thousand(500).evidence({}) - 1e-9);
-  EXPECT_GT(of_a_thousand(500).evidence(cluttered), 2.0);
-}
-
-TEST(EqualSignShares, UnderMoreNoiseOtherWallsShowLess) {
-  EqualSignShares shares;
-  EqualSignShare other = found(0.7);
-  other.noise_m = 0.01;
-  shares.add_other(other);
-  const auto share_under = [&](double noise_m) { return 0.5 + std::exp(shares.other(noise_m)->mean_log); };
-  EXPECT_NEAR(share_under(0.01), 0.7, 1e-12);
-  EXPECT_NEAR(share_under(0.0), 0.7, 1e-12) << "unknown: as measured";
-  EXPECT_LT(share_under(0.03), 0.56);
-  // Signs of relief of 1 sigma and noise, drawn.
-  Rng rng(5);
-  const auto drawn = [&](double noise) {
-    int num_equal = 0;
-    for (int i = 0; i < 40000; ++i) {
-      const double relief = rng.normal();
-      const double one = relief + noise * rng.normal();
-      num_equal += (one > 0.0) == (relief + noise * rng.normal() > 0.0) ? 1 : 0;
-    }
-    return num_equal / 40000.0;
-  };
-  EqualSignShares of_drawn;
-  EqualSignShare measured = found(drawn(1.0));
-  measured.noise_m = 1.0;
-  of_drawn.add_other(measured);
-  EXPECT_NEAR(0.5 + std::exp(of_drawn.other(2.0)->mean_log), drawn(2.0), 0.01);
-}
-
 TEST(WallOffsets, TheNoiseOfAnOffsetIsMeasured) {
   Rng rng(7);
   WallOffsets offsets;
@@ -336,43 +241,6 @@ TEST(WallOffsets, TheNoiseOfAnOffsetIsMeasured) {
     for (int i = 0; i < 500; ++i)
       offsets.add({offset_of({i, 0, 0, 0}, relief[static_cast<std::size_t>(i)] + 0.01 * rng.normal())});
   EXPECT_NEAR(offsets.counted().noise_m, 0.01, 0.001);
-}
-
-TEST(EqualSignShares, TheMoreLookAlikesHaveTheSameWallsTheLessSpeaksForAMerge) {
-  EqualSignShares shares = where_others_agree(0.65);
-  const double none = of_a_thousand(500).evidence(shares);
-  EXPECT_GT(none, 5.0);
-  EXPECT_LE(none, std::log(1.0 / ReliefModel().moulded));
-  shares.add_other(found(0.9, 50));  // hardly seen: not counted
-  EXPECT_EQ(of_a_thousand(500).evidence(shares), none);
-  shares.add_other(found(0.51));  // cast in one mould
-  EXPECT_LT(of_a_thousand(500).evidence(shares), 0.5 * none);
-  EXPECT_LT(of_a_thousand(650).evidence(shares), -1.0) << "other walls still speak against";
-  for (int i = 0; i < 20; ++i) shares.add_other(found(0.51));
-  EXPECT_LT(of_a_thousand(500).evidence(shares), 0.5);
-}
-
-TEST(EqualSignShares, ALookAlikeSeenTooShortlyToTellHardlyCounts) {
-  EqualSignShares shares = where_others_agree(0.8, 3);
-  const double none = of_a_thousand(500).evidence(shares);
-  shares.add_other(found(0.56, 110));  // as likely by the same walls as by others
-  EXPECT_GT(of_a_thousand(500).evidence(shares), 0.7 * none);
-}
-
-TEST(EqualSignShares, LookAlikesThatEachMayHaveTheSameWallsTogetherDo) {
-  const auto chance = [](int num_ambiguous) {
-    EqualSignShares shares = where_others_agree(0.8, 3);
-    for (int i = 0; i < num_ambiguous; ++i) shares.add_other(found(0.54, 110));
-    return shares.chance_of_one_mould();
-  };
-  EXPECT_LT(chance(1), ReliefModel().prior_moulded);
-  EXPECT_GT(chance(15), 0.5);
-}
-
-TEST(EqualSignShares, WhereAllLookAlikesHaveTheSameWallsNothingSpeaksForAMerge) {
-  const EqualSignShares shares = where_others_agree(0.5, 10);
-  EXPECT_GT(shares.chance_of_one_mould(), 0.7);
-  EXPECT_LT(of_a_thousand(500).evidence(shares), 0.4);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "adit/core/angles.hpp"
@@ -86,7 +87,7 @@ OffsetParts solved(const OffsetSystem& offsets, const Eigen::VectorXd& weights, 
 }
 
 /// Of a normal distribution, from the median of absolute values.
-double robust_sigma(const Eigen::VectorXd& residuals) {
+double robust_sigma(const Eigen::Ref<const Eigen::VectorXd>& residuals) {
   constexpr double kOfMedian = 1.4826;
   constexpr double kLeast = 1e-4;
   std::vector<double> sizes(residuals.data(), residuals.data() + residuals.size());
@@ -94,6 +95,17 @@ double robust_sigma(const Eigen::VectorXd& residuals) {
   const auto middle = sizes.begin() + std::ssize(sizes) / 2;
   std::ranges::nth_element(sizes, middle);
   return std::max(kOfMedian * *middle, kLeast);
+}
+
+/// Of one row; 0 where none is repeated.
+double noise_of(const Eigen::VectorXd& left, const std::vector<std::array<Eigen::Index, 2>>& repeated) {
+  if (repeated.empty()) return 0.0;
+  Eigen::VectorXd apart(std::ssize(repeated));
+  for (Eigen::Index i = 0; i < apart.size(); ++i) {
+    const auto& [first, second] = repeated[static_cast<std::size_t>(i)];
+    apart[i] = left[first] - left[second];
+  }
+  return robust_sigma(apart / std::numbers::sqrt2);
 }
 
 }  // namespace
@@ -120,15 +132,18 @@ OffsetParts taken_apart(const OffsetSystem& offsets, const OffsetPrior& prior) {
   constexpr int kRounds = 5;
   constexpr double kHuber = 1.345;  // sigmas: 95 % efficient where errors are normal,
   constexpr double kTukey = 4.685;  // and so is the biweight, to which walls that were moved are nothing
+  constexpr std::size_t kFew = 20;      // repeated patches, whose median says little
   OffsetParts parts{Eigen::VectorXd::Zero(offsets.metres.size()), offsets.metres};
   if (offsets.metres.size() == 0) return parts;
   for (int round = 0; round < 2 * kRounds; ++round) {
-    const double sigma = robust_sigma(parts.left);
+    const double sigma =
+        offsets.repeated.size() > kFew ? noise_of(parts.left, offsets.repeated) : robust_sigma(parts.left);
     const Eigen::ArrayXd off = parts.left.array().abs() / sigma;
     const Eigen::ArrayXd huber = (kHuber * off.max(1e-12).inverse()).min(1.0);
     const Eigen::ArrayXd tukey = (1.0 - (off / kTukey).square()).max(0.0).square();
     parts = solved(offsets, (round < kRounds ? huber : tukey) / (sigma * sigma), prior);
   }
+  parts.noise_m = noise_of(parts.left, offsets.repeated);
   return parts;
 }
 

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "adit/core/pose.hpp"
@@ -55,6 +56,8 @@ struct OffsetSystem {
   Eigen::Matrix<double, Eigen::Dynamic, kSensorErrors> by_sensors;  ///< SensorTerms
   Eigen::Matrix<double, Eigen::Dynamic, 6> by_fit;                  ///< motion_terms
   std::vector<Eigen::Index> first_of_pair;  ///< Rows of one pair of scans follow one another.
+  /// Two rows of one patch each: noise alone tells them apart, wherever its wall is.
+  std::vector<std::array<Eigen::Index, 2>> repeated = {};
 };
 
 /// Standard deviations: of range by sensor, what data sheets allow; of the fit of two scans, chosen, as half
@@ -71,11 +74,13 @@ struct OffsetPrior {
 struct OffsetParts {
   Eigen::VectorXd by_sensors;  ///< Of each row of the system, metres.
   Eigen::VectorXd left;        ///< What neither sensors nor fits explain: relief and noise, metres.
+  double noise_m = 0.0;        ///< Of one row of `repeated`: a standard deviation; 0 where there is none.
 };
 
 /// A robust fit of the errors of both sensors and of each pair's fit with their priors, by Huber's weights
 /// and then by Tukey's (Beaton and Tukey, "The fitting of power series", 1974), to which walls that were
-/// moved between two visits are nothing.
+/// moved between two visits are nothing. Residuals are measured by the noise of repeated patches, so that
+/// moved walls do not make the scale, and where few are repeated by their own median.
 [[nodiscard]] OffsetParts taken_apart(const OffsetSystem& offsets, const OffsetPrior& prior);
 
 }  // namespace adit

@@ -105,7 +105,7 @@ class Fit {
   }
 
   void fit_same_walls() {
-    const Counts seen = with_walls(right_, model_.walls.min_patches);
+    const Counts seen = with_walls(right_, model_.walls.few_patches);
     std::vector<double> shares;
     std::vector<double> counting;  // variances
     for (const HypothesisCounts& counts : seen) {
@@ -115,7 +115,7 @@ class Fit {
     add_spread("walls.same_share", "walls.same_sigma", shares, counting, seen, [](double m) { return m; });
   }
   void fit_other_walls() {
-    const Counts seen = with_walls(wrong_, model_.walls.min_patches);
+    const Counts seen = with_walls(wrong_, model_.walls.few_patches);
     std::vector<double> logs;  // of the share beyond one half
     std::vector<double> counting;
     for (const HypothesisCounts& counts : seen) {

@@ -118,7 +118,7 @@ WallOffsets Discernment::compare_displaced_walls() {
 
 WallOffsets Discernment::offsets_between(const std::vector<OwnComparison>& pairs) {
   const std::vector<LocalFit> found = compare(pairs, FitFrom::guess);
-  WallOffsets offsets(config_.registration.relief, Visits::one);
+  WallOffsets offsets(config_.registration.relief);
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (!differ(found[i].agreement))
       offsets.add(patch_offsets(surfaces_.at(pairs[i].a).scan, surfaces_.at(pairs[i].b).scan, found[i].T_a_b,

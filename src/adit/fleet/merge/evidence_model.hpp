@@ -28,6 +28,7 @@ inline constexpr FleetEvidence kFleetEvidence;
 /// The values that are settings of each robot.
 struct EvidenceModel {
   double error_rate = 2e-3;
+  double rival_rate = 0.02;
   double refusal_rate = 0.01;
 
   double usual_share = 0.9;
@@ -42,6 +43,7 @@ struct EvidenceModel {
   double same_object_m = 5.0;
   double structure_reach_m = 10.0;
   double thing_reach_m = 5.0;
+  double differing_at_worst = 0.8;
   double changes_at_worst_per_km = 30.0;
   double things_per_km = 75.0;
   double things_elsewhere_per_km = 117.0;

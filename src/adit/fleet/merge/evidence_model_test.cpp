@@ -30,11 +30,11 @@ TEST(EvidenceModel, EveryValueHasAnOriginAndAMeaning) {
 TEST(EvidenceModel, EntriesHoldTheValuesOfTheModel) {
   EvidenceModel model;
   model.things_per_km = 77.0;
-  model.walls.min_patches = 123;
+  model.walls.few_patches = 123;
   const std::vector<EvidenceEntry> entries = evidence_entries(model);
   ASSERT_NE(entry(entries, "things_per_km"), nullptr);
   EXPECT_EQ(entry(entries, "things_per_km")->value, 77.0);
-  EXPECT_EQ(entry(entries, "walls.min_patches")->value, 123.0);
+  EXPECT_EQ(entry(entries, "walls.few_patches")->value, 123.0);
   EXPECT_EQ(entry(entries, "fleet.copied")->value, kFleetEvidence.copied);
 }
 

@@ -85,8 +85,6 @@ struct Hypothesis {
   [[nodiscard]] std::size_t num_differing(double by_more_than = 1.0) const;
   /// Changes of structure, and places that differ as a whole.
   [[nodiscard]] std::size_t num_changes() const { return structures.num() + num_unlocated; }
-  /// The same if all second looks that are left confirmed what the first ones saw.
-  [[nodiscard]] std::size_t num_changes_unless_explained() const;
   /// Compared places that agree, but for what is explained; and those of them where a displacement would have
   /// shown beside that.
   ///@{

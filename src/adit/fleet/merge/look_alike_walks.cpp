@@ -77,8 +77,8 @@ std::vector<OwnComparison> LookAlikeWalks::next_places() {
 }
 
 void LookAlikeWalks::follow(Measured& measured) {
-  std::vector<WallOffsets> offsets(
-      walks_.size(), WallOffsets(config_.registration.relief, Visits::one));  // of each look-alike
+  std::vector<WallOffsets> offsets(walks_.size(),
+                                   WallOffsets(config_.registration.relief));  // of each look-alike
   while (!walks_.empty()) {
     Step step;
     step.asked = next_places();

@@ -53,13 +53,19 @@ MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first) c
 }
 
 bool MergeChecker::differs_too_often(const Hypothesis& h) const {
+  // One change is seen from many places: the places themselves are no independent trials.
+  return differs_nearly_everywhere(h) ||
+         poisson_tail(h.num_changes(), config_.evidence.changes_at_worst_per_km * compared_km(h)) <
+             config_.evidence.refusal_rate;
+}
+
+/// By one place more than a true alignment does at worst. Second looks are not waited for: there are as many
+/// as places that differ, and most hypotheses are false.
+bool MergeChecker::differs_nearly_everywhere(const Hypothesis& h) const {
   const std::size_t num = h.compared.size();
-  const bool all_differ = num >= static_cast<std::size_t>(config_.first_checks) && h.num_differing() == num;
-  // One change is seen from many places: the places themselves are no independent trials. Where all differ,
-  // second looks are not waited for.
-  const std::size_t changes = all_differ ? h.num_changes_unless_explained() : h.num_changes();
-  return poisson_tail(changes, config_.evidence.changes_at_worst_per_km * compared_km(h)) <
-         config_.evidence.refusal_rate;
+  const double at_worst = config_.evidence.differing_at_worst * static_cast<double>(num);
+  return num >= std::min(static_cast<std::size_t>(config_.first_checks), h.plan.size()) &&
+         static_cast<double>(h.num_differing()) >= at_worst + 1.0;
 }
 
 double MergeChecker::compared_km(const Hypothesis& h) const {
@@ -69,10 +75,12 @@ double MergeChecker::compared_km(const Hypothesis& h) const {
 }
 
 bool MergeChecker::are_rivals(const Hypothesis& best, const Hypothesis& other) const {
-  return !differs_too_often(other) && evidence(best) - evidence(other) < needed();
+  return !differs_too_often(other) && evidence(best) - evidence(other) < least_lead();
 }
 
 double MergeChecker::needed() const { return std::log(1.0 / config_.evidence.error_rate); }
+
+double MergeChecker::least_lead() const { return std::log(1.0 / config_.evidence.rival_rate); }
 
 double MergeChecker::evidence(const Hypothesis& h) const {
   return evidence_of_scans(h) + evidence_of_walls(h) + evidence_of_things(h);
@@ -101,7 +109,7 @@ double MergeChecker::evidence_of_places(const std::vector<TestedPlace>& places) 
 }
 
 double MergeChecker::evidence_of_walls(const Hypothesis& h, double times) const {
-  return config_.relief ? h.offsets.evidence(own_.measured().walls, times) : 0.0;
+  return config_.relief ? own_.measured().walls.evidence(h.offsets.counted(), times) : 0.0;
 }
 
 double MergeChecker::evidence_of_things(const Hypothesis& h) const {
@@ -119,7 +127,7 @@ std::optional<std::size_t> MergeChecker::to_go_on_with() const {
     if (h.is_finished() && !differs_too_often(h))
       best_finished = std::max(best_finished, evidence_of_scans(h));
   const auto can_no_longer_be_a_rival = [&](const Hypothesis& h) {
-    return std::isfinite(best_finished) && most_evidence_of_scans(h) < best_finished - needed();
+    return std::isfinite(best_finished) && most_evidence_of_scans(h) < best_finished - least_lead();
   };
   // Ranked by what needs no measuring of the own map: many a check ends with all refuted.
   const auto share_differing = [](const Hypothesis& h) {
@@ -207,7 +215,7 @@ std::vector<std::size_t> MergeChecker::best_first() const {
 }
 
 HypothesisCounts MergeChecker::counts(const Hypothesis& h) const {
-  const EqualSignShare walls = h.offsets.counted();
+  const EqualSignShare& walls = h.offsets.counted();
   return {static_cast<std::uint32_t>(h.num_distinctive()),
           static_cast<std::uint32_t>(h.num_changes()),
           static_cast<std::uint32_t>(h.things.num()),

@@ -13,7 +13,7 @@
 /// together with those of the relief of walls (WallOffsets) and the prior, the share of all loops that
 /// speak for this alignment. It is one-sided against copies: scans that differ may not be more than true
 /// places would leave. And every other
-/// hypothesis has to stay behind by as much. `MergeChecker::decide` reads in that order; docs/decisions/0010
+/// hypothesis has to stay behind by log(1 / rival_rate). `MergeChecker::decide` reads in that order; docs/decisions/0010
 /// tells why.
 #pragma once
 
@@ -71,10 +71,13 @@ class MergeChecker {
  private:
   [[nodiscard]] MergeDecision decide(const std::vector<std::size_t>& best_first) const;
   [[nodiscard]] bool differs_too_often(const Hypothesis& hypothesis) const;
+  [[nodiscard]] bool differs_nearly_everywhere(const Hypothesis& hypothesis) const;
   [[nodiscard]] double compared_km(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool are_rivals(const Hypothesis& best, const Hypothesis& other) const;
 
   [[nodiscard]] double needed() const;
+  /// Evidence by which a hypothesis has to lead every other one.
+  [[nodiscard]] double least_lead() const;
   [[nodiscard]] double evidence(const Hypothesis& hypothesis) const;
   [[nodiscard]] double prior_evidence(const Hypothesis& hypothesis) const;
   [[nodiscard]] double evidence_of_scans(const Hypothesis& hypothesis) const;

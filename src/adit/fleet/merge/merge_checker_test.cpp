@@ -100,7 +100,7 @@ TEST(MergeChecker, WallsOnOneSideInAllScansAreOfOtherTunnels) {
   const MergeCheck built_alike = check(62, {});
   EXPECT_FALSE(built_alike.accepted);
   EXPECT_EQ(built_alike.hypotheses.front().outcome, HypothesisOutcome::unsure);
-  EXPECT_NE(built_alike.reason.find("patches, 60 %"), std::string::npos) << built_alike.reason;
+  EXPECT_NE(built_alike.reason.find("patches, 62 %"), std::string::npos) << built_alike.reason;
   EXPECT_TRUE(check(62, without).accepted);
 }
 
@@ -127,7 +127,7 @@ ComparedPlace with_few_offsets(std::uint32_t theirs, bool all_equal) {
 
 TEST(MergeChecker, WhereLittleIsMissingMorePairsOfTheWallsDecide) {
   EqualSignShares shares;
-  for (int i = 0; i < 10; ++i) shares.add_other({1000, 0.6, 0.015});
+  for (int i = 0; i < 10; ++i) shares.add_other({1000, 0.56, 0.015});
   MergeCheckConfig places_only;
   places_only.max_wall_checks = 0;
   constexpr std::size_t kPlaces = 34;  // along the whole drive
@@ -239,12 +239,11 @@ TEST(MergeChecker, AChangeThatIsSeenFromManyPlacesCountsOnce) {
   EXPECT_EQ(one.num_checked, one.num_passed + 1);
 }
 
-TEST(MergeChecker, WhereEveryPlaceShowsOneChangeNothingSpeaksForAMerge) {
+TEST(MergeChecker, WhatDiffersAtNearlyAllPlacesIsGivenUpThoughOneChangeMayExplainIt) {
   const MergeCheck one = check_with_structures(1, 0.0);
   EXPECT_FALSE(one.accepted);
-  EXPECT_EQ(one.hypotheses.at(0).outcome, HypothesisOutcome::unsure) << "nor does one object refute it";
-  EXPECT_LT(one.evidence, 0.0);
-  EXPECT_GT(one.num_checked, 8U) << "so that it is tested to the end";
+  EXPECT_EQ(one.hypotheses.at(0).outcome, HypothesisOutcome::refuted);
+  EXPECT_EQ(one.num_checked, 8U) << "of 34";
 }
 
 // Where another one says nothing, but has been compared to the end.
@@ -269,8 +268,7 @@ TEST(MergeChecker, ARefutedHypothesisIsNotTestedToTheEnd) {
   MergeChecker checker = a_check(kTrueLoops);
   const MergeCheck check = run(checker, [](const PlannedComparison&) { return kDiffers; });
   EXPECT_FALSE(check.accepted);
-  EXPECT_EQ(check.num_checked, 24U)
-      << "of 34: the first eight changes may be chance, the next sixteen are not";
+  EXPECT_EQ(check.num_checked, 8U) << "of 34";
 }
 
 TEST(MergeChecker, WhatIsRefutedNeedsNoMeasuringOfTheOwnMap) {
@@ -347,6 +345,36 @@ TEST(MergeChecker, TwoHypothesesWithTheSameSupportDecideNothing) {
   ASSERT_EQ(check.hypotheses.size(), 2U);
   EXPECT_EQ(check.hypotheses[0].outcome, HypothesisOutcome::rival);
   EXPECT_EQ(check.hypotheses[1].outcome, HypothesisOutcome::rival);
+}
+
+// The second one agrees at every place but some, three changes of their own.
+MergeCheck against_a_rival(double rival_rate) {
+  std::vector<PcmLoop> loops = kTrueLoops;
+  for (const std::size_t a : {70U, 120U, 130U}) loops.push_back(loop_at(a, 20.0));
+  MergeCheckConfig config = by_places();
+  config.evidence.rival_rate = rival_rate;
+  MergeChecker checker = a_check(loops, 0.5, config);
+  return run(checker, [](const PlannedComparison& asked) {
+    const double off =
+        (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
+    ComparedPlace place = kAgrees;
+    if (off > 5.0 && asked.theirs % 4 == 0) {
+      place = kDiffers;
+      place.structures.emplace_back(20.0 * std::round(asked.theirs / 50.0), 0.0, 0.0);
+    }
+    return place;
+  });
+}
+
+TEST(MergeChecker, ARivalIsOneThatMayBeTrueByTheRateStated) {
+  const MergeCheck ahead = against_a_rival(0.02);
+  ASSERT_EQ(ahead.hypotheses.size(), 2U);
+  const double lead = ahead.evidence - ahead.hypotheses[1].evidence;
+  ASSERT_GT(lead, 1.0);
+  EXPECT_TRUE(against_a_rival(1.01 * std::exp(-lead)).accepted);
+  const MergeCheck rival = against_a_rival(0.99 * std::exp(-lead));
+  EXPECT_FALSE(rival.accepted);
+  EXPECT_EQ(rival.refused_kind, RefusalKind::rival);
 }
 
 TEST(MergeChecker, RivalsToEitherSideOfTheFirstAreAsFarApartAsTheyAre) {

@@ -34,7 +34,7 @@ std::string what_else(const Hypothesis& h, RefusalKind kind) {
 }
 
 std::string why_walls_differ(const Hypothesis& h, RefusalKind kind) {
-  const EqualSignShare walls = h.offsets.counted();
+  const EqualSignShare& walls = h.offsets.counted();
   return format(
       "the walls differ: of the pairs of scans that saw one of {} patches, {:.0f} % found the other robot's "
       "wall on the same side, where noise alone would leave half: {}",

@@ -122,7 +122,7 @@ std::optional<UndecidedStretch> MergeChecker::undecided() const {
   if (kind == RefusalKind::rival) {
     const Hypothesis& rival = hypotheses_[order[1]];
     out.rival_loops = loops_of(rival);
-    out.missing = needed() - (evidence(best) - evidence(rival));
+    out.missing = least_lead() - (evidence(best) - evidence(rival));
   }
   return out;
 }

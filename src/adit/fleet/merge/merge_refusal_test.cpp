@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include "adit/core/rng.hpp"
 #include "adit/fleet/merge/merge_checker.hpp"
 #include "support/merge_checks.hpp"
 
@@ -132,10 +133,12 @@ Told told_of_walls(double range_error_m) {
       kTrueLoops, 0.5,
       [=](const PlannedComparison& asked) {
         ComparedPlace place = kAgrees;
+        Rng rng(asked.theirs);
         for (int i = 0; i < 100; ++i) {
-          const double metres = i % 2 == 0 ? 0.01 : -0.01;
-          for (const double offset : {metres, i % 10 < 7 ? metres : -metres}) {
-            place.offsets.push_back({{static_cast<int>(asked.theirs), i, 0, 0}, offset + range_error_m});
+          const double relief = 0.01 * rng.normal();
+          for (int scan = 0; scan < 2; ++scan) {
+            const double offset = range_error_m + relief + 0.01 * rng.normal();
+            place.offsets.push_back({{static_cast<int>(asked.theirs), i, 0, 0}, offset});
             place.offsets.back().by_sensors[0] = 1.0;
           }
         }
