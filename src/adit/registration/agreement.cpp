@@ -30,6 +30,7 @@ constexpr double kMaxCorrection = 2.5;                         // metres
 constexpr std::array kOtherStarts = {-1.5, 1.5, -0.75, 0.75};  // metres along the path
 constexpr double kHopeless = 10.0;  // times `enough`: a difference that no small displacement removes
 constexpr int kMaxIterations = 10;  // per fit
+constexpr double kSameMinimum = 0.02;  // apart [m; rad]: searches end within a tenth of it
 
 std::size_t place(int row, int column) {
   return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
@@ -250,8 +251,14 @@ LocalFit best_fit_near(const SeenSurface& a, const SeenSurface& b, const Pose& T
   narrow.refine_max_iterations = std::min(config.refine_max_iterations, kMaxIterations);
   RegistrationConfig wide = narrow;
   wide.refine_distance_voxels = kWideVoxels;
+  std::vector<Pose> minima;  // that were looked at: most starts lead to one of few
   const auto fit_from = [&](const Pose& start) {
     const auto [near, has_arrived] = approach_planes(a.points(), a.grid(), b.some(), start, narrow);
+    const auto is_near = [&near = near](const Pose& other) {
+      return (near.inverse() * other).log().norm() < kSameMinimum;
+    };
+    if (has_arrived && std::ranges::any_of(minima, is_near)) return;
+    if (has_arrived) minima.push_back(near);
     const Pose T = has_arrived ? align_to_planes(a.points(), a.grid(), b.some(), near, narrow) : near;
     if (!((T.translation() - T_a_b.translation()).norm() < kMaxCorrection)) return;
     const Agreement found = agreement(a, b, T, config, best.agreement.largest_difference);

@@ -51,7 +51,7 @@ constexpr std::array kOrigins = {
     Origin{"thing_reach_m", kVehicle, "2026-11-24"},
     Origin{"differing_at_worst", kOfLastWorlds, "2026-11-27"},
     Origin{"changes_at_worst_per_km", "true pairs of zab and mine worlds (decision 0059)", "2026-11-27"},
-    Origin{"things_per_km", kOfForty, "2026-11-25"},
+    Origin{"things_per_km", "125 true hypotheses of 34 field worlds (decision 0063)", "2026-11-27"},
     Origin{"things_elsewhere_per_km", kOfForty, "2026-11-25"},
     Origin{"things_speak_at_most", "chosen: they come and go (decision 0043)", "2026-11-25"},
     Origin{"walls.same_share", kOfWalls, "2026-11-22"},

@@ -154,6 +154,17 @@ std::vector<std::size_t> Hypothesis::to_look_at_again() const {
   return out;
 }
 
+std::size_t Hypothesis::num_changes_unless_explained() const {
+  Changes all = structures;
+  std::size_t unlocated = num_unlocated;
+  for (std::size_t i = 0; i < compared.size(); ++i) {
+    if (!waits_for_second_look(i)) continue;
+    if (compared[i].structures.empty()) ++unlocated;
+    all.add(compared[i].structures);
+  }
+  return all.num() + unlocated;
+}
+
 std::size_t Hypothesis::num_differing(double by_more_than) const {
   return static_cast<std::size_t>(std::ranges::count_if(
       compared, [&](const ComparedPlace& place) { return !(place.difference <= by_more_than); }));

@@ -59,13 +59,15 @@ bool MergeChecker::differs_too_often(const Hypothesis& h) const {
              config_.evidence.refusal_rate;
 }
 
-/// By one place more than a true alignment does at worst. Second looks are not waited for: there are as many
-/// as places that differ, and most hypotheses are false.
+/// By one place more than a true alignment does at worst, and not for a few large changes. Second looks are
+/// not waited for: there are as many as places that differ, and most hypotheses are false.
 bool MergeChecker::differs_nearly_everywhere(const Hypothesis& h) const {
-  const std::size_t num = h.compared.size();
-  const double at_worst = config_.evidence.differing_at_worst * static_cast<double>(num);
-  return num >= std::min(static_cast<std::size_t>(config_.first_checks), h.plan.size()) &&
-         static_cast<double>(h.num_differing()) >= at_worst + 1.0;
+  const auto num = static_cast<double>(h.compared.size());
+  const std::size_t first = std::min(static_cast<std::size_t>(config_.first_checks), h.plan.size());
+  return h.compared.size() >= first &&
+         static_cast<double>(h.num_differing()) >= config_.evidence.differing_at_worst * num + 1.0 &&
+         static_cast<double>(h.num_changes_unless_explained()) >
+             config_.evidence.changes_at_worst_per_km * compared_km(h);
 }
 
 double MergeChecker::compared_km(const Hypothesis& h) const {
