@@ -20,10 +20,11 @@ bool have_same_grid(const ScanContext& a, const ScanContext& b) {
 }
 
 // Keyframes lie closer together than places differ: every fourth still meets each place of the other.
-std::vector<std::uint32_t> every_fourth(const std::vector<std::uint32_t>& keyframes) {
-  constexpr std::size_t kStride = 4;
+constexpr std::size_t kStrideInLargeFleets = 4;
+
+std::vector<std::uint32_t> every_nth(const std::vector<std::uint32_t>& keyframes, std::size_t stride) {
   std::vector<std::uint32_t> out;
-  for (std::size_t i = 0; i < keyframes.size(); i += kStride) out.push_back(keyframes[i]);
+  for (std::size_t i = 0; i < keyframes.size(); i += stride) out.push_back(keyframes[i]);
   return out;
 }
 
@@ -166,13 +167,19 @@ Agent::Replies Agent::search_when_ready(RobotId peer) {
 }
 
 std::vector<LoopCandidate> Agent::candidates_with(RobotId peer) {
-  std::vector<std::uint32_t> queries = searchable_keyframes(*map_);
-  if (num_tried() >= static_cast<std::size_t>(config_.max_candidates)) queries = every_fourth(queries);
+  const SearchConfig& search = config_.adaptive.search;
   PlaceIndexConfig place = config_.place;
-  if (is_adaptive()) place.max_distance = 1.0;  // ranked, not cut off
-  std::vector<LoopCandidate> found =
-      most_similar_places(*map_, queries, {peer, sessions_[peer].take_places()}, place,
-                          is_adaptive() ? search_->lanes() : Lanes{});
+  std::size_t stride = 1;
+  if (is_adaptive()) {
+    place.max_distance = 1.0;  // ranked, not cut off
+    place.num_candidates = std::max(place.num_candidates, search.ring_keys);
+    stride = static_cast<std::size_t>(search.stride);
+  }
+  if (num_tried() >= static_cast<std::size_t>(config_.max_candidates))
+    stride = std::max(stride, kStrideInLargeFleets);
+  std::vector<LoopCandidate> found = most_similar_places(
+      *map_, every_nth(searchable_keyframes(*map_), stride), {peer, sessions_[peer].take_places()}, place,
+      is_adaptive() ? search_->lanes() : Lanes{});
   std::erase_if(found, [&](const LoopCandidate& candidate) {
     return known().loops.contains({candidate.query, candidate.match});
   });

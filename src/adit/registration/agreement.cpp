@@ -28,8 +28,8 @@ constexpr std::size_t kEnoughToAlign = 1500;                   // points, or up 
 constexpr double kWideVoxels = 5.0;                            // farthest pairs of the first of two fits
 constexpr double kMaxCorrection = 2.5;                         // metres
 constexpr std::array kOtherStarts = {-1.5, 1.5, -0.75, 0.75};  // metres along the path
-constexpr double kHopeless = 10.0;  // times `enough`: a difference that no small displacement removes
-constexpr int kMaxIterations = 10;  // per fit
+constexpr double kHopeless = 10.0;     // times `enough`: a difference that no small displacement removes
+constexpr int kMaxIterations = 10;     // per fit
 constexpr double kSameMinimum = 0.02;  // apart [m; rad]: searches end within a tenth of it
 
 std::size_t place(int row, int column) {

@@ -132,7 +132,7 @@ OffsetParts taken_apart(const OffsetSystem& offsets, const OffsetPrior& prior) {
   constexpr int kRounds = 5;
   constexpr double kHuber = 1.345;  // sigmas: 95 % efficient where errors are normal,
   constexpr double kTukey = 4.685;  // and so is the biweight, to which walls that were moved are nothing
-  constexpr std::size_t kFew = 20;      // repeated patches, whose median says little
+  constexpr std::size_t kFew = 20;  // repeated patches, whose median says little
   OffsetParts parts{Eigen::VectorXd::Zero(offsets.metres.size()), offsets.metres};
   if (offsets.metres.size() == 0) return parts;
   for (int round = 0; round < 2 * kRounds; ++round) {

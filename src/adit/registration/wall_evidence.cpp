@@ -130,8 +130,9 @@ double log_of_other(const std::vector<StretchSigns>& stretches, const OtherWalls
   for (const NormalNode& of_tunnel : normal_nodes()) {
     std::array<double, 13> shares{};
     for (std::size_t i = 0; i < shares.size(); ++i)
-      shares[i] = kChance + std::min(1.0 - kChance, std::exp(other.mean_log + other.sigma_log * of_tunnel.value +
-                                                             stretch_sigma * normal_nodes()[i].value));
+      shares[i] =
+          kChance + std::min(1.0 - kChance, std::exp(other.mean_log + other.sigma_log * of_tunnel.value +
+                                                     stretch_sigma * normal_nodes()[i].value));
     all.add(of_tunnel.chance, log_of_all(stretches, times, [&](double share, double sigma) {
               double sum = 0.0;
               for (std::size_t i = 0; i < shares.size(); ++i)

@@ -86,8 +86,8 @@ TEST(WallEvidence, WallsMayHaveChangedHoweverMuchTheyDiffer) {
 }
 
 TEST(WallEvidence, AShareBelowHalfCountsAsChance) {
-  EXPECT_NEAR(evidence(found(0.4), where_others_agree(0.65)),
-              evidence(found(0.5), where_others_agree(0.65)), 0.5);
+  EXPECT_NEAR(evidence(found(0.4), where_others_agree(0.65)), evidence(found(0.5), where_others_agree(0.65)),
+              0.5);
 }
 
 TEST(EqualSignShares, UseWhatWasMeasuredOrElseTheSetting) {

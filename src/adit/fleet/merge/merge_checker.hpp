@@ -13,8 +13,8 @@
 /// together with those of the relief of walls (WallOffsets) and the prior, the share of all loops that
 /// speak for this alignment. It is one-sided against copies: scans that differ may not be more than true
 /// places would leave. And every other
-/// hypothesis has to stay behind by log(1 / rival_rate). `MergeChecker::decide` reads in that order; docs/decisions/0010
-/// tells why.
+/// hypothesis has to stay behind by log(1 / rival_rate). `MergeChecker::decide` reads in that order;
+/// docs/decisions/0010 tells why.
 #pragma once
 
 #include <cstdint>

@@ -15,6 +15,9 @@ namespace adit {
 Fields fields_of(SearchConfig& c) {
   Fields fields = {
       {"candidates", &c.candidates, "", 1, 1e6, "candidates that are registered with each peer"},
+      {"stride", &c.stride, "", 1, 1000, "places like every so many of the own keyframes are looked for"},
+      {"ring_keys", &c.ring_keys, "", 1, 100000,
+       "of the peer's keyframes so many, with the nearest ring keys, are compared with each"},
       {"stand_out", &c.stand_out, "", 0, 0,
        "rank candidates by their distance over that to the most similar other place of the own map; "
        "otherwise by their distance"},
