@@ -89,7 +89,7 @@ TEST(EvidenceFit, TheTableHasOldBesideNew) {
   const auto row = [&](std::string_view key) {
     return *std::ranges::find_if(table.rows, [&](const auto& cells) { return cells[0] == key; });
   };
-  EXPECT_EQ(row("things_per_km")[2], "75");
+  EXPECT_EQ(row("things_per_km")[2], "84");
   EXPECT_EQ(row("things_per_km")[3], "31 (200)");
   EXPECT_EQ(row("fleet.copied")[3], "0 (200; < 0.015)");
 }
