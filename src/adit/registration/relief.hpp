@@ -44,6 +44,7 @@ struct PatchOffset {
 /// `min_offset_m` have no sign.
 class WallOffsets {
  public:
+  /// Of `config` the offset that has no sign and the edge of a patch are used.
   explicit WallOffsets(const ReliefConfig& config = {}) : config_(config) {}
   /// What `patch_offsets` found for one pair of scans; may be empty.
   void add(const std::vector<PatchOffset>& of_a_pair);

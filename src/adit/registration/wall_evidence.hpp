@@ -17,6 +17,7 @@ namespace adit {
 struct StretchSigns {
   double num = 0.0;    ///< Of pairs of scans, beyond the first one that saw each patch.
   double equal = 0.0;  ///< Of these, by which the wall is on the same side.
+  /// Of equal signs, 0 to 1; `num` is not 0.
   [[nodiscard]] double share() const { return equal / num; }
 };
 
