@@ -51,7 +51,7 @@ WallOffsets driven(std::uint64_t first, std::uint64_t second, int num_pairs = 8,
   WallOffsets offsets;
   for (int i = 0; i < num_pairs; ++i) {
     const double x = 3.0 * i;
-    const auto noise = static_cast<std::uint64_t>(2 * i + 100);
+    const std::uint64_t noise = 100 + 2 * static_cast<std::uint64_t>(i);
     offsets.add(patch_offsets(seen(first, x, noise), seen(second, x + ahead, noise + 1, bias),
                               Pose::translation_of(ahead, 0.0, 0.0), Pose::translation_of(x, 0.0, 0.0), {}));
   }
