@@ -172,8 +172,8 @@ std::vector<LoopCandidate> Agent::candidates_with(RobotId peer) {
   std::size_t stride = 1;
   if (is_adaptive()) {
     place.max_distance = 1.0;  // ranked, not cut off
-    place.num_candidates = std::max(place.num_candidates, search.ring_keys);
-    stride = static_cast<std::size_t>(search.stride);
+    place.num_candidates = search.ring_keys;
+    stride = static_cast<std::size_t>(search.query_stride);
   }
   if (num_tried() >= static_cast<std::size_t>(config_.max_candidates))
     stride = std::max(stride, kStrideInLargeFleets);

@@ -75,7 +75,7 @@ Fields fields_of(ReliefConfig& c) {
 Fields fields_of(ReliefModel& c) {
   return {
       {"same_share", &c.same_share, "", 0.5, 1.0, "share of equal signs on one wall"},
-      {"same_sigma", &c.same_sigma, "", 0.0, 0.5, "its standard deviation from stretch to stretch"},
+      {"same_sigma", &c.same_sigma, "", 0.0, 0.5, "its standard deviation from one side of 10 m to the next"},
       {"prior_other_share", &c.prior_other_share, "", 0.51, 1.0,
        "share of equal signs on other walls, where the own map has none to measure it on"},
       {"prior_sigma", &c.prior_sigma, "", 0.0, 5.0,
@@ -88,7 +88,7 @@ Fields fields_of(ReliefModel& c) {
       {"prior_stretches", &c.prior_stretches, "", 0.0, 1000.0,
        "number of look-alikes that the prior counts as"},
       {"changed", &c.changed, "", 1e-6, 1.0,
-       "share of the stretches of one tunnel whose walls seem to be others: lined anew, or seen by sensors "
+       "share of the pairs of maps of one tunnel whose walls seem to be others as a whole: seen by sensors "
        "that "
        "err in another way than is estimated"},
       {"lined_anew", &c.lined_anew, "", 0.0, 1.0,

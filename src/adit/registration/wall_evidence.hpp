@@ -72,8 +72,8 @@ class EqualSignShares {
   /// `min_patches` patches were seen. Walls may have been moved between the visits, along some of the
   /// stretches. Walls of one tunnel may seem to be others, at the rate `changed`, and those of another may
   /// be cast in one mould: between log(changed) and log(1 / chance_of_one_mould), nearly. Where the share of
-  /// other walls was not measured, the one believed before counts. `times`: as if so many times the walls
-  /// had been seen, with the same shares.
+  /// other walls was not measured, the one believed before counts. `times`: as if there were so many
+  /// times as many stretches, with the same shares.
   [[nodiscard]] double evidence(const EqualSignShare& found, double times = 1.0) const;
   /// The most that `evidence` can be.
   [[nodiscard]] double most_evidence() const;

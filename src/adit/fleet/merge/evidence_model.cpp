@@ -116,8 +116,10 @@ Fields fields_of(EvidenceModel& c) {
        "of fresh lining to each side"},
       {"thing_reach_m", &c.thing_reach_m, "m", 0.1, 100.0,
        "the same for what may come and go: the length of a vehicle"},
-      {"differing_at_worst", &c.differing_at_worst, "", 0.0, 1.0,
-       "share of the places of one tunnel that differ when first looked at, at worst"},
+      {"differing_at_worst", &c.differing_at_worst, "", 0.5, 1.0,
+       "share of the places of one tunnel that differ when first looked at, at worst; an alignment is given "
+       "up "
+       "by one place more than that, unless a few changes explain it"},
       {"changes_at_worst_per_km", &c.changes_at_worst_per_km, "1/km", 0.1, 1000.0,
        "changes of structure between two visits of one stretch, at worst: doors, blocked, lined or widened "
        "tunnels"},

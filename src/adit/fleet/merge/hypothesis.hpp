@@ -81,7 +81,7 @@ struct Hypothesis {
   void add(const ComparedPlace& place);
   /// What a second look at a place that differed has shown.
   void add_second_look(std::size_t which, const ComparedPlace& place);
-  /// The same if all second looks that are left confirmed what the first ones saw.
+  /// Changes if all second looks that are left confirmed what the first ones saw.
   [[nodiscard]] std::size_t num_changes_unless_explained() const;
   /// Compared places that differ by more than this times the limit.
   [[nodiscard]] std::size_t num_differing(double by_more_than = 1.0) const;

@@ -219,7 +219,7 @@ std::vector<std::size_t> MergeChecker::best_first() const {
 HypothesisCounts MergeChecker::counts(const Hypothesis& h) const {
   const EqualSignShare& walls = h.offsets.counted();
   return {static_cast<std::uint32_t>(h.num_distinctive()),
-          static_cast<std::uint32_t>(h.num_changes()),
+          static_cast<std::uint32_t>(h.num_changes_unless_explained()),
           static_cast<std::uint32_t>(h.things.num()),
           static_cast<std::uint32_t>(walls.num_patches),
           1000.0 * compared_km(h),

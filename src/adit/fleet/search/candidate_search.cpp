@@ -15,9 +15,11 @@ namespace adit {
 Fields fields_of(SearchConfig& c) {
   Fields fields = {
       {"candidates", &c.candidates, "", 1, 1e6, "candidates that are registered with each peer"},
-      {"stride", &c.stride, "", 1, 1000, "places like every so many of the own keyframes are looked for"},
+      {"query_stride", &c.query_stride, "", 1, 1000,
+       "every so many-th own keyframe is looked for, in large fleets every fourth at least"},
       {"ring_keys", &c.ring_keys, "", 1, 100000,
-       "of the peer's keyframes so many, with the nearest ring keys, are compared with each"},
+       "keyframes of the peer, those with the nearest ring keys, that each is compared with; in place of "
+       "loops.place.num_candidates"},
       {"stand_out", &c.stand_out, "", 0, 0,
        "rank candidates by their distance over that to the most similar other place of the own map; "
        "otherwise by their distance"},

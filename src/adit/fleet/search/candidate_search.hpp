@@ -20,7 +20,7 @@ namespace adit {
 /// Which matches of descriptors are registered (CandidateSearch).
 struct SearchConfig {
   int candidates = 64;
-  int stride = 2;
+  int query_stride = 2;
   int ring_keys = 200;
   bool stand_out = true;
   int of_a_place = 3;

@@ -110,8 +110,8 @@ enum class HypothesisOutcome : std::uint8_t {
   accepted,  ///< It joins the maps.
   refuted,   ///< Scans differ at more places than a true alignment leaves.
   unsure,    ///< The best one, without a rival, but with too little evidence or too few loops.
-  rival,     ///< Its evidence and that of another one differ by less than what is needed.
-  behind,    ///< Its evidence is less than that of the best one by at least what is needed.
+  rival,     ///< Its evidence and that of another one differ by less than log(1 / rival_rate).
+  behind,    ///< Its evidence is less than that of the best one by at least log(1 / rival_rate).
 };
 /// accepted, refuted, unsure, rival, behind.
 [[nodiscard]] std::string_view to_string(HypothesisOutcome outcome);
