@@ -74,7 +74,8 @@ struct OffsetPrior {
 struct OffsetParts {
   Eigen::VectorXd by_sensors;  ///< Of each row of the system, metres.
   Eigen::VectorXd left;        ///< What neither sensors nor fits explain: relief and noise, metres.
-  double noise_m = 0.0;        ///< Of one row of `repeated`: a standard deviation; 0 where there is none.
+  double noise_m =
+      0.0;  ///< Standard deviation of one offset of a wall that stays; 0 if no patch is repeated.
 };
 
 /// A robust fit of the errors of both sensors and of each pair's fit with their priors, by Huber's weights

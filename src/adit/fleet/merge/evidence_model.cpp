@@ -20,7 +20,7 @@ struct Origin {
 
 constexpr std::string_view kChosen = "chosen: the rate that is aimed at";
 constexpr std::string_view kOfForty = "1410 false and 130 true hypotheses of 40 worlds (decision 0048)";
-constexpr std::string_view kOfLastWorlds = "hypotheses of 24 field worlds (decision 0063)";
+constexpr std::string_view kOfElevenWorlds = "hypotheses of eleven field worlds (decision 0063)";
 constexpr std::string_view kTrueOfEleven = "38 true pairs of eleven field worlds (decision 0059)";
 constexpr std::string_view kWalksOfFifteen =
     "106 first steps of look-alikes on 15 maps of five tuning worlds (decision 0043)";
@@ -37,7 +37,8 @@ constexpr std::array kOrigins = {
     Origin{"fleet.copy_goes_on", kJudgement, "2026-11-25"},
     Origin{"error_rate", "one wrong merge of some 720 pairs that share nothing (decision 0060)",
            "2026-11-27"},
-    Origin{"rival_rate", kOfLastWorlds, "2026-11-27"},
+    Origin{"rival_rate", "106 true and 1501 false hypotheses of 34 field worlds (decision 0063)",
+           "2026-11-27"},
     Origin{"refusal_rate", kChosen, "2026-11-21"},
     Origin{"usual_share", kOfScans, "2026-11-21"},
     Origin{"allowance", kOfScans, "2026-11-21"},
@@ -49,7 +50,7 @@ constexpr std::array kOrigins = {
     Origin{"same_object_m", kVehicle, "2026-11-24"},
     Origin{"structure_reach_m", kLining, "2026-11-24"},
     Origin{"thing_reach_m", kVehicle, "2026-11-24"},
-    Origin{"differing_at_worst", kOfLastWorlds, "2026-11-27"},
+    Origin{"differing_at_worst", kOfElevenWorlds, "2026-11-27"},
     Origin{"changes_at_worst_per_km", "true pairs of zab and mine worlds (decision 0059)", "2026-11-27"},
     Origin{"things_per_km", "125 true hypotheses of 34 field worlds (decision 0063)", "2026-11-27"},
     Origin{"things_elsewhere_per_km", kOfForty, "2026-11-25"},
@@ -58,15 +59,15 @@ constexpr std::array kOrigins = {
     Origin{"walls.same_sigma", kOfWalls, "2026-11-22"},
     Origin{"walls.prior_other_share", "tuning worlds (decision 0013)", "2026-11-21"},
     Origin{"walls.prior_sigma", kOfWalls, "2026-11-22"},
-    Origin{"walls.stretch_sigma", kOfLastWorlds, "2026-11-27"},
+    Origin{"walls.stretch_sigma", kOfElevenWorlds, "2026-11-27"},
     Origin{"walls.prior_stretches", kOfWalls, "2026-11-22"},
     Origin{"walls.prior_moulded", kJudgement, "2026-11-25"},
     Origin{"walls.moulded", kJudgement, "2026-11-25"},
     Origin{"walls.changed", "3 of some 380 true pairs of 120 worlds (decision 0054)", "2026-11-26"},
-    Origin{"walls.lined_anew", kOfLastWorlds, "2026-11-27"},
-    Origin{"walls.lined_share", kOfLastWorlds, "2026-11-27"},
+    Origin{"walls.lined_anew", kOfElevenWorlds, "2026-11-27"},
+    Origin{"walls.lined_share", kOfElevenWorlds, "2026-11-27"},
     Origin{"walls.few_patches", kOfWalls, "2026-11-22"},
-    Origin{"walls.min_patches", kOfLastWorlds, "2026-11-27"},
+    Origin{"walls.min_patches", kOfElevenWorlds, "2026-11-27"},
 };
 
 Fields fields_of(FleetEvidence& c) {
@@ -117,9 +118,8 @@ Fields fields_of(EvidenceModel& c) {
       {"thing_reach_m", &c.thing_reach_m, "m", 0.1, 100.0,
        "the same for what may come and go: the length of a vehicle"},
       {"differing_at_worst", &c.differing_at_worst, "", 0.5, 1.0,
-       "share of the places of one tunnel that differ when first looked at, at worst; an alignment is given "
-       "up "
-       "by one place more than that, unless a few changes explain it"},
+       "share of the places of one tunnel that differ at the first look, at worst; by one place more an "
+       "alignment is given up, unless a few changes explain it"},
       {"changes_at_worst_per_km", &c.changes_at_worst_per_km, "1/km", 0.1, 1000.0,
        "changes of structure between two visits of one stretch, at worst: doors, blocked, lined or widened "
        "tunnels"},

@@ -81,12 +81,12 @@ struct Hypothesis {
   void add(const ComparedPlace& place);
   /// What a second look at a place that differed has shown.
   void add_second_look(std::size_t which, const ComparedPlace& place);
-  /// Changes if all second looks that are left confirmed what the first ones saw.
-  [[nodiscard]] std::size_t num_changes_unless_explained() const;
   /// Compared places that differ by more than this times the limit.
   [[nodiscard]] std::size_t num_differing(double by_more_than = 1.0) const;
   /// Changes of structure, and places that differ as a whole.
   [[nodiscard]] std::size_t num_changes() const { return structures.num() + num_unlocated; }
+  /// The same if all second looks that are left confirmed what the first ones saw.
+  [[nodiscard]] std::size_t num_changes_unless_explained() const;
   /// Compared places that agree, but for what is explained; and those of them where a displacement would have
   /// shown beside that.
   ///@{

@@ -348,7 +348,7 @@ TEST(MergeChecker, TwoHypothesesWithTheSameSupportDecideNothing) {
   EXPECT_EQ(check.hypotheses[1].outcome, HypothesisOutcome::rival);
 }
 
-// The second one agrees at every place but some, three changes of their own.
+// Every fourth place of the second one differs, by a few changes that each is seen from several.
 MergeCheck against_a_rival(double rival_rate) {
   std::vector<PcmLoop> loops = kTrueLoops;
   for (const std::size_t a : {70U, 120U, 130U}) loops.push_back(loop_at(a, 20.0));
