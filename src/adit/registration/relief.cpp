@@ -78,9 +78,14 @@ std::vector<PatchOffset> patch_offsets(const SearchableSurface& a, const Searcha
     if ((p - a.viewpoint()).norm() > max_range) continue;
     const auto near = a.grid().nearest(p, pairing_distance);
     if (!near) continue;
-    const WallPair pair{a.points().points[near->index], p, a.points().normals[near->index]};
+    const Eigen::Vector3f& normal_a = a.points().normals[near->index];
+    const Eigen::Vector3f normal_b = R * b.points().normals[i];
+    if (normal_a.dot(normal_b) < min_cosine) continue;
+    // Of two points beside one another on a wall that curves, each is off the plane through the other; along
+    // the mean of both normals neither is.
+    const WallPair pair{a.points().points[near->index], p, (normal_a + normal_b).normalized()};
     const float off = pair.normal.dot(p - pair.seen_by_a);
-    if (std::abs(off) > max_offset || (R * b.points().normals[i]).dot(pair.normal) < min_cosine) continue;
+    if (std::abs(off) > max_offset) continue;
     const Eigen::Array3f cell = ((R_map * p + t_map) / patch).array().floor();
     OnPatch& sum = patches[{static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()),
                             static_cast<std::int32_t>(cell.z()), side_of(R_map * pair.normal)}];

@@ -154,6 +154,29 @@ TEST(Relief, OffsetsAreTowardsTheFreeSide) {
   EXPECT_GE(num, 2);
 }
 
+// Rings of points around a tube of that radius, `apart` metres of arc from one another.
+SearchableSurface ringed(double radius, double apart, double first_angle) {
+  OrientedPoints tube;
+  for (double x = -3.0; x < 3.0; x += 0.1)
+    for (double angle = first_angle; angle < 2.0 * std::numbers::pi; angle += apart / radius) {
+      const Eigen::Vector3f inwards(0.0F, -static_cast<float>(std::cos(angle)),
+                                    -static_cast<float>(std::sin(angle)));
+      tube.points.emplace_back(static_cast<float>(x) * Eigen::Vector3f::UnitX() -
+                               static_cast<float>(radius) * inwards);
+      tube.normals.push_back(inwards);
+    }
+  return {tube, Vector3::Zero(), RegistrationConfig().voxel_size};
+}
+
+TEST(Relief, AWallThatCurvesIsNotInFrontOfItself) {
+  constexpr double kNarrow = 2.0;
+  constexpr double kApart = 0.3;
+  const std::vector<PatchOffset> found = patch_offsets(
+      ringed(kNarrow, kApart, 0.0), ringed(kNarrow, kApart, 0.5 * kApart / kNarrow), Pose(), Pose(), {});
+  ASSERT_GT(found.size(), 20U);
+  for (const PatchOffset& one : found) EXPECT_NEAR(one.metres, 0.0, 1e-4);  // off each plane: 5.6 mm
+}
+
 TEST(Relief, PatchesStayWhereTheyAreInTheMap) {
   // The same surface, looked at from a frame that stands elsewhere and is turned round.
   const SeenSurface a = seen(1, 0.0, 1);

@@ -29,7 +29,7 @@ using SensorTerms = Eigen::Matrix<double, kSensorErrors, 1>;
 struct WallPair {
   Eigen::Vector3f seen_by_a;  ///< The point of a nearest to that of b, metres.
   Eigen::Vector3f seen_by_b;  ///< The point of b where the fit puts it, metres.
-  Eigen::Vector3f normal;     ///< Towards free space.
+  Eigen::Vector3f normal;     ///< Of the wall there, a mean of both scans', towards free space; unit length.
 };
 
 /// Adds up the terms of pairs of points of two scans.

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+// Alignments of two maps that compete with one another.
+#include <gtest/gtest.h>
+#include <cmath>
+
+#include "adit/fleet/merge/merge_checker.hpp"
+#include "support/merge_checks.hpp"
+
+namespace adit {
+namespace {
+
+using test::a_check;
+using test::by_places;
+using test::kAgrees;
+using test::kDiffers;
+using test::kSilent;
+using test::kTrueLoops;
+using test::loop_at;
+using test::run;
+using test::T_a_b_true;
+
+TEST(MergeRival, TwoHypothesesWithTheSameSupportDecideNothing) {
+  std::vector<PcmLoop> loops = kTrueLoops;
+  for (const std::size_t a : {70U, 120U, 130U}) loops.push_back(loop_at(a, 20.0));
+  MergeChecker checker = a_check(loops);
+  const MergeCheck check = run(checker, [](const PlannedComparison&) { return kAgrees; });
+  EXPECT_FALSE(check.accepted);
+  EXPECT_NE(check.reason.find("two hypotheses 20 m apart along the tunnel have similar support"),
+            std::string::npos)
+      << check.reason;
+  EXPECT_NE(check.reason.find("drive on until"), std::string::npos) << check.reason;
+  ASSERT_EQ(check.hypotheses.size(), 2U);
+  EXPECT_EQ(check.hypotheses[0].outcome, HypothesisOutcome::rival);
+  EXPECT_EQ(check.hypotheses[1].outcome, HypothesisOutcome::rival);
+}
+
+// Every fourth place of the second one differs, by a few changes that each is seen from several.
+MergeCheck against_a_rival(double rival_rate) {
+  std::vector<PcmLoop> loops = kTrueLoops;
+  for (const std::size_t a : {70U, 120U, 130U}) loops.push_back(loop_at(a, 20.0));
+  MergeCheckConfig config = by_places();
+  config.evidence.rival_rate = rival_rate;
+  MergeChecker checker = a_check(loops, 0.5, config);
+  return run(checker, [](const PlannedComparison& asked) {
+    const double off =
+        (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
+    ComparedPlace place = kAgrees;
+    if (off > 5.0 && asked.theirs % 4 == 0) {
+      place = kDiffers;
+      place.structures.emplace_back(20.0 * std::round(asked.theirs / 50.0), 0.0, 0.0);
+    }
+    return place;
+  });
+}
+
+TEST(MergeRival, ARivalIsOneThatMayBeTrueByTheRateStated) {
+  const MergeCheck ahead = against_a_rival(0.02);
+  ASSERT_EQ(ahead.hypotheses.size(), 2U);
+  const double lead = ahead.evidence - ahead.hypotheses[1].evidence;
+  ASSERT_GT(lead, 1.0);
+  EXPECT_TRUE(against_a_rival(1.01 * std::exp(-lead)).accepted);
+  const MergeCheck rival = against_a_rival(0.99 * std::exp(-lead));
+  EXPECT_FALSE(rival.accepted);
+  EXPECT_EQ(rival.refused_kind, RefusalKind::rival);
+}
+
+TEST(MergeRival, RivalsToEitherSideOfTheFirstAreAsFarApartAsTheyAre) {
+  std::vector<PcmLoop> loops = kTrueLoops;  // refuted; 20 m to each side of it two others agree everywhere
+  loops.push_back(loop_at(95));
+  for (const std::size_t a : {70U, 120U, 130U}) loops.push_back(loop_at(a, 20.0));
+  for (const std::size_t a : {60U, 65U, 75U}) loops.push_back(loop_at(a, -20.0));
+  MergeChecker checker = a_check(loops);
+  const MergeCheck check = run(checker, [](const PlannedComparison& asked) {
+    const double off =
+        (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
+    return off < 5.0 ? kDiffers : kAgrees;
+  });
+  EXPECT_NE(check.reason.find("two hypotheses 40 m apart"), std::string::npos) << check.reason;
+}
+
+TEST(MergeRival, AHypothesisFarBehindTheBestIsNoRival) {
+  std::vector<PcmLoop> loops = kTrueLoops;
+  loops.push_back(loop_at(120, 20.0));
+  MergeChecker checker = a_check(loops);
+  const MergeCheck check = run(checker, [](const PlannedComparison& asked) {
+    const double off =
+        (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
+    return off > 5.0 ? kSilent : kAgrees;
+  });
+  EXPECT_TRUE(check.accepted) << check.reason;
+  ASSERT_EQ(check.hypotheses.size(), 2U);
+  EXPECT_EQ(check.hypotheses[1].outcome, HypothesisOutcome::behind);
+}
+
+}  // namespace
+}  // namespace adit
