@@ -65,8 +65,9 @@ PointArray points_of(const RunSession& s, const std::string& robot, double voxel
   const RobotMap& map = map_of(s, robot);
   const auto& poses = s.session().solution.T_world_keyframe;
   const auto found = poses.find(map.id);
-  return array_of(found == poses.end() ? std::vector<Eigen::Vector3f>{}
-                                       : merged_cloud(map, found->second, voxel).points);
+  const PointCloud cloud = without_gil(
+      [&] { return found == poses.end() ? PointCloud() : merged_cloud(map, found->second, voxel); });
+  return array_of(cloud.points);
 }
 
 struct Pair {
@@ -101,6 +102,7 @@ std::vector<Loop> loops_of_session(const RunSession& s) {
   return loops;
 }
 
+// No other thread looks at the session meanwhile, as writing completes it.
 void save(RunSession& s, const std::filesystem::path& path) {
   OutputDir out = value_of(OutputDir::create(path));
   value_of(write_slam(out.path(), s.run, s.job));
@@ -204,7 +206,7 @@ PointArray saved_points(const OpenedSession& s, const std::string& robot, double
 py::object evaluated(const OpenedSession& s, const std::map<std::string, Path>& truths) {
   std::vector<std::optional<Trajectory>> given(s.saved.robots.size());
   for (const auto& [robot, truth] : truths) given[index_of(s.saved.robots, robot)] = truth.poses;
-  return json(json_of(value_of(evaluate(s.saved, given))));
+  return json(without_gil([&] { return json_of(value_of(evaluate(s.saved, given))); }));
 }
 
 void add_saved_session(py::module_& m) {
@@ -228,7 +230,7 @@ void add_saved_session(py::module_& m) {
   m.def(
       "read_session",
       [](const std::filesystem::path& path) {
-        return OpenedSession{path, value_of(read_session(path))};
+        return without_gil([&] { return OpenedSession{path, value_of(read_session(path))}; });
       },
       py::arg("path"), "A session directory.");
 }

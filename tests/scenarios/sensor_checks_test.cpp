@@ -83,9 +83,26 @@ TEST(SensorChecks, FindNothingWhereASensorIsMissing) {
   EXPECT_TRUE(use_sound_sensors(none).empty());
 }
 
-TEST(SensorChecks, AnImuInGIsLeftOut) {
-  expect_finding(with_imu([](ImuSample& s) { s.specific_force /= kStandardGravity; }), Finding::imu_in_g,
-                 Consequence::left_out, "multiply it by 9.80665");
+// Of what IMUs measure.
+void expect_imu_of(const Recording& recording, const Recording& expected) {
+  ASSERT_EQ(recording.imu.size(), expected.imu.size());
+  for (std::size_t i = 0; i < recording.imu.size(); i += 50) {
+    EXPECT_LT((recording.imu[i].specific_force - expected.imu[i].specific_force).norm(), 1e-9);
+    EXPECT_LT((recording.imu[i].angular_velocity - expected.imu[i].angular_velocity).norm(), 1e-9);
+  }
+  const ImuCovariance& covariance = recording.imu_covariance;
+  EXPECT_LT((covariance.specific_force - expected.imu_covariance.specific_force).norm(), 1e-9);
+  EXPECT_LT((covariance.angular_velocity - expected.imu_covariance.angular_velocity).norm(), 1e-9);
+}
+
+TEST(SensorChecks, AnImuInGIsConverted) {
+  Recording recording = with_imu([](ImuSample& s) { s.specific_force /= kStandardGravity; });
+  recording.imu_covariance.specific_force /= kStandardGravity * kStandardGravity;
+  const SensorFinding found = only_finding(recording);
+  EXPECT_EQ(found.finding, Finding::imu_in_g);
+  EXPECT_EQ(found.consequence, Consequence::repaired);
+  EXPECT_NE(found.sentence.find("multiplied by 9.80665"), std::string::npos) << found.sentence;
+  expect_imu_of(recording, clean_drive());
 }
 
 TEST(SensorChecks, AnImuInAnotherUnitIsLeftOut) {
@@ -110,14 +127,20 @@ TEST(SensorChecks, ABeginWithoutGravityIsLeftOut) {
   EXPECT_EQ(recording.imu.size(), num_samples - 70);
 }
 
-TEST(SensorChecks, RatesInDegreesAreFoundWithAndWithoutWheels) {
+TEST(SensorChecks, RatesInDegreesAreConvertedWithAndWithoutWheels) {
   for (const std::string imu : {"icm-20948", "adis16470"}) {
     ScenarioConfig config;
     config.imu = imu_preset(imu).value();
     config.wheels.on = imu == "icm-20948";
-    Recording recording = drive_with(config);
+    const Recording sound = drive_with(config);
+    Recording recording = sound;
     for (ImuSample& sample : recording.imu) sample.angular_velocity /= kDegree;
-    expect_finding(recording, Finding::imu_in_degrees, Consequence::left_out, "divide them by 57.29578");
+    recording.imu_covariance.angular_velocity /= kDegree * kDegree;
+    const SensorFinding found = only_finding(recording);
+    EXPECT_EQ(found.finding, Finding::imu_in_degrees);
+    EXPECT_EQ(found.consequence, Consequence::repaired);
+    EXPECT_NE(found.sentence.find("they are converted"), std::string::npos) << found.sentence;
+    expect_imu_of(recording, sound);
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "adit/core/angles.hpp"
 #include "adit/core/format.hpp"
+#include "adit/odometry/imu_integral.hpp"
 #include "adit/robot/sensor_checks.hpp"
 
 namespace adit {
@@ -14,7 +15,6 @@ namespace {
 
 using Samples = std::vector<ImuSample>;
 
-constexpr double kGravity = 9.81;           // m/s^2
 constexpr double kGravityTolerance = 1.3;   // m/s^2: biases of cheap sensors, and steady acceleration
 constexpr double kOneG = 0.2;               // how far from 1 a gravity in g may be
 constexpr double kSteepest = 30 * kDegree;  // no floor rises more on average, no mount is off by so little
@@ -83,15 +83,18 @@ std::vector<double> mean_forces(const Samples& imu) {
   return lengths;
 }
 
-// Units of acceleration, by the gravity that is in it most of the time.
-std::optional<SensorFinding> check_gravity(const Samples& imu) {
-  const double gravity = quantile(mean_forces(imu), 0.5);
+// Units of acceleration, by the gravity that is in it most of the time. Repairs g.
+std::optional<SensorFinding> check_gravity(Recording& recording) {
+  const double gravity = quantile(mean_forces(recording.imu), 0.5);
   if (std::abs(gravity - kGravity) < kGravityTolerance) return std::nullopt;
   if (std::abs(gravity - 1.0) < kOneG) {
-    return of(Finding::imu_in_g, Consequence::left_out,
-              format("it is left out, as its acceleration is {:.2f} most of the time: g, not m/s^2; multiply "
-                     "it by 9.80665 in the driver",
-                     gravity));
+    for (ImuSample& sample : recording.imu) sample.specific_force *= kGravity;
+    recording.imu_covariance.specific_force *= kGravity * kGravity;
+    return of(
+        Finding::imu_in_g, Consequence::repaired,
+        format("its acceleration is {:.2f} most of the time: g, not m/s^2, as some LiDARs send it; it is "
+               "multiplied by {}",
+               gravity, kGravity));
   }
   if (gravity < 0.7 * kGravity) {
     return of(Finding::imu_without_gravity, Consequence::left_out,
@@ -220,7 +223,9 @@ double gravity_error(const Samples& imu, double factor) {
   return count == 0 ? 0.0 : std::sqrt(sum / count);
 }
 
-std::optional<SensorFinding> check_rates(const Samples& imu) {
+// Units of rates, by how gravity turns. Repairs degrees where gravity turns by them as it should.
+std::optional<SensorFinding> check_rates(Recording& recording) {
+  Samples& imu = recording.imu;
   constexpr double kMuch = 15.0 * kDegree;  // braking and slopes turn what is felt of gravity by less
   const double as_radians = gravity_error(imu, 1.0);
   const double as_degrees = gravity_error(imu, kDegree);
@@ -228,6 +233,15 @@ std::optional<SensorFinding> check_rates(const Samples& imu) {
       quantile(values_of(imu, [](const ImuSample& s) { return s.angular_velocity.norm(); }), 0.99);
   const bool is_turned_too_far = as_radians > kMuch && as_radians > 3.0 * as_degrees;
   if (!is_turned_too_far && fast < kFastestTurn) return std::nullopt;
+  if (is_turned_too_far && as_degrees < kMuch) {
+    for (ImuSample& sample : imu) sample.angular_velocity *= kDegree;
+    recording.imu_covariance.angular_velocity *= kDegree * kDegree;
+    return of(
+        Finding::imu_in_degrees, Consequence::repaired,
+        format("its rates (up to {:.3g} in 99 % of the samples) are degrees per second: by them gravity "
+               "would turn by {:.0f} degrees in half a second, and it does by {:.1f}; they are converted",
+               fast, as_radians / kDegree, gravity_error(imu, 0.0) / kDegree));
+  }
   return of(
       Finding::imu_in_degrees, Consequence::left_out,
       format("it is left out, as its rates (up to {:.3g} in 99 % of the samples) are degrees per second: "
@@ -249,9 +263,9 @@ std::vector<SensorFinding> check_imu_alone(Recording& recording) {
   if (recording.imu.empty()) return findings;
   keep(check_covariance(recording.imu_covariance.angular_velocity, "angular velocity", kLargestRateSigma));
   keep(check_covariance(recording.imu_covariance.specific_force, "acceleration", kLargestForceSigma));
-  if (!keep(check_gravity(recording.imu)) || !keep(check_start(recording.imu))) return findings;
+  if (!keep(check_gravity(recording)) || !keep(check_start(recording.imu))) return findings;
   if (!keep(check_axes(recording)) || !keep(check_range(recording.imu))) return findings;
-  if (!keep(check_rates(recording.imu))) return findings;
+  if (!keep(check_rates(recording))) return findings;
   keep(check_gaps(recording.imu));
   return findings;
 }

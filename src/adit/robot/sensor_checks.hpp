@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 /// Checks of a recording's wheels and IMU before a map is made of it: units, axes, signs, clocks, gaps.
 ///
-/// What would spoil a map is repaired where the repair is certain (a clock that is late, a value that jumps),
+/// What would spoil a map is repaired where the repair is certain (a unit, a clock that is late, a value that jumps),
 /// and else its sensor is left out. Wheels and IMU are compared with one another; without an IMU, wheels are
 /// compared with some 300 scans. On a drive without curves less can be seen, and slip is left to odometry.
 #pragma once
