@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -17,8 +19,10 @@
 #include "adit/io/scan_folder.hpp"
 #include "adit/io/text.hpp"
 #include "adit/io/trajectory_files.hpp"
+#include "adit/io/tum.hpp"
 #include "adit/robot/full_rate.hpp"
 #include "adit/slam/joint_map.hpp"
+#include "adit/slam/map_covariance.hpp"
 #include "adit/slam/session_mcap.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
@@ -104,6 +108,8 @@ struct ConvertOptions {
   std::string out;
   std::string clouds = "pcd";
   std::string frame;
+  bool covariance = false;
+  bool mesh = false;
   RecordingConfig recording;
 };
 
@@ -135,28 +141,72 @@ Trajectory seen_from(const Pose& T_frame_map, Trajectory trajectory) {
   return trajectory;
 }
 
-/// Every robot's poses at every scan, in OUT with the robot's name before the extension.
-Result<> convert_poses(const PlacedSession& session, const fs::path& out, const std::string& asked_for) {
-  for (const PlacedRobot& robot : session.robots) {
-    const Result<OutputFrame> frame = frame_for(session, robot.map->name, asked_for);
-    if (!frame) return tl::unexpected(frame.error());
-    if (robot.shared_map != 0)
-      print_notes("convert", {format("{} is in another map: its poses are in {}", robot.map->name,
-                                     frame->name.empty() ? "the frame of that one" : frame->name)});
-    fs::path path = out;
-    path.replace_filename(out.stem().string() + "_" + robot.map->name + out.extension().string());
-    const Trajectory poses = at_every_scan(*robot.map, robot.T_world_keyframe);
-    if (Result<> done = write_trajectory(path, seen_from(frame->T_frame_map, poses)); !done) return done;
+/// With the robot's name and `more` before the extension.
+fs::path path_of(const fs::path& out, const std::string& robot, const std::string& more = "") {
+  fs::path path = out;
+  return path.replace_filename(out.stem().string() + "_" + robot + more + out.extension().string());
+}
+
+/// A line for each pose: its stamp and the upper triangle of the covariance of T_map_base, right
+/// perturbation, [translation; rotation]; between keyframes that of the nearest in time.
+std::string covariance_csv(const Trajectory& poses, const std::vector<Keyframe>& keyframes,
+                           const std::vector<Matrix6>& covariances) {
+  std::string text = "stamp_s";
+  constexpr std::array kNames = {"x", "y", "z", "rx", "ry", "rz"};
+  for (std::size_t i = 0; i < kNames.size(); ++i)
+    for (std::size_t j = i; j < kNames.size(); ++j) text += format(",{}_{}", kNames.at(i), kNames.at(j));
+  text += '\n';
+  std::size_t k = 0;
+  for (const StampedPose& pose : poses) {
+    const auto off = [&](std::size_t i) { return std::chrono::abs(keyframes[i].stamp - pose.stamp); };
+    while (k + 1 < keyframes.size() && off(k + 1) <= off(k)) ++k;
+    text += stamp_text(pose.stamp);
+    for (Eigen::Index i = 0; i < 6; ++i)
+      for (Eigen::Index j = i; j < 6; ++j) text += format(",{}", covariances[k](i, j));
+    text += '\n';
+  }
+  return text;
+}
+
+Result<> write_covariances(const PlacedSession& session, const ConvertOptions& options,
+                           const std::vector<Trajectory>& poses) {
+  const Result<MapCovariance> covariance = MapCovariance::of(session, options.in);
+  if (!covariance) return tl::unexpected(covariance.error());
+  for (std::size_t r = 0; r < session.robots.size(); ++r) {
+    const RobotMap& map = *session.robots[r].map;
+    std::vector<Matrix6> covariances;
+    for (std::size_t k = 0; k < map.keyframes.size(); ++k) covariances.push_back(covariance->at({r, k}));
+    fs::path path = path_of(options.out, map.name, "_covariance");
+    if (Result<> done =
+            write_bytes(path.replace_extension(".csv"), covariance_csv(poses[r], map.keyframes, covariances));
+        !done)
+      return done;
   }
   return {};
 }
 
-Result<> convert_map(const PlacedSession& session, const fs::path& out, const MapsConfig& config,
-                     const std::string& asked_for) {
+/// Every robot's poses at every scan, in OUT with the robot's name before the extension.
+Result<> convert_poses(const PlacedSession& session, const ConvertOptions& options) {
+  std::vector<Trajectory> poses;
+  for (const PlacedRobot& robot : session.robots) {
+    const Result<OutputFrame> frame = frame_for(session, robot.map->name, options.frame);
+    if (!frame) return tl::unexpected(frame.error());
+    if (robot.shared_map != 0)
+      print_notes("convert", {format("{} is in another map: its poses are in {}", robot.map->name,
+                                     frame->name.empty() ? "the frame of that one" : frame->name)});
+    poses.push_back(seen_from(frame->T_frame_map, at_every_scan(*robot.map, robot.T_world_keyframe)));
+    if (Result<> done = write_trajectory(path_of(options.out, robot.map->name), poses.back()); !done)
+      return done;
+  }
+  return options.covariance ? write_covariances(session, options, poses) : Result<>{};
+}
+
+Result<> convert_map(const PlacedSession& session, const ConvertOptions& options, const MapsConfig& config) {
+  const fs::path out = options.out;
   const JointMap map = joint_map_of(session);
   OutputFrame frame;
   if (!map.maps.empty() && !is_for_robots(out)) {
-    const Result<OutputFrame> found = frame_for(session, map.maps.front()->name, asked_for);
+    const Result<OutputFrame> found = frame_for(session, map.maps.front()->name, options.frame);
     if (!found) return tl::unexpected(found.error());
     frame = *found;
   }
@@ -167,20 +217,23 @@ Result<> convert_map(const PlacedSession& session, const fs::path& out, const Ma
                            out.string(), frame.name, offset.x(), offset.y(), offset.z()));
   for (const std::string& robot : map.left_out) notes.push_back(robot + " is in another map and left out");
   print_notes("convert", notes);
-  return write_joint_map(out, map, config, frame);
+  return options.mesh ? write_joint_mesh(out, map, config, frame) : write_joint_map(out, map, config, frame);
 }
 
 Result<> convert_session(const ConvertOptions& options, const MapsConfig& config) {
   const bool keeps_frame = kind_of(options.out) == Kind::graph || extension_of(options.out) == ".mcap" ||
                            is_for_robots(options.out);
+  if (options.covariance && kind_of(options.out) != Kind::trajectory)
+    usage_error("--covariance is for poses: .tum, .kitti or .csv");
+  if (options.mesh && extension_of(options.out) != ".ply") usage_error("--mesh is for a .ply");
   if (keeps_frame && options.frame == "target")
     usage_error("graphs and what robots and viewers load (.mcap, .pgm, .bt) are in the map's own frame");
   if (kind_of(options.out) == Kind::graph)
     return convert_graph(fs::path(options.in) / "graph_initial.g2o", fs::path(options.in).filename().string(),
                          options.out);
   return read_placed_session(options.in).and_then([&](const PlacedSession& session) {
-    if (kind_of(options.out) == Kind::trajectory) return convert_poses(session, options.out, options.frame);
-    if (extension_of(options.out) != ".mcap") return convert_map(session, options.out, config, options.frame);
+    if (kind_of(options.out) == Kind::trajectory) return convert_poses(session, options);
+    if (extension_of(options.out) != ".mcap") return convert_map(session, options, config);
     return write_session_mcap(options.out, session, config.voxel_m, config.start_together);
   });
 }
@@ -194,8 +247,9 @@ Result<> convert(const ConvertOptions& options, const Common& common) {
     const Result<RunConfig> config = configured(common);
     return config ? convert_session(options, config->maps) : tl::unexpected(config.error());
   }
-  if (!options.frame.empty())
-    usage_error("--frame is for what is written of a session, and " + in + " is none");
+  if (!options.frame.empty() || options.covariance || options.mesh)
+    usage_error("--frame, --covariance and --mesh are for what is written of a session, and " + in +
+                " is none");
   if (from == Kind::recording && (to == Kind::recording || to == Kind::trajectory)) {
     const Result<RunConfig> config = configured(common);
     if (!config) return tl::unexpected(config.error());
@@ -226,6 +280,9 @@ void add_convert(Program& program) {
       .add_option("--frame", options->frame,
                   "Of clouds and poses of a session: map, or target (the default once it is georeferenced)")
       .one_of({"map", "target"});
+  command.add_flag("--covariance", options->covariance,
+                   "Beside the poses of a session their covariances: NAME_ROBOT_covariance.csv");
+  command.add_flag("--mesh", options->mesh, "The map of a session as a surface of triangles (.ply)");
   add_recording_options(command, options->recording);
   add_truth_topic(command, options->recording);
   command.footer(

@@ -4,11 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "adit/geometry/point_grid.hpp"
 #include "adit/io/bag.hpp"
+#include "adit/io/mesh_files.hpp"
 #include "adit/io/ros_messages.hpp"
 #include "adit/io/tum.hpp"
 #include "support/files.hpp"
@@ -61,6 +66,85 @@ struct NavMap {
   }
 };
 
+/// The session in `folder`/s as a cloud with all fields, and as a surface: both look to where robots drove.
+void expect_fields_and_faces(const std::filesystem::path& folder) {
+  const std::string session = (folder / "s").string();
+  expect_done("convert " + session + " " + (folder / "map.ply").string() + " --set maps.normals=true");
+  const std::string ply = get_file(folder / "map.ply");
+  const std::size_t begin = ply.find("end_header\n") + 11;
+  EXPECT_NE(ply.substr(0, begin).find("float intensity\nproperty float nx"), std::string::npos);
+  std::vector<Eigen::Vector3f> driven;
+  for (const char* robot : {"ahead", "behind"})
+    for (const StampedPose& pose : read_tum(folder / "s" / robot / "trajectory.tum").value())
+      driven.push_back(pose.T_world_body.translation().cast<float>());
+  const PointGrid near_robots(driven, 5.0);
+  const auto looks_to_robots = [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
+    return normal.dot(driven[near_robots.nearest(at)->index] + Eigen::Vector3f(0, 0, 1) - at) > 0.0F;
+  };
+  constexpr std::size_t kRow = 7 * 4 + 2;
+  std::map<int, int> num_of_robot;
+  int num_normals = 0;
+  int num_turned_right = 0;
+  std::vector<Eigen::Vector3f> points;
+  for (std::size_t at = begin; at + kRow <= ply.size(); at += kRow) {
+    std::array<float, 7> numbers{};
+    std::uint16_t robot = 0;
+    std::memcpy(numbers.data(), ply.data() + at, 7 * 4);
+    std::memcpy(&robot, ply.data() + at + 7 * 4, 2);
+    ++num_of_robot[robot];
+    points.emplace_back(numbers[0], numbers[1], numbers[2]);
+    const Eigen::Vector3f normal(numbers[4], numbers[5], numbers[6]);
+    if (normal.isZero()) continue;
+    ASSERT_NEAR(normal.norm(), 1.0F, 1e-4F);
+    ++num_normals;
+    num_turned_right += looks_to_robots(points.back(), normal) ? 1 : 0;
+  }
+  EXPECT_EQ(num_of_robot.size(), 2U);
+  EXPECT_GT(std::min(num_of_robot[1], num_of_robot[2]), 5000);
+  EXPECT_GT(num_normals, 0.9 * static_cast<double>(points.size()));
+  EXPECT_GT(num_turned_right, 0.97 * num_normals);
+
+  expect_done("convert " + session + " " + (folder / "surface.ply").string() + " --mesh");
+  const Result<TriangleMesh> mesh = read_mesh(folder / "surface.ply");
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  const PointGrid cloud(points, 0.3);
+  std::size_t num_near = 0;
+  for (const Eigen::Vector3f& vertex : mesh->vertices) num_near += cloud.nearest(vertex, 0.1F) ? 1 : 0;
+  EXPECT_GT(static_cast<double>(num_near), 0.95 * static_cast<double>(mesh->vertices.size()));
+  std::size_t num_facing = 0;
+  for (const Eigen::Vector3i& triangle : mesh->triangles) {
+    const auto corner = [&](Eigen::Index i) { return mesh->vertices[static_cast<std::size_t>(triangle[i])]; };
+    num_facing += looks_to_robots(corner(0), (corner(1) - corner(0)).cross(corner(2) - corner(0))) ? 1 : 0;
+  }
+  EXPECT_GT(static_cast<double>(num_facing), 0.97 * static_cast<double>(mesh->triangles.size()));
+}
+
+/// The covariances of that robot's poses: one for each pose, growing from the place that is held fixed.
+void expect_covariances(const std::filesystem::path& folder, const std::string& robot) {
+  expect_done("convert " + (folder / "s").string() + " " + (folder / "at.tum").string() + " --covariance");
+  const Trajectory poses = read_tum(folder / ("at_" + robot + ".tum")).value();
+  std::istringstream csv(get_file(folder / ("at_" + robot + "_covariance.csv")));
+  std::string line;
+  ASSERT_TRUE(std::getline(csv, line));
+  EXPECT_TRUE(line.starts_with("stamp_s,x_x,x_y,")) << line;
+  std::vector<double> sigmas;  // across the drive: the third diagonal element is z
+  for (const StampedPose& pose : poses) {
+    ASSERT_TRUE(std::getline(csv, line));
+    std::istringstream row(line);
+    std::string word;
+    std::vector<double> numbers;
+    std::getline(row, word, ',');
+    EXPECT_EQ(word, stamp_text(pose.stamp));
+    while (std::getline(row, word, ',')) numbers.push_back(std::stod(word));
+    ASSERT_EQ(numbers.size(), 21U);
+    for (const std::size_t diagonal : {0U, 6U, 11U, 15U, 18U, 20U}) EXPECT_GE(numbers[diagonal], 0.0);
+    sigmas.push_back(std::sqrt(numbers[11]));
+  }
+  EXPECT_FALSE(std::getline(csv, line)) << "more covariances than poses";
+  EXPECT_LT(sigmas.front(), sigmas.back());
+  EXPECT_LT(sigmas.back(), 0.5);
+}
+
 TEST(MapsOut, ASessionBecomesCloudsAndAGridThatARobotCanDriveOn) {
   const test::TemporaryFolder folder;
   test::put_two_drives(folder.path());
@@ -112,8 +196,13 @@ TEST(MapsOut, ASessionBecomesCloudsAndAGridThatARobotCanDriveOn) {
   expect_done("convert " + (folder / "s.jrl").string() + " " + (folder / "again.g2o").string());
   EXPECT_EQ(info_of(folder / "again.g2o")["edges"], log["edges"]);
 
+  expect_fields_and_faces(folder.path());
+  expect_covariances(folder.path(), "behind");
+
   expect_refused("convert " + session + " " + (folder / "map.dwg").string(), 1,
                  "becomes .las, .pcd, .ply, .pgm");
+  expect_refused("convert " + session + " " + (folder / "map.pcd").string() + " --mesh", 2,
+                 "--mesh is for a .ply");
   std::filesystem::remove(folder / "s/ahead/map.adit");
   expect_refused("convert " + session + " " + (folder / "again.las").string(), 1, "ahead/map.adit");
 }

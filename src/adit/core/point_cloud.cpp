@@ -11,4 +11,14 @@ PointCloud transformed(const Pose& T_a_b, PointCloud cloud_b) {
   return cloud_b;
 }
 
+void append(PointCloud& cloud, const PointCloud& part) {
+  const std::size_t before = cloud.size();
+  cloud.points.insert(cloud.points.end(), part.points.begin(), part.points.end());
+  cloud.time_offsets_ns.clear();
+  if (cloud.intensities.empty() && part.intensities.empty()) return;
+  cloud.intensities.resize(before);
+  cloud.intensities.insert(cloud.intensities.end(), part.intensities.begin(), part.intensities.end());
+  cloud.intensities.resize(cloud.size());
+}
+
 }  // namespace adit

@@ -37,4 +37,8 @@ struct PointCloud {
 /// The same points seen from frame a: p_a = T_a_b * p_b. Intensities and times are kept.
 [[nodiscard]] PointCloud transformed(const Pose& T_a_b, PointCloud cloud_b);
 
+/// Adds the points and intensities of `part`; where only one of both has intensities, the other's are 0.
+/// Times are dropped.
+void append(PointCloud& cloud, const PointCloud& part);
+
 }  // namespace adit

@@ -20,6 +20,22 @@ TEST(PointCloud, TransformedMovesPointsAndKeepsTheRest) {
   EXPECT_TRUE(transformed(Pose::planar(1, 2, 3), {}).empty());
 }
 
+TEST(PointCloud, AppendPutsZerosWhereOnlyOneHasIntensities) {
+  const PointCloud without{{{1.0F, 0.0F, 0.0F}}, {}, {}};
+  const PointCloud with{{{2.0F, 0.0F, 0.0F}, {3.0F, 0.0F, 0.0F}}, {7.0F, 80.0F}, {1, 2}};
+  PointCloud all = without;
+  append(all, with);
+  append(all, without);
+  all.check();
+  EXPECT_EQ(all.size(), 4U);
+  EXPECT_EQ(all.intensities, (std::vector<float>{0.0F, 7.0F, 80.0F, 0.0F}));
+  EXPECT_FALSE(all.has_times());
+  PointCloud none = without;
+  append(none, without);
+  EXPECT_EQ(none.size(), 2U);
+  EXPECT_TRUE(none.intensities.empty());
+}
+
 TEST(PointCloud, CheckWantsOneValueAPointOrNone) {
   PointCloud cloud;
   cloud.points = {{1, 0, 0}, {0, 2, 0}};

@@ -62,10 +62,7 @@ PointCloud merged_cloud(const RobotMap& map, const std::vector<Pose>& T_world_ke
   constexpr std::size_t kKeyframesAtOnce = 32;
   PointCloud merged;
   for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
-    PointCloud cloud;
-    cloud.points = map.keyframes[k].cloud->points;
-    cloud = transformed(T_world_keyframe.at(k), std::move(cloud));
-    merged.points.insert(merged.points.end(), cloud.points.begin(), cloud.points.end());
+    append(merged, transformed(T_world_keyframe.at(k), *map.keyframes[k].cloud));
     if (k % kKeyframesAtOnce == kKeyframesAtOnce - 1) merged = voxel_downsample(merged, voxel);
   }
   return voxel_downsample(merged, voxel);
@@ -75,8 +72,7 @@ PointCloud merged_cloud(const std::vector<std::shared_ptr<const RobotMap>>& maps
                         const std::vector<std::vector<Pose>>& T_world_keyframe, double voxel) {
   PointCloud all;
   for (std::size_t i = 0; i < maps.size(); ++i) {
-    const PointCloud cloud = merged_cloud(*maps[i], T_world_keyframe.at(i), voxel);
-    all.points.insert(all.points.end(), cloud.points.begin(), cloud.points.end());
+    append(all, merged_cloud(*maps[i], T_world_keyframe.at(i), voxel));
   }
   return all.empty() ? all : voxel_downsample(all, voxel);
 }

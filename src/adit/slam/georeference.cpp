@@ -6,34 +6,21 @@
 #include <cmath>
 #include <map>
 #include <utility>
-#include <variant>
 
 #include "adit/core/decompositions.hpp"
 #include "adit/core/format.hpp"
 #include "adit/io/crs.hpp"
-#include "adit/io/g2o.hpp"
 #include "adit/io/tum.hpp"
-#include "adit/posegraph/marginals.hpp"
 #include "adit/registration/control_fit.hpp"
 #include "adit/robot/full_rate.hpp"
 #include "adit/slam/joint_map.hpp"
+#include "adit/slam/map_covariance.hpp"
 
 namespace adit {
 namespace {
 
 using Matrix36 = Eigen::Matrix<double, 3, 6>;
 using Eigen::Index;
-
-/// A keyframe of a session.
-struct Place {
-  std::size_t robot = 0;  // in PlacedSession::robots
-  std::size_t keyframe = 0;
-
-  [[nodiscard]] const Pose& T_map_keyframe(const PlacedSession& session) const {
-    return session.robots[robot].T_world_keyframe[keyframe];
-  }
-  bool operator==(const Place&) const = default;
-};
 
 /// A control point with its mark bound to a keyframe.
 struct BoundControl {
@@ -112,54 +99,6 @@ Result<BoundControl> bind(const PlacedSession& session, const ControlPoint& poin
   return point.mark.stamp ? bind_in_scan(session, point, *robot)
                           : bind_in_map(session, point, session.robots[*robot].shared_map);
 }
-
-/// How the places of a map vary together: the pose graph's covariance, and each keyframe's own noise.
-class MapCovariance {
- public:
-  static Result<MapCovariance> of(const PlacedSession& session, const std::filesystem::path& graph_file) {
-    const Result<G2oFile> file = read_g2o(graph_file);
-    if (!file) return tl::unexpected(file.error());
-    const auto* graph = std::get_if<PoseGraph>(&file->graph);
-    if (graph == nullptr) return fail(graph_file.string() + ": not the graph of a session");
-    Result<Marginals<Pose>> marginals = Marginals<Pose>::compute(*graph);
-    if (!marginals) return fail(graph_file.string(), marginals.error());
-    MapCovariance out(session, std::move(*marginals));
-    for (std::size_t i = 0; i < graph->nodes.size(); ++i) out.nodes_[graph->nodes[i].key] = i;
-    for (const PlacedRobot& robot : session.robots)
-      for (const Keyframe& keyframe : robot.map->keyframes)
-        if (!out.nodes_.contains(graph_key(keyframe.id)))
-          return fail(format("{}: keyframe {} of {} is missing; make the session again", graph_file.string(),
-                             keyframe.id.index, robot.map->name));
-    return out;
-  }
-
-  /// Right perturbation: six rows for each of `rows`, six columns for each of `columns`.
-  [[nodiscard]] Eigen::MatrixXd cross(const std::vector<Place>& rows,
-                                      const std::vector<Place>& columns) const {
-    Eigen::MatrixXd out = marginals_.cross(nodes_of(rows), nodes_of(columns));
-    for (std::size_t r = 0; r < rows.size(); ++r)
-      for (std::size_t c = 0; c < columns.size(); ++c)
-        if (rows[r] == columns[c])
-          out.block<6, 6>(6 * static_cast<Index>(r), 6 * static_cast<Index>(c)) +=
-              session_.robots[rows[r].robot].map->pose_noise[rows[r].keyframe];
-    return out;
-  }
-
- private:
-  MapCovariance(const PlacedSession& session, Marginals<Pose> marginals)
-      : session_(session), marginals_(std::move(marginals)) {}
-
-  [[nodiscard]] std::vector<std::size_t> nodes_of(const std::vector<Place>& places) const {
-    std::vector<std::size_t> out;
-    for (const Place& place : places)
-      out.push_back(nodes_.at(graph_key(session_.robots[place.robot].map->keyframes[place.keyframe].id)));
-    return out;
-  }
-
-  const PlacedSession& session_;
-  Marginals<Pose> marginals_;
-  std::map<std::uint64_t, std::size_t> nodes_;
-};
 
 /// The derivative of a point of a keyframe, in the map, by that keyframe's pose.
 Matrix36 point_jacobian(const Pose& T_map_keyframe, const Vector3& in_keyframe) {
@@ -307,7 +246,7 @@ Result<Georeferencing> georeference(const std::filesystem::path& session_path,
     if (!bound) return fail(format("control point '{}'", point.name), bound.error());
     by_map[bound->shared_map(*session)].push_back(std::move(*bound));
   }
-  const Result<MapCovariance> covariance = MapCovariance::of(*session, session_path / "graph_optimized.g2o");
+  const Result<MapCovariance> covariance = MapCovariance::of(*session, session_path);
   if (!covariance) return tl::unexpected(covariance.error());
   Georeferencing out;
   for (const auto& [shared_map, of_map] : by_map) {

@@ -7,8 +7,12 @@
 #include <functional>
 
 #include "adit/core/format.hpp"
-#include "adit/io/cloud_files.hpp"
+#include "adit/geometry/normals.hpp"
+#include "adit/geometry/point_grid.hpp"
+#include "adit/geometry/surface_mesh.hpp"
 #include "adit/io/crs.hpp"
+#include "adit/io/map_cloud.hpp"
+#include "adit/io/mesh_files.hpp"
 #include "adit/io/occupancy_map.hpp"
 #include "adit/io/text.hpp"
 #include "adit/slam/saved_fleet.hpp"
@@ -16,26 +20,70 @@
 namespace adit {
 namespace {
 
-std::vector<LasPoint> las_points(const JointMap& map, double voxel_m, const Pose& T_frame_map) {
-  std::vector<LasPoint> points;
+/// Of surfaces about a point, from which its normal is estimated.
+double normal_radius(double voxel_m) { return std::max(0.3, 3.0 * voxel_m); }
+
+/// Normals in the frame of the map, turned to the nearest place from which the robot looked.
+std::vector<Eigen::Vector3f> normals_of(const std::vector<Eigen::Vector3f>& points, const RobotMap& map,
+                                        const std::vector<Pose>& T_world_keyframe, double radius) {
+  constexpr double kBetweenKeyframes = 5.0;  // metres, about
+  std::vector<Eigen::Vector3f> viewpoints;
+  for (const Pose& pose : T_world_keyframe) viewpoints.push_back((pose * map.viewpoint).cast<float>());
+  const PointGrid grid(viewpoints, kBetweenKeyframes);
+  std::vector<Eigen::Vector3f> normals = estimate_normals(points, static_cast<float>(radius));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto nearest = grid.nearest(points[i]);
+    if (nearest && normals[i].dot(viewpoints[nearest->index] - points[i]) < 0.0F) normals[i] = -normals[i];
+  }
+  return normals;
+}
+
+/// One point of each robot in a voxel.
+MapCloud map_cloud(const JointMap& map, double voxel_m, bool with_normals) {
+  MapCloud out;
   for (std::size_t i = 0; i < map.maps.size(); ++i) {
     const PointCloud cloud = merged_cloud(*map.maps[i], map.T_world_keyframe[i], voxel_m);
-    for (const Eigen::Vector3f& point : cloud.points)
-      points.push_back(
-          {T_frame_map * point.cast<double>(), 0, static_cast<std::uint16_t>(map.maps[i]->id.value + 1)});
+    append(out.cloud, cloud);
+    out.robots.resize(out.cloud.size(), static_cast<std::uint16_t>(map.maps[i]->id.value + 1));
+    if (!with_normals) continue;
+    const std::vector<Eigen::Vector3f> normals =
+        normals_of(cloud.points, *map.maps[i], map.T_world_keyframe[i], normal_radius(voxel_m));
+    out.normals.insert(out.normals.end(), normals.begin(), normals.end());
+  }
+  return out;
+}
+
+std::vector<LasPoint> las_points(const JointMap& map, double voxel_m, const Pose& T_frame_map) {
+  constexpr float kLargest = 65535.0F;
+  const MapCloud cloud = map_cloud(map, voxel_m, false);
+  const std::vector<float>& intensities = cloud.cloud.intensities;
+  const float strongest = intensities.empty() ? 0.0F : std::ranges::max(intensities);
+  std::vector<LasPoint> points;
+  for (std::size_t i = 0; i < cloud.cloud.size(); ++i) {
+    const float share = strongest > 0.0F ? std::clamp(intensities[i] / strongest, 0.0F, 1.0F) : 0.0F;
+    points.push_back({T_frame_map * cloud.cloud.points[i].cast<double>(),
+                      static_cast<std::uint16_t>(std::lround(kLargest * share)), cloud.robots[i]});
   }
   return points;
 }
 
-Result<> write_joint_cloud(const std::filesystem::path& path, const JointMap& map, double voxel_m,
-                           const OutputFrame& frame) {
-  PointCloud cloud = merged_cloud(map.maps, map.T_world_keyframe, voxel_m);
-  if (frame.name.empty()) return write_cloud(path, cloud);
+/// From the map to where its coordinates are short.
+Pose shifted_from_map(const OutputFrame& frame) {
   const Vector3 offset = float_offset(frame);
-  const Pose T_shifted_map = Pose::translation_of(-offset.x(), -offset.y(), -offset.z()) * frame.T_frame_map;
-  cloud = transformed(T_shifted_map, std::move(cloud));
-  return write_cloud(path, cloud, {},
-                     format("{}; add the offset {} {} {}", frame.name, offset.x(), offset.y(), offset.z()));
+  return Pose::translation_of(-offset.x(), -offset.y(), -offset.z()) * frame.T_frame_map;
+}
+
+Result<> write_joint_cloud(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config,
+                           const OutputFrame& frame) {
+  MapCloud cloud = map_cloud(map, config.voxel_m, config.normals);
+  if (frame.name.empty()) return write_map_cloud(path, cloud);
+  const Pose T_shifted_map = shifted_from_map(frame);
+  cloud.cloud = transformed(T_shifted_map, std::move(cloud.cloud));
+  const Eigen::Matrix3f R = T_shifted_map.rotation_matrix().cast<float>();
+  for (Eigen::Vector3f& normal : cloud.normals) normal = R * normal;
+  const Vector3 offset = float_offset(frame);
+  return write_map_cloud(
+      path, cloud, format("{}; add the offset {} {} {}", frame.name, offset.x(), offset.y(), offset.z()));
 }
 
 std::vector<PlacedScan> scans_of(const JointMap& map) {
@@ -49,11 +97,14 @@ std::vector<PlacedScan> scans_of(const JointMap& map) {
 }  // namespace
 
 Fields fields_of(MapsConfig& c) {
-  Fields fields = {{"voxel_m", &c.voxel_m, "m", 0.01, 10.0,
-                    "one point a voxel of this edge in .las, .pcd, .ply and .mcap"},
-                   {"start_together", &c.start_together, "", 0, 1,
-                    "in an .mcap, whether each robot starts when the first one does, whatever the stamps of "
-                    "its recording"}};
+  Fields fields = {
+      {"voxel_m", &c.voxel_m, "m", 0.01, 10.0,
+       "one point a voxel of this edge in .las, .pcd and .ply (of each robot), and in .mcap"},
+      {"normals", &c.normals, "", 0, 1, "whether .pcd and .ply state the surface's normal at each point"},
+      {"mesh_cell_m", &c.mesh_cell_m, "m", 0.02, 10.0, "of meshes: about how long edges of triangles are"},
+      {"start_together", &c.start_together, "", 0, 1,
+       "in an .mcap, whether each robot starts when the first one does, whatever the stamps of "
+       "its recording"}};
   append(fields, "grid", fields_of(c.grid));
   append(fields, "octomap", fields_of(c.octomap));
   return fields;
@@ -138,10 +189,24 @@ Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map,
       return write_occupancy_map(path, grid);
     });
   if (extension == ".bt") return write_octomap(path, scans_of(map), config.octomap);
-  if (extension == ".pcd" || extension == ".ply") return write_joint_cloud(path, map, config.voxel_m, frame);
+  if (extension == ".pcd" || extension == ".ply") return write_joint_cloud(path, map, config, frame);
   return fail(path.string() +
               ": a session becomes .las, .pcd, .ply, .pgm (with .yaml), .bt, .mcap (with a layout), .tum, "
               ".kitti, .csv, .jrl or .g2o");
+}
+
+Result<> write_joint_mesh(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config,
+                          const OutputFrame& frame) {
+  constexpr double kPointsPerCell = 2.0;  // along an edge, so that each corner sees several
+  if (lower_case(path.extension().string()) != ".ply")
+    return fail(path.string() + ": the mesh of a session becomes .ply");
+  const MapCloud cloud = map_cloud(map, config.mesh_cell_m / kPointsPerCell, true);
+  TriangleMesh mesh = surface_mesh(cloud.cloud.points, cloud.normals, config.mesh_cell_m);
+  if (mesh.empty()) return fail(path.string() + ": the map has too few points for a surface");
+  const Pose T_shifted_map = shifted_from_map(frame);
+  for (Eigen::Vector3f& vertex : mesh.vertices)
+    vertex = (T_shifted_map * vertex.cast<double>()).cast<float>();
+  return write_mesh(path, mesh);
 }
 
 }  // namespace adit

@@ -20,7 +20,9 @@ namespace adit {
 
 /// How a session's map is written in other formats.
 struct MapsConfig {
-  double voxel_m = 0.1;         ///< Of clouds: one point in a cube of this edge, metres.
+  double voxel_m = 0.1;         ///< Of clouds: one point of each robot in a cube of this edge, metres.
+  bool normals = false;         ///< Of .pcd and .ply: with the surface's normal at each point.
+  double mesh_cell_m = 0.2;     ///< Of meshes: about how long edges of triangles are, metres.
   bool start_together = false;  ///< Of .mcap: all robots start when the first one does.
   OccupancyConfig grid;
   OctomapConfig octomap;
@@ -68,10 +70,15 @@ struct JointMap {
 /// Whether maps of that ending are for robots, which know the map by its own frame: .pgm and .bt.
 [[nodiscard]] bool is_for_robots(const std::filesystem::path& path);
 
-/// Writes .las (the source ID is the number of the robot), .pcd or .ply (one point a voxel; less
+/// Writes .las (the source ID is the number of the robot), .pcd or .ply (write_map_cloud; less
 /// `float_offset`, which their header states), .bt (write_octomap) or .pgm with its .yaml (occupancy_of). The
 /// last two are always in the map's own frame. Fails on other endings.
 Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config,
                          const OutputFrame& frame = {});
+
+/// Writes the surface of the map (surface_mesh of its points) as a .ply with faces that look to where robots
+/// drove, less `float_offset`. Fails on other endings, and where too little was seen for a surface.
+Result<> write_joint_mesh(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config,
+                          const OutputFrame& frame = {});
 
 }  // namespace adit

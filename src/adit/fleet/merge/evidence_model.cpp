@@ -28,6 +28,8 @@ constexpr std::string_view kJudgement = "judgement: no site was counted (decisio
 constexpr std::string_view kLining = "half of 20 m of fresh lining (decision 0041)";
 constexpr std::string_view kVehicle = "chosen: the length of a vehicle";
 constexpr std::string_view kOfScans = "pairs of scans of the tuning worlds (decision 0010)";
+constexpr std::string_view kLoopsOfFortyTwo =
+    "167 true and 414 false hypotheses of 42 seen field worlds (decision 0066)";
 constexpr std::string_view kOfWalls = "three tuning worlds (decision 0015)";
 
 constexpr std::array kOrigins = {
@@ -44,6 +46,9 @@ constexpr std::array kOrigins = {
     Origin{"allowance", kOfScans, "2026-11-21"},
     Origin{"least_difference_m2", kOfScans, "2026-11-21"},
     Origin{"gross", kOfScans, "2026-11-25"},
+    Origin{"few_loops", kLoopsOfFortyTwo, "2026-11-27"},
+    Origin{"few_loops_if_true", kLoopsOfFortyTwo, "2026-11-27"},
+    Origin{"few_loops_if_false", kLoopsOfFortyTwo, "2026-11-27"},
     Origin{"prior_chance", kWalksOfFifteen, "2026-11-25"},
     Origin{"prior_steps", kWalksOfFifteen, "2026-11-25"},
     Origin{"sight_m", "chosen: not measured", "2026-11-24"},
@@ -106,6 +111,11 @@ Fields fields_of(EvidenceModel& c) {
        "smaller differences are none, as small as the usual one may be: beams that meet an edge elsewhere"},
       {"gross", &c.gross, "", 1.0, 100.0,
        "what differs by more than this times the limit is no chance meeting of beams and edges"},
+      {"few_loops", &c.few_loops, "", 0.0, 1000.0,
+       "no more loops than this in a hypothesis are few, and speak against it"},
+      {"few_loops_if_true", &c.few_loops_if_true, "", 1e-6, 1.0, "chance that a true alignment has so few"},
+      {"few_loops_if_false", &c.few_loops_if_false, "", 1e-6, 1.0,
+       "the same of a false one that has not been given up"},
       {"prior_chance", &c.prior_chance, "", 0.0, 1.0,
        "prior chance that look-alikes agree at one more place"},
       {"prior_steps", &c.prior_steps, "", 0.0, 1e6, "number of measured places that this prior counts as"},

@@ -36,6 +36,10 @@ struct EvidenceModel {
   double least_difference_m2 = 0.9;
   double gross = 5.0;
 
+  double few_loops = 2.0;
+  double few_loops_if_true = 0.09;
+  double few_loops_if_false = 0.65;
+
   double prior_chance = 0.4;
   double prior_steps = 4.0;
 

@@ -89,7 +89,17 @@ double MergeChecker::evidence(const Hypothesis& h) const {
 }
 
 double MergeChecker::prior_evidence(const Hypothesis& h) const {
-  return h.known_before + std::log(static_cast<double>(h.loops.size()) / static_cast<double>(loops_.size()));
+  const auto num = static_cast<double>(h.loops.size());
+  return h.known_before + std::log(num / static_cast<double>(loops_.size())) + evidence_of_few_loops(h);
+}
+
+/// Where robots shared a tunnel, search seldom finds it once or twice alone. That many loops agree is no
+/// evidence in turn: where tunnels are copies they do, too.
+double MergeChecker::evidence_of_few_loops(const Hypothesis& h) const {
+  const EvidenceModel& model = config_.evidence;
+  return static_cast<double>(h.loops.size()) > model.few_loops
+             ? 0.0
+             : std::min(0.0, std::log(model.few_loops_if_true / model.few_loops_if_false));
 }
 
 double MergeChecker::evidence_of_scans(const Hypothesis& h) const {

@@ -80,6 +80,7 @@ class MergeChecker {
   [[nodiscard]] double least_lead() const;
   [[nodiscard]] double evidence(const Hypothesis& hypothesis) const;
   [[nodiscard]] double prior_evidence(const Hypothesis& hypothesis) const;
+  [[nodiscard]] double evidence_of_few_loops(const Hypothesis& hypothesis) const;
   [[nodiscard]] double evidence_of_scans(const Hypothesis& hypothesis) const;
   /// In the order driven by the own robot.
   [[nodiscard]] double evidence_of_places(const std::vector<TestedPlace>& places) const;

@@ -333,6 +333,20 @@ TEST(MergeChecker, ASmallerSetOfLoopsWinsWhereTheLargestIsRefuted) {
   EXPECT_NEAR(check.hypotheses[1].from_best_m, 30.0, 0.5);
 }
 
+TEST(MergeChecker, FewLoopsSpeakAgainstAnAlignmentAndManyForNone) {
+  const auto evidence_of = [](const std::vector<PcmLoop>& loops, double few) {
+    MergeCheckConfig config = by_places();
+    config.evidence.few_loops = few;
+    MergeChecker checker = a_check(loops, 0.5, config);
+    return run(checker, [](const PlannedComparison&) { return kAgrees; }).evidence;
+  };
+  const EvidenceModel model;
+  const std::vector<PcmLoop> two = {loop_at(80), loop_at(90)};
+  EXPECT_NEAR(evidence_of(two, 2.0) - evidence_of(two, 1.0),
+              std::log(model.few_loops_if_true / model.few_loops_if_false), 1e-9);
+  EXPECT_EQ(evidence_of(kTrueLoops, 2.0), evidence_of(kTrueLoops, 1.0));
+}
+
 TEST(MergeChecker, TellsOfABoundedNumberOfHypotheses) {
   std::vector<PcmLoop> loops;
   for (std::size_t h = 0; h < 20; ++h) loops.push_back(loop_at(190, 4.0 * static_cast<double>(h)));
