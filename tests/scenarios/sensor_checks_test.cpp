@@ -139,9 +139,14 @@ TEST(SensorChecks, RatesInDegreesAreConvertedWithAndWithoutWheels) {
     const SensorFinding found = only_finding(recording);
     EXPECT_EQ(found.finding, Finding::imu_in_degrees);
     EXPECT_EQ(found.consequence, Consequence::repaired);
-    EXPECT_NE(found.sentence.find("they are converted"), std::string::npos) << found.sentence;
+    EXPECT_NE(found.sentence.find("degrees per second and converted"), std::string::npos) << found.sentence;
     expect_imu_of(recording, sound);
   }
+}
+
+TEST(SensorChecks, RatesInNoUnitAtAllAreLeftOut) {
+  expect_finding(with_imu([](ImuSample& s) { s.angular_velocity *= 1e4; }), Finding::imu_in_degrees,
+                 Consequence::left_out, "check the driver's unit");
 }
 
 TEST(SensorChecks, AMountThatDisagreesWithGravityIsFound) {

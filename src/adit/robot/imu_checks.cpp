@@ -223,7 +223,7 @@ double gravity_error(const Samples& imu, double factor) {
   return count == 0 ? 0.0 : std::sqrt(sum / count);
 }
 
-// Units of rates, by how gravity turns. Repairs degrees where gravity turns by them as it should.
+// Units of rates, by how gravity turns, and by how fast robots do. Repairs degrees that agree with both.
 std::optional<SensorFinding> check_rates(Recording& recording) {
   Samples& imu = recording.imu;
   constexpr double kMuch = 15.0 * kDegree;  // braking and slopes turn what is felt of gravity by less
@@ -233,21 +233,18 @@ std::optional<SensorFinding> check_rates(Recording& recording) {
       quantile(values_of(imu, [](const ImuSample& s) { return s.angular_velocity.norm(); }), 0.99);
   const bool is_turned_too_far = as_radians > kMuch && as_radians > 3.0 * as_degrees;
   if (!is_turned_too_far && fast < kFastestTurn) return std::nullopt;
-  if (is_turned_too_far && as_degrees < kMuch) {
-    for (ImuSample& sample : imu) sample.angular_velocity *= kDegree;
-    recording.imu_covariance.angular_velocity *= kDegree * kDegree;
-    return of(
-        Finding::imu_in_degrees, Consequence::repaired,
-        format("its rates (up to {:.3g} in 99 % of the samples) are degrees per second: by them gravity "
-               "would turn by {:.0f} degrees in half a second, and it does by {:.1f}; they are converted",
-               fast, as_radians / kDegree, gravity_error(imu, 0.0) / kDegree));
+  const std::string found = format(
+      "its rates (up to {:.3g} in 99 % of the samples) are not radians per second, by which gravity "
+      "would turn by {:.0f} degrees in half a second, where it does by {:.1f}",
+      fast, as_radians / kDegree, gravity_error(imu, 0.0) / kDegree);
+  if (as_degrees > kMuch || fast * kDegree > kFastestTurn) {
+    return of(Finding::imu_in_degrees, Consequence::left_out,
+              "it is left out: " + found + ", and not degrees per second either; check the driver's unit");
   }
-  return of(
-      Finding::imu_in_degrees, Consequence::left_out,
-      format("it is left out, as its rates (up to {:.3g} in 99 % of the samples) are degrees per second: "
-             "by them gravity would turn by {:.0f} degrees in half a second, and it does by {:.1f}; divide "
-             "them by 57.29578 in the driver",
-             fast, as_radians / kDegree, gravity_error(imu, 0.0) / kDegree));
+  for (ImuSample& sample : imu) sample.angular_velocity *= kDegree;
+  recording.imu_covariance.angular_velocity *= kDegree * kDegree;
+  return of(Finding::imu_in_degrees, Consequence::repaired,
+            found + "; they are taken for degrees per second and converted");
 }
 
 }  // namespace

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: MIT
 /// Checks of a recording's wheels and IMU before a map is made of it: units, axes, signs, clocks, gaps.
 ///
-/// What would spoil a map is repaired where the repair is certain (a unit, a clock that is late, a value that jumps),
-/// and else its sensor is left out. Wheels and IMU are compared with one another; without an IMU, wheels are
-/// compared with some 300 scans. On a drive without curves less can be seen, and slip is left to odometry.
+/// What would spoil a map is repaired where the repair is certain (a unit, a clock that is late, a value that
+/// jumps), and else its sensor is left out. Wheels and IMU are compared with one another; without an IMU,
+/// wheels are compared with some 300 scans. On a drive without curves less can be seen, and slip is left to
+/// odometry.
 #pragma once
 
 #include <string>
@@ -20,7 +21,7 @@ enum class Finding {
   imu_in_g,               ///< Accelerations in units of gravity.
   imu_without_gravity,    ///< Over the whole drive, or at its start.
   imu_wrong_unit,         ///< Neither m/s^2 nor g.
-  imu_in_degrees,         ///< Degrees per second.
+  imu_in_degrees,         ///< Degrees per second, or another unit than radians.
   imu_wrong_axes,         ///< The mount does not agree with gravity.
   imu_saturated,          ///< Values are cut off at the end of the sensor's range.
   imu_gaps,               ///< Silent for more than 0.1 s.
