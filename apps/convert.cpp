@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <sstream>
+#include <utility>
 #include <variant>
 
 #include "adit/core/format.hpp"
@@ -187,18 +189,25 @@ Result<> write_covariances(const PlacedSession& session, const ConvertOptions& o
 
 /// Every robot's poses at every scan, in OUT with the robot's name before the extension.
 Result<> convert_poses(const PlacedSession& session, const ConvertOptions& options) {
-  std::vector<Trajectory> poses;
-  for (const PlacedRobot& robot : session.robots) {
+  std::optional<MapCovariance> covariance;
+  if (options.covariance) {
+    Result<MapCovariance> found = MapCovariance::of(session, options.in);
+    if (!found) return tl::unexpected(found.error());
+    covariance.emplace(std::move(*found));
+  }
+  for (std::size_t r = 0; r < session.robots.size(); ++r) {
+    const PlacedRobot& robot = session.robots[r];
     const Result<OutputFrame> frame = frame_for(session, robot.map->name, options.frame);
     if (!frame) return tl::unexpected(frame.error());
     if (robot.shared_map != 0)
       print_notes("convert", {format("{} is in another map: its poses are in {}", robot.map->name,
                                      frame->name.empty() ? "the frame of that one" : frame->name)});
-    poses.push_back(seen_from(frame->T_frame_map, at_every_scan(*robot.map, robot.T_world_keyframe)));
-    if (Result<> done = write_trajectory(path_of(options.out, robot.map->name), poses.back()); !done)
-      return done;
+    const Trajectory poses = seen_from(frame->T_frame_map, at_every_scan(*robot.map, robot.T_world_keyframe));
+    Result<> done = write_trajectory(path_of(options.out, robot.map->name), poses);
+    if (done && covariance) done = write_covariances(options.out, *robot.map, r, poses, *covariance);
+    if (!done) return done;
   }
-  return options.covariance ? write_covariances(session, options, poses) : Result<>{};
+  return {};
 }
 
 Result<> convert_map(const PlacedSession& session, const ConvertOptions& options, const MapsConfig& config) {

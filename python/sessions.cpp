@@ -102,7 +102,7 @@ std::vector<Loop> loops_of_session(const RunSession& s) {
   return loops;
 }
 
-// No other thread looks at the session meanwhile, as writing completes it.
+// Keeps the GIL, as writing completes the session's provenance; what runs without it reads the rest.
 void save(RunSession& s, const std::filesystem::path& path) {
   OutputDir out = value_of(OutputDir::create(path));
   value_of(write_slam(out.path(), s.run, s.job));

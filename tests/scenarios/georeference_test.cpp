@@ -124,6 +124,8 @@ TEST_F(Georeferenced, MapsAndPosesLeaveInTheTargetFrame) {
              kT_grid_world * truth("ahead").front().T_world_body.translation())
                 .norm(),
             300.0);
+  expect_done("convert " + in("s") + " " + in("surface.ply") + " --mesh");
+  EXPECT_NE(get_file(in("surface.ply")).substr(0, 200).find("add the offset"), std::string::npos);
   expect_done("convert " + in("s") + " " + in("own.ply") + " --frame map");
   EXPECT_EQ(get_file(in("own.ply")).find("comment"), std::string::npos);
   expect_done("convert " + in("s") + " " + in("map.pgm"));

@@ -128,7 +128,7 @@ void expect_covariances(const std::filesystem::path& folder, const std::string& 
   std::string line;
   ASSERT_TRUE(std::getline(csv, line));
   EXPECT_TRUE(line.starts_with("stamp_s,x_x,x_y,")) << line;
-  std::vector<double> sigmas;  // across the drive: the third diagonal element is z
+  std::vector<double> sigmas;  // of z
   for (const StampedPose& pose : poses) {
     ASSERT_TRUE(std::getline(csv, line));
     std::istringstream row(line);

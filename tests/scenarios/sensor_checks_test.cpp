@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "adit/core/angles.hpp"
+#include "adit/core/rng.hpp"
 #include "adit/simulation/scenario.hpp"
 #include "support/findings.hpp"
 #include "support/meshes.hpp"
@@ -145,8 +146,13 @@ TEST(SensorChecks, RatesInDegreesAreConvertedWithAndWithoutWheels) {
 }
 
 TEST(SensorChecks, RatesInNoUnitAtAllAreLeftOut) {
-  expect_finding(with_imu([](ImuSample& s) { s.angular_velocity *= 1e4; }), Finding::imu_in_degrees,
+  expect_finding(with_imu([](ImuSample& s) { s.angular_velocity *= 1e4; }), Finding::imu_wrong_rates,
                  Consequence::left_out, "check the driver's unit");
+  Rng rng(1);  // radians of a gyroscope that shakes are no degrees
+  expect_finding(with_imu([&](ImuSample& s) {
+                   s.angular_velocity += 8.0 * Vector3(rng.normal(), rng.normal(), rng.normal());
+                 }),
+                 Finding::imu_wrong_rates, Consequence::left_out, "check the driver's unit");
 }
 
 TEST(SensorChecks, AMountThatDisagreesWithGravityIsFound) {

@@ -38,7 +38,7 @@ struct PointCloud {
 [[nodiscard]] PointCloud transformed(const Pose& T_a_b, PointCloud cloud_b);
 
 /// Adds the points and intensities of `part`; where only one of both has intensities, the other's are 0.
-/// Times are dropped.
+/// Times are dropped. `part` is another cloud.
 void append(PointCloud& cloud, const PointCloud& part);
 
 }  // namespace adit

@@ -157,11 +157,11 @@ bool is_ply_mesh(const std::filesystem::path& path) {
   return bytes && ply_has_faces(*bytes);
 }
 
-Result<> write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
+Result<> write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, const std::string& comment) {
   if (Result<> checked = check_mesh(mesh); !checked) return fail(path.string(), checked.error());
   if (lower_case(path.extension().string()) != ".ply")
     return fail(path.string() + ": meshes are written as .ply");
-  return write_bytes(path, write_ply(mesh));
+  return write_bytes(path, write_ply(mesh, comment));
 }
 
 }  // namespace adit

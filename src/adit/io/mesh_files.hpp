@@ -33,7 +33,9 @@ Result<TriangleMesh> read_mesh(std::string_view bytes, const std::string& extens
 /// Whether the file is a PLY whose header announces faces; false also when it cannot be read.
 [[nodiscard]] bool is_ply_mesh(const std::filesystem::path& path);
 
-/// Writes a binary PLY; the file appears whole or not at all. The mesh must pass `check_mesh`.
-Result<> write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
+/// Writes a binary PLY; the file appears whole or not at all. The mesh must pass `check_mesh`. `comment`: a
+/// line for people in the header.
+Result<> write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+                    const std::string& comment = "");
 
 }  // namespace adit

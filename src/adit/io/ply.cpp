@@ -366,12 +366,13 @@ std::string write_ply(const PointCloud& cloud, PlyData data, const std::string& 
   return header_text(cloud, data, comment) + rows;
 }
 
-std::string write_ply(const TriangleMesh& mesh) {
+std::string write_ply(const TriangleMesh& mesh, const std::string& comment) {
   std::string bytes = format(
-      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty "
+      "ply\nformat binary_little_endian 1.0\n{}element vertex {}\nproperty float x\nproperty float "
+      "y\nproperty "
       "float z\n"
       "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-      mesh.vertices.size(), mesh.triangles.size());
+      comment.empty() ? "" : "comment " + comment + "\n", mesh.vertices.size(), mesh.triangles.size());
   bytes.reserve(bytes.size() + mesh.vertices.size() * 12 + mesh.triangles.size() * 13);
   for (const Eigen::Vector3f& v : mesh.vertices) {
     for (int axis = 0; axis < 3; ++axis) append_little_endian(bytes, v[axis]);

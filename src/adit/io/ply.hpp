@@ -36,6 +36,6 @@ enum class PlyData { ascii, binary_little_endian, binary_big_endian };
                                     const std::string& comment = "");
 
 /// The bytes of a binary little-endian PLY file with float vertices and triangles as `vertex_indices` lists.
-[[nodiscard]] std::string write_ply(const TriangleMesh& mesh);
+[[nodiscard]] std::string write_ply(const TriangleMesh& mesh, const std::string& comment = "");
 
 }  // namespace adit

@@ -124,7 +124,7 @@ TEST(SensorDifference, SolvesForEachFitAndBothSensorsTogether) {
   Eigen::MatrixXd H = weighted * design;
   H.diagonal() += sigmas.array().square().inverse().matrix();
   const Eigen::VectorXd expected = all.metres - design * H.llt().solve(weighted * all.metres);
-  EXPECT_LT(rms(left - expected), 0.02 * rms(expected));  // the last of the rounds has hardly an effect
+  EXPECT_LT(rms(left - expected), 0.02 * rms(expected));  // the rounds end before it has settled to less
 }
 
 TEST(SensorDifference, ExplainsWhatUnitsDifferIn) {
@@ -132,7 +132,7 @@ TEST(SensorDifference, ExplainsWhatUnitsDifferIn) {
   ASSERT_LT(noise, 0.006);
   for (const RangeErrors& of_b : {RangeErrors{0.03, 0.0}, {-0.02, 0.02}, {0.06, 0.0}, {0.0, 0.03}}) {
     const OffsetSystem offsets = offsets_between({-0.01, 0.0}, of_b);
-    EXPECT_GT(rms(offsets.metres), 1.4 * noise) << of_b.bias;
+    EXPECT_GT(rms(offsets.metres), 1.4 * noise) << of_b.bias;  // there is something to explain
     EXPECT_LT(rms(left_of(offsets)), 1.25 * noise) << of_b.bias;
   }
 }

@@ -67,14 +67,15 @@ std::optional<SensorFinding> check_covariance(Matrix3& covariance, std::string_v
              what, fault));
 }
 
-// The lengths of the mean forces of half a second each: vibration is no part of them.
-std::vector<double> mean_forces(const Samples& imu) {
+// The lengths of the means of half a second each: vibration and noise are no part of them.
+template <class Value>
+std::vector<double> lengths_of_means(const Samples& imu, const Value& value) {
   constexpr Duration kWindow = std::chrono::milliseconds(500);
   std::vector<double> lengths;
   Vector3 sum = Vector3::Zero();
   std::size_t begin = 0;
   for (std::size_t i = 0; i < imu.size(); ++i) {
-    sum += imu[i].specific_force;
+    sum += value(imu[i]);
     if (imu[i].stamp - imu[begin].stamp < kWindow && i + 1 < imu.size()) continue;
     lengths.push_back(sum.norm() / static_cast<double>(i + 1 - begin));
     sum.setZero();
@@ -85,7 +86,8 @@ std::vector<double> mean_forces(const Samples& imu) {
 
 // Units of acceleration, by the gravity that is in it most of the time. Repairs g.
 std::optional<SensorFinding> check_gravity(Recording& recording) {
-  const double gravity = quantile(mean_forces(recording.imu), 0.5);
+  const double gravity =
+      quantile(lengths_of_means(recording.imu, [](const ImuSample& s) { return s.specific_force; }), 0.5);
   if (std::abs(gravity - kGravity) < kGravityTolerance) return std::nullopt;
   if (std::abs(gravity - 1.0) < kOneG) {
     for (ImuSample& sample : recording.imu) sample.specific_force *= kGravity;
@@ -229,17 +231,25 @@ std::optional<SensorFinding> check_rates(Recording& recording) {
   constexpr double kMuch = 15.0 * kDegree;  // braking and slopes turn what is felt of gravity by less
   const double as_radians = gravity_error(imu, 1.0);
   const double as_degrees = gravity_error(imu, kDegree);
-  const double fast =
-      quantile(values_of(imu, [](const ImuSample& s) { return s.angular_velocity.norm(); }), 0.99);
+  const auto rate_of = [](const ImuSample& s) -> const Vector3& { return s.angular_velocity; };
+  const double fast = quantile(values_of(imu, [&](const ImuSample& s) { return rate_of(s).norm(); }), 0.99);
+  const double lasting = quantile(lengths_of_means(imu, rate_of), 0.99);
   const bool is_turned_too_far = as_radians > kMuch && as_radians > 3.0 * as_degrees;
   if (!is_turned_too_far && fast < kFastestTurn) return std::nullopt;
-  const std::string found = format(
-      "its rates (up to {:.3g} in 99 % of the samples) are not radians per second, by which gravity "
-      "would turn by {:.0f} degrees in half a second, where it does by {:.1f}",
-      fast, as_radians / kDegree, gravity_error(imu, 0.0) / kDegree);
-  if (as_degrees > kMuch || fast * kDegree > kFastestTurn) {
-    return of(Finding::imu_in_degrees, Consequence::left_out,
-              "it is left out: " + found + ", and not degrees per second either; check the driver's unit");
+  const std::string found =
+      is_turned_too_far ? format(
+                              "its rates (up to {:.3g} in 99 % of the samples) are not radians per second, "
+                              "by which gravity "
+                              "would turn by {:.0f} degrees in half a second, where it does by {:.1f}",
+                              fast, as_radians / kDegree, gravity_error(imu, 0.0) / kDegree)
+                        : format(
+                              "its rates are up to {:.3g} in 99 % of the samples: no robot turns by so many "
+                              "radians per second",
+                              fast);
+  const bool are_degrees = is_turned_too_far || lasting > kFastestTurn;
+  if (!are_degrees || as_degrees > kMuch || fast * kDegree > kFastestTurn) {
+    return of(Finding::imu_wrong_rates, Consequence::left_out,
+              "it is left out: " + found + ", and they are not clearly degrees; check the driver's unit");
   }
   for (ImuSample& sample : imu) sample.angular_velocity *= kDegree;
   recording.imu_covariance.angular_velocity *= kDegree * kDegree;
@@ -258,11 +268,11 @@ std::vector<SensorFinding> check_imu_alone(Recording& recording) {
     return !recording.imu.empty();
   };
   if (recording.imu.empty()) return findings;
+  if (!keep(check_gravity(recording)) || !keep(check_start(recording.imu))) return findings;
+  if (!keep(check_axes(recording)) || !keep(check_rates(recording))) return findings;
+  if (!keep(check_range(recording.imu))) return findings;
   keep(check_covariance(recording.imu_covariance.angular_velocity, "angular velocity", kLargestRateSigma));
   keep(check_covariance(recording.imu_covariance.specific_force, "acceleration", kLargestForceSigma));
-  if (!keep(check_gravity(recording)) || !keep(check_start(recording.imu))) return findings;
-  if (!keep(check_axes(recording)) || !keep(check_range(recording.imu))) return findings;
-  if (!keep(check_rates(recording))) return findings;
   keep(check_gaps(recording.imu));
   return findings;
 }

@@ -21,7 +21,8 @@ enum class Finding {
   imu_in_g,               ///< Accelerations in units of gravity.
   imu_without_gravity,    ///< Over the whole drive, or at its start.
   imu_wrong_unit,         ///< Neither m/s^2 nor g.
-  imu_in_degrees,         ///< Degrees per second, or another unit than radians.
+  imu_in_degrees,         ///< Degrees per second.
+  imu_wrong_rates,        ///< Neither radians nor clearly degrees per second.
   imu_wrong_axes,         ///< The mount does not agree with gravity.
   imu_saturated,          ///< Values are cut off at the end of the sensor's range.
   imu_gaps,               ///< Silent for more than 0.1 s.

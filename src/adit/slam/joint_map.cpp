@@ -20,8 +20,9 @@
 namespace adit {
 namespace {
 
-/// Of surfaces about a point, from which its normal is estimated.
-double normal_radius(double voxel_m) { return std::max(0.3, 3.0 * voxel_m); }
+/// Of surfaces about a point, from which its normal is estimated: wide enough for the noise of ranges, where
+/// that is not too many points.
+double normal_radius(double voxel_m) { return std::max(3.0 * voxel_m, std::min(0.3, 6.0 * voxel_m)); }
 
 /// Normals in the frame of the map, turned to the nearest place from which the robot looked.
 std::vector<Eigen::Vector3f> normals_of(const std::vector<Eigen::Vector3f>& points, const RobotMap& map,
@@ -53,16 +54,35 @@ MapCloud map_cloud(const JointMap& map, double voxel_m, bool with_normals) {
   return out;
 }
 
-std::vector<LasPoint> las_points(const JointMap& map, double voxel_m, const Pose& T_frame_map) {
+/// In 16 bits, so that nearly all of a robot's points keep what tells them apart: sensors have other scales.
+std::vector<std::uint16_t> in_16_bits(const std::vector<float>& intensities) {
+  constexpr double kNearlyAll = 0.99;
   constexpr float kLargest = 65535.0F;
-  const MapCloud cloud = map_cloud(map, voxel_m, false);
-  const std::vector<float>& intensities = cloud.cloud.intensities;
-  const float strongest = intensities.empty() ? 0.0F : std::ranges::max(intensities);
+  std::vector<float> sorted;
+  for (const float intensity : intensities)
+    if (std::isfinite(intensity)) sorted.push_back(intensity);
+  std::ranges::sort(sorted);
+  const float strong =
+      sorted.empty() ? 0.0F
+                     : sorted[static_cast<std::size_t>(kNearlyAll * static_cast<double>(sorted.size() - 1))];
+  std::vector<std::uint16_t> out;
+  for (const float intensity : intensities) {
+    const float share =
+        strong > 0.0F && std::isfinite(intensity) ? std::clamp(intensity / strong, 0.0F, 1.0F) : 0.0F;
+    out.push_back(static_cast<std::uint16_t>(std::lround(kLargest * share)));
+  }
+  return out;
+}
+
+std::vector<LasPoint> las_points(const JointMap& map, double voxel_m, const Pose& T_frame_map) {
   std::vector<LasPoint> points;
-  for (std::size_t i = 0; i < cloud.cloud.size(); ++i) {
-    const float share = strongest > 0.0F ? std::clamp(intensities[i] / strongest, 0.0F, 1.0F) : 0.0F;
-    points.push_back({T_frame_map * cloud.cloud.points[i].cast<double>(),
-                      static_cast<std::uint16_t>(std::lround(kLargest * share)), cloud.robots[i]});
+  for (std::size_t i = 0; i < map.maps.size(); ++i) {
+    const PointCloud cloud = merged_cloud(*map.maps[i], map.T_world_keyframe[i], voxel_m);
+    const std::vector<std::uint16_t> intensities = in_16_bits(cloud.intensities);
+    for (std::size_t k = 0; k < cloud.size(); ++k)
+      points.push_back({T_frame_map * cloud.points[k].cast<double>(),
+                        intensities.empty() ? std::uint16_t{0} : intensities[k],
+                        static_cast<std::uint16_t>(map.maps[i]->id.value + 1)});
   }
   return points;
 }
@@ -73,6 +93,14 @@ Pose shifted_from_map(const OutputFrame& frame) {
   return Pose::translation_of(-offset.x(), -offset.y(), -offset.z()) * frame.T_frame_map;
 }
 
+/// For headers of files: the frame, and what its coordinates lack; "" for the map's own frame.
+std::string comment_on(const OutputFrame& frame) {
+  const Vector3 offset = float_offset(frame);
+  return frame.name.empty()
+             ? ""
+             : format("{}; add the offset {} {} {}", frame.name, offset.x(), offset.y(), offset.z());
+}
+
 Result<> write_joint_cloud(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config,
                            const OutputFrame& frame) {
   MapCloud cloud = map_cloud(map, config.voxel_m, config.normals);
@@ -81,9 +109,7 @@ Result<> write_joint_cloud(const std::filesystem::path& path, const JointMap& ma
   cloud.cloud = transformed(T_shifted_map, std::move(cloud.cloud));
   const Eigen::Matrix3f R = T_shifted_map.rotation_matrix().cast<float>();
   for (Eigen::Vector3f& normal : cloud.normals) normal = R * normal;
-  const Vector3 offset = float_offset(frame);
-  return write_map_cloud(
-      path, cloud, format("{}; add the offset {} {} {}", frame.name, offset.x(), offset.y(), offset.z()));
+  return write_map_cloud(path, cloud, comment_on(frame));
 }
 
 std::vector<PlacedScan> scans_of(const JointMap& map) {
@@ -101,7 +127,7 @@ Fields fields_of(MapsConfig& c) {
       {"voxel_m", &c.voxel_m, "m", 0.01, 10.0,
        "one point a voxel of this edge in .las, .pcd and .ply (of each robot), and in .mcap"},
       {"normals", &c.normals, "", 0, 1, "whether .pcd and .ply state the surface's normal at each point"},
-      {"mesh_cell_m", &c.mesh_cell_m, "m", 0.02, 10.0, "of meshes: about how long edges of triangles are"},
+      {"mesh_cell_m", &c.mesh_cell_m, "m", 0.05, 10.0, "of meshes: about how long edges of triangles are"},
       {"start_together", &c.start_together, "", 0, 1,
        "in an .mcap, whether each robot starts when the first one does, whatever the stamps of "
        "its recording"}};
@@ -206,7 +232,7 @@ Result<> write_joint_mesh(const std::filesystem::path& path, const JointMap& map
   const Pose T_shifted_map = shifted_from_map(frame);
   for (Eigen::Vector3f& vertex : mesh.vertices)
     vertex = (T_shifted_map * vertex.cast<double>()).cast<float>();
-  return write_mesh(path, mesh);
+  return write_mesh(path, mesh, comment_on(frame));
 }
 
 }  // namespace adit

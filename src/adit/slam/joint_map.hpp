@@ -70,14 +70,16 @@ struct JointMap {
 /// Whether maps of that ending are for robots, which know the map by its own frame: .pgm and .bt.
 [[nodiscard]] bool is_for_robots(const std::filesystem::path& path);
 
-/// Writes .las (the source ID is the number of the robot), .pcd or .ply (write_map_cloud; less
+/// Writes .las (the source ID is the number of the robot; intensities of each robot are scaled to 16 bits, so
+/// that all but the strongest hundredth fit), .pcd or .ply (write_map_cloud; less
 /// `float_offset`, which their header states), .bt (write_octomap) or .pgm with its .yaml (occupancy_of). The
 /// last two are always in the map's own frame. Fails on other endings.
 Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config,
                          const OutputFrame& frame = {});
 
-/// Writes the surface of the map (surface_mesh of its points) as a .ply with faces that look to where robots
-/// drove, less `float_offset`. Fails on other endings, and where too little was seen for a surface.
+/// Writes the surface of the map (surface_mesh of its points) as a .ply with faces that look to the nearest
+/// place of the robot that saw them, less `float_offset`, which the header states. Fails on other endings,
+/// and where too little was seen for a surface.
 Result<> write_joint_mesh(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config,
                           const OutputFrame& frame = {});
 

@@ -8,8 +8,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <utility>
 #include <vector>
 
+#include "adit/core/pose.hpp"
 #include "adit/core/result.hpp"
 #include "adit/posegraph/marginals.hpp"
 #include "adit/slam/joint_map.hpp"
@@ -29,13 +31,15 @@ struct Place {
 };
 
 /// How the places of a map vary together: the covariance of the session's optimized graph, with the first
-/// keyframe of each map held fixed, and each keyframe's own noise. Right perturbation, [translation;
-/// rotation], metres and radians.
+/// keyframe of each map held fixed, and each keyframe's own noise (which that one has, too). Right
+/// perturbation, [translation; rotation], metres and radians.
 class MapCovariance {
  public:
   /// Of the session in that folder, whose graph_optimized.g2o is read. `session` must outlive the result.
   /// Fails where the graph is missing, is singular or is not that of the session.
   static Result<MapCovariance> of(const PlacedSession& session, const std::filesystem::path& folder);
+
+  static Result<MapCovariance> of(const PlacedSession&& session, const std::filesystem::path&) = delete;
 
   /// Six rows for each of `rows`, six columns for each of `columns`.
   [[nodiscard]] Eigen::MatrixXd cross(const std::vector<Place>& rows,

@@ -115,7 +115,7 @@ Fields fields_of(EvidenceModel& c) {
        "no more loops than this in a hypothesis are few, and speak against it"},
       {"few_loops_if_true", &c.few_loops_if_true, "", 1e-6, 1.0, "chance that a true alignment has so few"},
       {"few_loops_if_false", &c.few_loops_if_false, "", 1e-6, 1.0,
-       "the same of a false one that has not been given up"},
+       "chance that a false alignment, not given up, has so few"},
       {"prior_chance", &c.prior_chance, "", 0.0, 1.0,
        "prior chance that look-alikes agree at one more place"},
       {"prior_steps", &c.prior_steps, "", 0.0, 1e6, "number of measured places that this prior counts as"},

@@ -76,8 +76,11 @@ double MergeChecker::compared_km(const Hypothesis& h) const {
   return std::min(by_places, whole) / 1000.0;
 }
 
+/// Whether loops are few does not tell them apart: the true one may be beside a copy that was found more
+/// often.
 bool MergeChecker::are_rivals(const Hypothesis& best, const Hypothesis& other) const {
-  return !differs_too_often(other) && evidence(best) - evidence(other) < least_lead();
+  const auto without_loops = [&](const Hypothesis& h) { return evidence(h) - evidence_of_few_loops(h); };
+  return !differs_too_often(other) && without_loops(best) - without_loops(other) < least_lead();
 }
 
 double MergeChecker::needed() const { return std::log(1.0 / config_.evidence.error_rate); }
