@@ -170,21 +170,12 @@ std::string covariance_csv(const Trajectory& poses, const std::vector<Keyframe>&
   return text;
 }
 
-Result<> write_covariances(const PlacedSession& session, const ConvertOptions& options,
-                           const std::vector<Trajectory>& poses) {
-  const Result<MapCovariance> covariance = MapCovariance::of(session, options.in);
-  if (!covariance) return tl::unexpected(covariance.error());
-  for (std::size_t r = 0; r < session.robots.size(); ++r) {
-    const RobotMap& map = *session.robots[r].map;
-    std::vector<Matrix6> covariances;
-    for (std::size_t k = 0; k < map.keyframes.size(); ++k) covariances.push_back(covariance->at({r, k}));
-    fs::path path = path_of(options.out, map.name, "_covariance");
-    if (Result<> done =
-            write_bytes(path.replace_extension(".csv"), covariance_csv(poses[r], map.keyframes, covariances));
-        !done)
-      return done;
-  }
-  return {};
+Result<> write_covariances(const fs::path& out, const RobotMap& map, std::size_t robot,
+                           const Trajectory& poses, const MapCovariance& covariance) {
+  std::vector<Matrix6> covariances;
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) covariances.push_back(covariance.at({robot, k}));
+  fs::path path = path_of(out, map.name, "_covariance");
+  return write_bytes(path.replace_extension(".csv"), covariance_csv(poses, map.keyframes, covariances));
 }
 
 /// Every robot's poses at every scan, in OUT with the robot's name before the extension.
