@@ -146,6 +146,20 @@ void expect_covariances(const std::filesystem::path& folder, const std::string& 
   EXPECT_LT(sigmas.back(), 0.5);
 }
 
+/// The session in `folder`/s as a JSON Robot Log, and that as a g2o file.
+void expect_graphs(const std::filesystem::path& folder) {
+  const auto info_of = [](const std::filesystem::path& path) {
+    return nlohmann::json::parse(test::run_adit("--json info " + path.string()).out);
+  };
+  expect_done("convert " + (folder / "s").string() + " " + (folder / "s.jrl").string());
+  const nlohmann::json log = info_of(folder / "s.jrl");
+  EXPECT_EQ(log["robots"], nlohmann::json::array({"a", "b"}));
+  for (const char* what : {"nodes", "edges"})
+    EXPECT_EQ(log[what], info_of(folder / "s/graph_initial.g2o")[what]) << what;
+  expect_done("convert " + (folder / "s.jrl").string() + " " + (folder / "again.g2o").string());
+  EXPECT_EQ(info_of(folder / "again.g2o")["edges"], log["edges"]);
+}
+
 TEST(MapsOut, ASessionBecomesCloudsAndAGridThatARobotCanDriveOn) {
   const test::TemporaryFolder folder;
   test::put_two_drives(folder.path());
@@ -186,17 +200,7 @@ TEST(MapsOut, ASessionBecomesCloudsAndAGridThatARobotCanDriveOn) {
               " --set maps.grid.resolution_m=0.05");
   EXPECT_GT(NavMap(folder / "fine.pgm").width, 1.9 * static_cast<double>(map.width));
 
-  const auto info_of = [](const std::filesystem::path& path) {
-    return nlohmann::json::parse(test::run_adit("--json info " + path.string()).out);
-  };
-  expect_done("convert " + session + " " + (folder / "s.jrl").string());
-  const nlohmann::json log = info_of(folder / "s.jrl");
-  EXPECT_EQ(log["robots"], nlohmann::json::array({"a", "b"}));
-  for (const char* what : {"nodes", "edges"})
-    EXPECT_EQ(log[what], info_of(folder / "s/graph_initial.g2o")[what]) << what;
-  expect_done("convert " + (folder / "s.jrl").string() + " " + (folder / "again.g2o").string());
-  EXPECT_EQ(info_of(folder / "again.g2o")["edges"], log["edges"]);
-
+  expect_graphs(folder.path());
   expect_fields_and_faces(folder.path());
   expect_covariances(folder.path(), "behind");
 
