@@ -246,7 +246,8 @@ std::optional<SensorFinding> check_rates(Recording& recording) {
                               "its rates are up to {:.3g} in 99 % of the samples: no robot turns by so many "
                               "radians per second",
                               fast);
-  const bool are_degrees = is_turned_too_far || lasting > kFastestTurn;
+  const bool is_noise = lasting < 0.5 * fast;  // which turns a gravity that is predicted by it, too
+  const bool are_degrees = !is_noise && (is_turned_too_far || lasting > kFastestTurn);
   if (!are_degrees || as_degrees > kMuch || fast * kDegree > kFastestTurn) {
     return of(Finding::imu_wrong_rates, Consequence::left_out,
               "it is left out: " + found + ", and they are not clearly degrees; check the driver's unit");

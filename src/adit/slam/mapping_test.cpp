@@ -58,13 +58,13 @@ TEST(Mapping, ARobotThatCannotBeMappedStopsNoOther) {
 TEST(Mapping, ASensorThatWouldSpoilTheMapIsNotedUnlessChecksAreOff) {
   Recording recording = drive("ada");
   recording.imu_covariance = {Matrix3::Identity() * 1e-6, Matrix3::Identity() * 1e-3};
-  for (int i = 0; i <= 100; ++i)  // in g
-    recording.imu.push_back({Stamp{i * 10'000'000LL}, Vector3::Zero(), Vector3(0, 0, 1)});
+  for (int i = 0; i <= 100; ++i)  // in no unit
+    recording.imu.push_back({Stamp{i * 10'000'000LL}, Vector3::Zero(), Vector3(0, 0, 1000)});
   SlamConfig config;
   const Result<Mapping> checked = map_robots({recording}, config);
   ASSERT_TRUE(checked) << checked.error().message;
   ASSERT_FALSE(checked->notes.empty());
-  EXPECT_TRUE(checked->notes.front().starts_with("ada: imu: it is left out, as its acceleration is 1.00"))
+  EXPECT_TRUE(checked->notes.front().starts_with("ada: imu: it is left out, as its acceleration is 1000"))
       << checked->notes.front();
   config.check_sensors = false;
   const Result<Mapping> unchecked = map_robots({recording}, config);
