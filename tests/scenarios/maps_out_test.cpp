@@ -82,7 +82,8 @@ void expect_fields_and_faces(const std::filesystem::path& folder) {
   const auto looks_to_robots = [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
     return normal.dot(driven[near_robots.nearest(at)->index] + Eigen::Vector3f(0, 0, 1) - at) > 0.0F;
   };
-  constexpr std::size_t kRow = 6 * 4 + 2;
+  constexpr std::size_t kRobot = 24;  // bytes from the start of a row
+  constexpr std::size_t kRow = kRobot + 2;
   std::map<int, int> num_of_robot;
   int num_normals = 0;
   int num_turned_right = 0;
@@ -90,8 +91,8 @@ void expect_fields_and_faces(const std::filesystem::path& folder) {
   for (std::size_t at = begin; at + kRow <= ply.size(); at += kRow) {
     std::array<float, 6> numbers{};
     std::uint16_t robot = 0;
-    std::memcpy(numbers.data(), ply.data() + at, 6 * 4);
-    std::memcpy(&robot, ply.data() + at + 6 * 4, 2);
+    std::memcpy(numbers.data(), &ply[at], kRobot);
+    std::memcpy(&robot, &ply[at + kRobot], 2);
     ++num_of_robot[robot];
     points.emplace_back(numbers[0], numbers[1], numbers[2]);
     const Eigen::Vector3f normal(numbers[3], numbers[4], numbers[5]);

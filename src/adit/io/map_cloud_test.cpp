@@ -46,14 +46,16 @@ TEST(MapCloud, RowsAreAsTheHeaderSays) {
   EXPECT_NE(pcd.find("FIELDS x y z intensity normal_x normal_y normal_z robot\nSIZE 4 4 4 4 4 4 4 2\n"
                      "TYPE F F F F F F F U\nCOUNT 1 1 1 1 1 1 1 1\n"),
             std::string::npos);
-  constexpr std::size_t kRow = 7 * 4 + 2;
+  constexpr std::size_t kNormalY = 20;  // bytes from the start of a row
+  constexpr std::size_t kRobot = 28;
+  constexpr std::size_t kRow = kRobot + 2;
   for (const std::string& bytes : {ply, pcd}) {
     const std::string last = bytes.substr(bytes.size() - kRow);
     float normal_y = 0.0F;
-    std::memcpy(&normal_y, last.data() + 5 * 4, 4);
+    std::memcpy(&normal_y, &last[kNormalY], 4);
     EXPECT_EQ(normal_y, -1.0F);
     std::uint16_t robot = 0;
-    std::memcpy(&robot, last.data() + 7 * 4, 2);
+    std::memcpy(&robot, &last[kRobot], 2);
     EXPECT_EQ(robot, 300);
   }
 }
