@@ -149,7 +149,7 @@ TEST(MarkSlips, MarksThePathFromTheKeyframeBeforeToTheOneAfter) {
   const auto map = std::make_shared<RobotMap>();
   map->name = "a";
   for (int k = 0; k < 5; ++k) {
-    map->keyframes.push_back({{{0}, static_cast<std::uint32_t>(k)}, Stamp{10 * k}, Pose(), nullptr});
+    map->keyframes.push_back({{{0}, static_cast<std::uint32_t>(k)}, Stamp{10LL * k}, Pose(), nullptr});
     drawn.robots[1].path.emplace_back(k, 0.0, 0.0);
   }
   map->slips = {{Stamp{12}, Stamp{28}, 1.0},
