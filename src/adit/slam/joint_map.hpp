@@ -20,7 +20,7 @@ namespace adit {
 
 /// How a session's map is written in other formats.
 struct MapsConfig {
-  double voxel_m = 0.1;         ///< Of clouds: one point of each robot in a cube of this edge, metres.
+  double voxel_m = 0.1;         ///< Of clouds: one point a cube of this edge, metres.
   bool normals = false;         ///< Of .pcd and .ply: with the surface's normal at each point.
   double mesh_cell_m = 0.2;     ///< Of meshes: about how long edges of triangles are, metres.
   bool start_together = false;  ///< Of .mcap: all robots start when the first one does.

@@ -140,9 +140,10 @@ std::optional<std::size_t> MergeChecker::to_go_on_with() const {
   double best_finished = -std::numeric_limits<double>::infinity();
   for (const Hypothesis& h : hypotheses_)
     if (h.is_finished() && !differs_too_often(h))
-      best_finished = std::max(best_finished, evidence_of_scans(h));
+      best_finished = std::max(best_finished, evidence_of_scans(h) - evidence_of_few_loops(h));
   const auto can_no_longer_be_a_rival = [&](const Hypothesis& h) {
-    return std::isfinite(best_finished) && most_evidence_of_scans(h) < best_finished - least_lead();
+    return std::isfinite(best_finished) &&
+           most_evidence_of_scans(h) - evidence_of_few_loops(h) < best_finished - least_lead();
   };
   // Ranked by what needs no measuring of the own map: many a check ends with all refuted.
   const auto share_differing = [](const Hypothesis& h) {

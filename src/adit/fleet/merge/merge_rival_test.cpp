@@ -79,6 +79,22 @@ TEST(MergeRival, RivalsToEitherSideOfTheFirstAreAsFarApartAsTheyAre) {
   EXPECT_NE(check.reason.find("two hypotheses 40 m apart"), std::string::npos) << check.reason;
 }
 
+TEST(MergeRival, ThatLoopsAreFewDoesNotDecideBetweenTwo) {
+  std::vector<PcmLoop> loops = kTrueLoops;
+  for (const std::size_t a : {70U, 120U}) loops.push_back(loop_at(a, 20.0));
+  const auto checked = [&](double rival_rate) {
+    MergeCheckConfig config = by_places();
+    config.evidence.rival_rate = rival_rate;
+    MergeChecker checker = a_check(loops, 0.5, config);
+    return run(checker, [](const PlannedComparison&) { return kAgrees; });
+  };
+  const MergeCheck first = checked(0.02);
+  ASSERT_EQ(first.hypotheses.size(), 2U);
+  // The lead is larger by a half than what is needed, and few loops make two of it.
+  const double lead = first.evidence - first.hypotheses[1].evidence;
+  EXPECT_EQ(checked(std::exp(0.5 - lead)).refused_kind, RefusalKind::rival);
+}
+
 TEST(MergeRival, AHypothesisFarBehindTheBestIsNoRival) {
   std::vector<PcmLoop> loops = kTrueLoops;
   loops.push_back(loop_at(120, 20.0));
