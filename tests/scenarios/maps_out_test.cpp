@@ -75,9 +75,10 @@ void expect_fields_and_faces(const std::filesystem::path& folder) {
   // The simulated sensor of ideal conditions has no intensities.
   EXPECT_NE(ply.substr(0, begin).find("float z\nproperty float nx\n"), std::string::npos);
   std::vector<Eigen::Vector3f> driven;
-  for (const char* robot : {"ahead", "behind"})
-    for (const StampedPose& pose : read_tum(folder / "s" / robot / "trajectory.tum").value())
-      driven.push_back(pose.T_world_body.translation().cast<float>());
+  for (const char* robot : {"ahead", "behind"}) {
+    const Trajectory poses = read_tum(folder / "s" / robot / "trajectory.tum").value();
+    for (const StampedPose& pose : poses) driven.push_back(pose.T_world_body.translation().cast<float>());
+  }
   const PointGrid near_robots(driven, 5.0);
   const auto looks_to_robots = [&](const Eigen::Vector3f& at, const Eigen::Vector3f& normal) {
     return normal.dot(driven[near_robots.nearest(at)->index] + Eigen::Vector3f(0, 0, 1) - at) > 0.0F;
