@@ -28,6 +28,16 @@ Stretch stretch_of(const WallPatch& patch, double patch_m) {
   return {cell(patch[0]), cell(patch[1]), patch[3]};
 }
 
+/// For each offset the number of its stretch, counted from 0.
+std::vector<std::size_t> stretches_of(const std::vector<PatchOffset>& offsets, double patch_m) {
+  std::map<Stretch, std::size_t> known;
+  std::vector<std::size_t> out;
+  out.reserve(offsets.size());
+  for (const PatchOffset& offset : offsets)
+    out.push_back(known.emplace(stretch_of(offset.patch, patch_m), known.size()).first->second);
+  return out;
+}
+
 /// `stretches` are not empty.
 double share_of(const std::vector<StretchSigns>& stretches) {
   StretchSigns all;
@@ -110,7 +120,12 @@ void WallOffsets::add(const std::vector<PatchOffset>& of_a_pair) {
 
 OffsetParts WallOffsets::parts() const {
   const Eigen::Index num = std::ssize(offsets_);
-  OffsetSystem system{Eigen::VectorXd(num), {num, kSensorErrors}, {num, 6}, first_of_pair_, {}};
+  OffsetSystem system{Eigen::VectorXd(num),
+                      {num, kSensorErrors},
+                      {num, 6},
+                      first_of_pair_,
+                      {},
+                      stretches_of(offsets_, config_.patch_m)};
   std::map<WallPatch, Eigen::Index> last;
   for (Eigen::Index i = 0; i < num; ++i) {
     const PatchOffset& offset = offsets_[static_cast<std::size_t>(i)];
@@ -143,7 +158,7 @@ EqualSignShare WallOffsets::count() const {
   std::map<WallPatch, Sides> patches;
   for (std::size_t i = 0; i < offsets_.size(); ++i) {
     const double metres = found.left[static_cast<Eigen::Index>(i)];
-    if (std::abs(metres) <= config_.min_offset_m) continue;
+    if (std::abs(metres) <= config_.min_offset_m || found.is_moved[i]) continue;
     Sides& sides = patches[offsets_[i].patch];
     ++(metres > 0.0 ? sides.num_in_front : sides.num_behind);
   }

@@ -39,8 +39,8 @@ struct PatchOffset {
 
 /// Offsets from several pairs of scans, no scan in two pairs. For each patch seen by two or more pairs it
 /// counts the pairs whose offsets have equal sign. Noise gives equal signs as often as not, whatever the
-/// number of pairs. What the sensors and the fits explain is taken off before, and offsets of less than
-/// `min_offset_m` have no sign.
+/// number of pairs. What the sensors and the fits explain is taken off before; offsets of less than
+/// `min_offset_m` have no sign, and stretches that were moved as a whole do not count (decision 0067).
 class WallOffsets {
  public:
   /// Of `config` the offset that has no sign and the edge of a patch are used.

@@ -29,14 +29,20 @@ double rock(std::uint64_t tunnel, double x, double angle) {
   return kRelief * out / std::sqrt(2.0);
 }
 
+// Shotcrete as thick as `metres` on one wall, along 10 m.
+double lining(double metres, double x, double angle) {
+  return x > 5.0 && x < 15.0 && std::abs(angle) < 0.6 ? metres : 0.0;
+}
+
 // The tunnel seen by a LiDAR on its axis, at x, whose ranges are too long by `bias`.
-SeenSurface seen(std::uint64_t tunnel, double x, std::uint64_t noise, double bias = 0.0) {
+SeenSurface seen(std::uint64_t tunnel, double x, std::uint64_t noise, double bias = 0.0, double lined = 0.0) {
   Rng rng(noise);
   PointCloud cloud;
   for (int i = 0; i < 6000; ++i) {
     const double along = rng.uniform(-12.0, 12.0);
     const double angle = rng.uniform(-std::numbers::pi, std::numbers::pi);
-    const double r = kRadius + rock(tunnel, x + along, angle) + kPointNoise * rng.normal();
+    const double r = kRadius + rock(tunnel, x + along, angle) - lining(lined, x + along, angle) +
+                     kPointNoise * rng.normal();
     cloud.points.emplace_back(static_cast<float>(along), static_cast<float>(r * std::cos(angle)),
                               static_cast<float>(r * std::sin(angle)));
     cloud.points.back() += static_cast<float>(bias) * cloud.points.back().normalized();
@@ -45,14 +51,15 @@ SeenSurface seen(std::uint64_t tunnel, double x, std::uint64_t noise, double bia
 }
 
 // One robot drove through `first`, the other through `second`, which coincide except for the rock; the second
-// robot stands `ahead` metres of the first each time, and its ranges are too long by `bias`.
+// robot stands `ahead` metres of the first each time, and its ranges are too long by `bias`; when it came,
+// one wall was `lined`.
 WallOffsets driven(std::uint64_t first, std::uint64_t second, int num_pairs = 8, double ahead = 1.0,
-                   double bias = 0.0) {
+                   double bias = 0.0, double lined = 0.0) {
   WallOffsets offsets;
   for (int i = 0; i < num_pairs; ++i) {
     const double x = 3.0 * i;
     const std::uint64_t noise = 100 + 2 * static_cast<std::uint64_t>(i);
-    offsets.add(patch_offsets(seen(first, x, noise), seen(second, x + ahead, noise + 1, bias),
+    offsets.add(patch_offsets(seen(first, x, noise), seen(second, x + ahead, noise + 1, bias, lined),
                               Pose::translation_of(ahead, 0.0, 0.0), Pose::translation_of(x, 0.0, 0.0), {}));
   }
   return offsets;
@@ -119,6 +126,15 @@ TEST(Relief, TheShareIsTheSameForFewPairsOfScansAndForMany) {
 TEST(Relief, SpeaksForOneTunnelAndAgainstTheOther) {
   EXPECT_GT(evidence_of(driven(1, 1, 24), of_rough_walls()), 3.0);
   EXPECT_LT(evidence_of(driven(1, 11, 24), of_rough_walls()), -3.0);
+}
+
+TEST(Relief, AWallThatWasLinedIsNoOtherTunnel) {
+  const EqualSignShare before = driven(1, 1).counted();
+  for (const double lined : {0.06, 0.12}) {
+    const EqualSignShare after = driven(1, 1, 8, 1.0, 0.0, lined).counted();
+    EXPECT_LT(after.share, before.share + 0.03) << lined;
+    EXPECT_GT(after.num_patches, before.num_patches / 2) << lined;
+  }
 }
 
 TEST(Relief, OnePairOfScansSaysNothing) {
@@ -225,6 +241,33 @@ TEST(WallOffsets, EverySideOfTenMetresHasItsShare) {
     EXPECT_NEAR(counted.stretches[i].num, 100.0, 1e-9);
     EXPECT_NEAR(counted.stretches[i].share(), i < 2 ? 1.0 : 0.5, 1e-9);
   }
+}
+
+// Twelve stretches seen four times, each `off` by what the function says.
+template <class Off>
+EqualSignShare twelve_stretches(const Off& off) {
+  Rng rng(5);
+  WallOffsets offsets;
+  for (int pair = 0; pair < 4; ++pair) {
+    std::vector<PatchOffset> seen;
+    for (int i = 0; i < 120; ++i)
+      for (int k = 0; k < 3; ++k) seen.push_back(offset_of({i, 0, k, 0}, off(i / 10) + 0.008 * rng.normal()));
+    offsets.add(seen);
+  }
+  return offsets.counted();
+}
+
+TEST(WallOffsets, AStretchThatWasMovedDoesNotCount) {
+  const EqualSignShare counted = twelve_stretches([](int stretch) { return stretch == 4 ? 0.03 : 0.0; });
+  EXPECT_LT(counted.num_patches, 331U);
+  EXPECT_EQ(counted.stretches.size(), 11U);
+  EXPECT_NEAR(counted.share, 0.5, 0.03);
+}
+
+TEST(WallOffsets, StretchesThatAllDifferWereNotMoved) {
+  const EqualSignShare counted = twelve_stretches([](int stretch) { return 0.006 * (stretch % 5 - 2); });
+  EXPECT_EQ(counted.stretches.size(), 12U);
+  EXPECT_GT(counted.share, 0.6);
 }
 
 TEST(WallOffsets, SmallOffsetsHaveNoSign) {

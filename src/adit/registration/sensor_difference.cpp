@@ -108,6 +108,39 @@ double noise_of(const Eigen::VectorXd& left, const std::vector<std::array<Eigen:
   return robust_sigma(apart / std::numbers::sqrt2);
 }
 
+constexpr double kTukey = 4.685;  // sigmas: 95 % efficient where errors are normal
+
+/// Beyond kTukey it is 0: walls that were moved are nothing.
+double tukey_weight(double sigmas) { return std::pow(std::max(0.0, 1.0 - std::pow(sigmas / kTukey, 2)), 2); }
+
+/// For each stretch what its rows weigh, by how far its mean is off among the means of all.
+std::vector<double> weights_of_stretches(const Eigen::VectorXd& left,
+                                         const std::vector<std::size_t>& stretches, double noise_m) {
+  constexpr std::size_t kFewest = 8;    // stretches, or rows of one: fewer do not show how far means are off
+  constexpr double kLeast = 1.0 / 3.0;  // of the noise: smaller means do not change signs
+  struct Sum {
+    double metres = 0.0;
+    double num = 0.0;
+    [[nodiscard]] double mean() const { return metres / num; }
+  };
+  std::vector<Sum> sums(stretches.empty() ? 0 : 1 + std::ranges::max(stretches));
+  for (std::size_t row = 0; row < stretches.size(); ++row) {
+    sums[stretches[row]].metres += left[static_cast<Eigen::Index>(row)];
+    ++sums[stretches[row]].num;
+  }
+  std::vector<double> means;
+  for (const Sum& sum : sums)
+    if (sum.num >= static_cast<double>(kFewest)) means.push_back(sum.mean());
+  std::vector<double> weights(sums.size(), 1.0);
+  if (means.size() < kFewest) return weights;
+  const double spread = robust_sigma(Eigen::Map<const Eigen::VectorXd>(means.data(), std::ssize(means)));
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const double of_mean = std::hypot(spread, noise_m / std::sqrt(sums[i].num));
+    weights[i] = tukey_weight(sums[i].mean() / std::max(kLeast * noise_m, of_mean));
+  }
+  return weights;
+}
+
 }  // namespace
 
 SensorTermsOf::SensorTermsOf(const SearchableSurface& a, const SearchableSurface& b, const Pose& T_a_b)
@@ -130,20 +163,28 @@ Vector6 motion_terms(const WallPair& pair) {
 
 OffsetParts taken_apart(const OffsetSystem& offsets, const OffsetPrior& prior) {
   constexpr int kRounds = 5;
-  constexpr double kHuber = 1.345;  // sigmas: 95 % efficient where errors are normal,
-  constexpr double kTukey = 4.685;  // and so is the biweight, to which walls that were moved are nothing
+  constexpr double kHuber = 1.345;  // sigmas, as efficient as kTukey
   constexpr std::size_t kFew = 20;  // repeated patches, whose median says little
   OffsetParts parts{Eigen::VectorXd::Zero(offsets.metres.size()), offsets.metres};
   if (offsets.metres.size() == 0) return parts;
+  std::vector<double> of_stretches;
   for (int round = 0; round < 2 * kRounds; ++round) {
     const double sigma =
         offsets.repeated.size() > kFew ? noise_of(parts.left, offsets.repeated) : robust_sigma(parts.left);
     const Eigen::ArrayXd off = parts.left.array().abs() / sigma;
     const Eigen::ArrayXd huber = (kHuber * off.max(1e-12).inverse()).min(1.0);
-    const Eigen::ArrayXd tukey = (1.0 - (off / kTukey).square()).max(0.0).square();
-    parts = solved(offsets, (round < kRounds ? huber : tukey) / (sigma * sigma), prior);
+    Eigen::VectorXd weights = (round < kRounds ? huber : off.unaryExpr(&tukey_weight)) / (sigma * sigma);
+    // At first all is off by what the fit will explain.
+    if (round > 0) of_stretches = weights_of_stretches(parts.left, offsets.stretches, sigma);
+    if (!of_stretches.empty())
+      for (Eigen::Index row = 0; row < weights.size(); ++row)
+        weights[row] *= of_stretches[offsets.stretches[static_cast<std::size_t>(row)]];
+    parts = solved(offsets, weights, prior);
   }
   parts.noise_m = noise_of(parts.left, offsets.repeated);
+  parts.is_moved.assign(static_cast<std::size_t>(offsets.metres.size()), false);
+  for (std::size_t row = 0; row < offsets.stretches.size(); ++row)
+    parts.is_moved[row] = of_stretches[offsets.stretches[row]] == 0.0;
   return parts;
 }
 

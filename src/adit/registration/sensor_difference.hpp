@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "adit/core/pose.hpp"
@@ -58,6 +59,8 @@ struct OffsetSystem {
   std::vector<Eigen::Index> first_of_pair;  ///< Rows of one pair of scans follow one another.
   /// Two rows of one patch each: noise alone tells them apart, wherever its wall is.
   std::vector<std::array<Eigen::Index, 2>> repeated = {};
+  /// For each row the stretch of wall that it lies on, counted from 0; empty: none is known.
+  std::vector<std::size_t> stretches = {};
 };
 
 /// Standard deviations: of range by sensor, what data sheets allow; of the fit of two scans, chosen, as half
@@ -76,12 +79,15 @@ struct OffsetParts {
   Eigen::VectorXd left;        ///< What neither sensors nor fits explain: relief and noise, metres.
   double noise_m =
       0.0;  ///< Standard deviation of one offset of a wall that stays; 0 if no patch is repeated.
+  /// Of each row whether its stretch was moved as a whole: it is far more off than the others.
+  std::vector<bool> is_moved = {};
 };
 
 /// A robust fit of the errors of both sensors and of each pair's fit with their priors, by Huber's weights
 /// and then by Tukey's (Beaton and Tukey, "The fitting of power series", 1974), to which walls that were
 /// moved between two visits are nothing. Residuals are measured by the noise of repeated patches, so that
-/// moved walls do not make the scale, and where few are repeated by their own median.
+/// moved walls do not make the scale, and where few are repeated by their own median. A stretch is moved if
+/// its mean is an outlier among the means of all, by Tukey's weight; it then weighs nothing.
 [[nodiscard]] OffsetParts taken_apart(const OffsetSystem& offsets, const OffsetPrior& prior);
 
 }  // namespace adit
