@@ -4,13 +4,17 @@
 // (tests/conformance/README.md).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "adit/evaluation/ate.hpp"
+#include "adit/evaluation/rpe.hpp"
 #include "adit/io/recording_files.hpp"
 #include "adit/io/robot_map_file.hpp"
+#include "adit/io/tum.hpp"
 #include "support/files.hpp"
 #include "support/program.hpp"
 
@@ -66,6 +70,29 @@ TEST(Conformance, ThePointsOfOneTubeComeOutOfEveryStorage) {
     for (std::size_t i = 0; i < recording->wheel.size(); ++i)
       EXPECT_NEAR(recording->wheel[i].T_world_body.translation().x(), 0.25 * static_cast<double>(i), 1e-12);
   }
+}
+
+TEST(Conformance, ErrorsOfTrajectoriesAreThoseOfEvo) {
+  const Trajectory truth = read_tum(kCases / "evo/truth.tum").value();
+  const Trajectory estimate = read_tum(kCases / "evo/estimate.tum").value();
+  const nlohmann::json expected = nlohmann::json::parse(test::get_file(kCases / "evo/errors.json"));
+  constexpr double kEqual = 1e-6;  // as many digits as the files have, and some operations
+  const AteResult absolute = ate(estimate, truth).value();
+  const nlohmann::json& ape = expected["ape_translation_m"];
+  EXPECT_NEAR(absolute.rmse_m, ape["rmse"], kEqual);
+  EXPECT_NEAR(absolute.mean_m, ape["mean"], kEqual);
+  EXPECT_NEAR(absolute.median_m, ape["median"], kEqual);
+  EXPECT_NEAR(absolute.max_m, ape["max"], kEqual);
+  const RpeResult relative = rpe(estimate, truth, 10.0).value();
+  const nlohmann::json& translation = expected["rpe_translation_m"];
+  const nlohmann::json& rotation = expected["rpe_rotation_rad"];
+  EXPECT_EQ(relative.translation_errors_m.size(), translation["segments"]);
+  EXPECT_NEAR(relative.translation_rmse_m, translation["rmse"], kEqual);
+  EXPECT_NEAR(relative.translation_median_m, translation["median"], kEqual);
+  EXPECT_NEAR(std::ranges::max(relative.translation_errors_m), translation["max"], kEqual);
+  EXPECT_NEAR(relative.rotation_rmse_rad, rotation["rmse"], kEqual);
+  EXPECT_NEAR(relative.rotation_median_rad, rotation["median"], kEqual);
+  EXPECT_NEAR(std::ranges::max(relative.rotation_errors_rad), rotation["max"], kEqual);
 }
 
 TEST(Conformance, AMapOfTheFirstLayoutIsReadForEver) {
