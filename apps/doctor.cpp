@@ -77,6 +77,7 @@ void add_doctor(Program& program) {
       [options](const Common& common) { return doctor_command(*options, common); });
   command.add_option("input", options->input, "Recording or folder of scans").required();
   add_recording_options(command, options->recording);
+  add_truth_topic(command, options->recording);
   command.footer(
       "Every check says what it found and what to do. The exit code is 1 where something spoils a map.");
 }

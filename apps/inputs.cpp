@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "inputs.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -52,7 +53,10 @@ Result<std::vector<Recording>> open_robots(const std::string& path, RecordingCon
     config.topics_under = robot;
     Result<Recording> recording = open_recording(path, config);
     if (!recording) return fail(robot, recording.error());
-    if (!recordings.empty()) recording->warnings.clear();  // of the file: said of the first
+    if (!recordings.empty())  // those of the file are said of the first
+      std::erase_if(recording->warnings, [&](const std::string& warning) {
+        return std::ranges::find(bag->warnings, warning) != bag->warnings.end();
+      });
     print_remarks(of_bag + robot, *recording);
     recordings.push_back(std::move(*recording));
   }

@@ -92,6 +92,7 @@ void add_localize(Program& program) {
       .required();
   command.add_option("--out", options->out, "TUM file for where the robot was, in the frame of the map");
   add_recording_options(command, options->recording);
+  add_truth_topic(command, options->recording);
   command.footer("The session stays as it is; adit slam --session adds the robot to it.");
 }
 

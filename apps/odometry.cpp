@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -91,9 +92,10 @@ Result<> odometry(const OdometryOptions& options, const Common& common) {
   if (!truth) return tl::unexpected(truth.error());
   const Result<Run> done = run(*recording, method);
   if (!done) return tl::unexpected(done.error());
-  const auto refused = done->statuses.find(StepStatus::too_few_points);
-  if (refused != done->statuses.end() && static_cast<std::size_t>(refused->second) == done->trajectory.size())
-    return fail(why_nothing_mapped(*recording));
+  const auto is_of_points = [](const auto& entry) {
+    return entry.first == StepStatus::too_few_points || entry.first == StepStatus::no_map;
+  };
+  if (std::ranges::all_of(done->statuses, is_of_points)) return fail(why_nothing_mapped(*recording));
   if (const Result<> written = write_tum(options.out, done->trajectory); !written) return written;
 
   nlohmann::ordered_json report = {{"scans", done->trajectory.size()},

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "adit/core/format.hpp"
@@ -91,11 +93,27 @@ Result<> without_failures(const SlamRun& run, const std::string& out) {
                      run.failed.size() + run.num_mapped, out, reasons));
 }
 
+/// "husky:12": a robot and, where it is stated, the index of its keyframe.
+std::pair<std::string, std::optional<std::uint32_t>> end_of(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) return {text, std::nullopt};
+  const std::optional<std::size_t> index = parse_size(text.substr(colon + 1));
+  if (!index || *index > std::numeric_limits<std::uint32_t>::max())
+    usage_error(format("'{}': after the colon stands the number of a keyframe", text));
+  return {text.substr(0, colon), static_cast<std::uint32_t>(*index)};
+}
+
 Ruling ruling_of(const std::string& pair, Ruling::Kind kind) {
   const std::size_t comma = pair.find(',');
   if (comma == std::string::npos || comma == 0 || comma + 1 == pair.size())
-    usage_error(format("'{}' names no two robots; write A,B", pair));
-  return {kind, pair.substr(0, comma), pair.substr(comma + 1)};
+    usage_error(format("'{}' names no two robots; write A,B, or A:12,B:40 for a loop", pair));
+  const auto [a, of_a] = end_of(pair.substr(0, comma));
+  const auto [b, of_b] = end_of(pair.substr(comma + 1));
+  if (of_a.has_value() != of_b.has_value())
+    usage_error(format("'{}': a loop has a keyframe of both robots, A:12,B:40", pair));
+  Ruling ruling{kind, a, b};
+  if (of_a) ruling.loop = {*of_a, *of_b};
+  return ruling;
 }
 
 }  // namespace
@@ -106,18 +124,20 @@ void refuse_configuration(const Common& common) {
 }
 
 void add_ruling_options(const Command& command, RulingOptions& options) {
-  command.add_option("--veto", options.vetoes,
-                     "Robots A,B whose loops join nothing, whatever the test says (repeatable)");
+  command.add_option(
+      "--veto", options.vetoes,
+      "Robots A,B whose loops join nothing, or the loop A:12,B:40 of two keyframes, whatever the test "
+      "says (repeatable)");
   command.add_option(
       "--confirm", options.confirmed,
-      "Robots A,B whose maps are joined by the best alignment that was found, whatever the test "
-      "says (repeatable)");
+      "Robots A,B whose maps are joined by the best alignment that was found, or by that of the loop "
+      "A:12,B:40, whatever the test says (repeatable)");
 }
 
 std::vector<Ruling> rulings_of(const RulingOptions& options) {
   std::vector<Ruling> rulings;
-  for (const std::string& pair : options.vetoes) rulings.push_back(ruling_of(pair, Ruling::Kind::veto));
   for (const std::string& pair : options.confirmed) rulings.push_back(ruling_of(pair, Ruling::Kind::confirm));
+  for (const std::string& pair : options.vetoes) rulings.push_back(ruling_of(pair, Ruling::Kind::veto));
   return rulings;
 }
 

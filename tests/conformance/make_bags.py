@@ -2,13 +2,15 @@
 # SPDX-FileCopyrightText: 2026 The adit authors
 # SPDX-License-Identifier: MIT
 """Writes one small recording in three storages, from the descriptions of the formats and without adit's own code:
-    make_bags.py [FOLDER]    tube.mcap (ROS 2, CDR), tube.db3 (ROS 2, SQLite), tube.bag (ROS 1)
+    make_bags.py [FOLDER]    tube.mcap (ROS 2, CDR), tube_lz4.mcap and tube_zstd.mcap (in a chunk, compressed by the programs lz4
+                             and zstd), tube.db3 (ROS 2, SQLite), tube.bag (ROS 1)
 Three scans of a tube, the robot driving 0.5 m between them; wheel odometry at 20 Hz; the LiDAR 0.9 m above the base. Points
 carry their times as Velodyne's driver (seconds, float32, with padding behind each point) in ROS 2, as Ouster's (nanoseconds,
 uint32, fields in another order) in ROS 1."""
 import math
 import sqlite3
 import struct
+import subprocess
 import sys
 from pathlib import Path
 
@@ -135,22 +137,31 @@ def write_db3(path):
     db.close()
 
 
-def write_mcap(path):
+def write_mcap(path, compression=None):
+    """`compression`: None for messages without chunks, else the program that compresses the only chunk, lz4 or zstd."""
     def text(value):
         return struct.pack("<I", len(value)) + value.encode()
 
     def record(op, content):
         return struct.pack("<BQ", op, len(content)) + content
 
+    def chunk(records, stamps):
+        packed = subprocess.run([compression, "-9", "-c", "-q"], input=records, capture_output=True, check=True).stdout
+        head = struct.pack("<QQQI", min(stamps), max(stamps), len(records), 0)
+        return record(6, head + text(compression) + struct.pack("<Q", len(packed)) + packed)
+
     magic = b"\x89MCAP0\r\n"
-    out = magic + record(1, text("ros2") + text("conformance"))
+    out = b""
     for i, (name, package, kind) in enumerate(TOPICS):
         out += record(3, struct.pack("<H", i + 1) + text(f"{package}/msg/{kind}") + text("ros2msg") + struct.pack("<I", 0))
         out += record(4, struct.pack("<HH", i, i + 1) + text(name) + text("cdr") + struct.pack("<I", 0))
     for n, (stamp, topic, data) in enumerate(messages(Cdr, False)):
         out += record(5, struct.pack("<HIQQ", topic, n, stamp, stamp) + data)
-    out += record(15, struct.pack("<I", 0)) + record(2, struct.pack("<QQI", 0, 0, 0)) + magic
-    path.write_bytes(out)
+    if compression:
+        out = chunk(out, [stamp for stamp, _, _ in messages(Cdr, False)])
+    head = magic + record(1, text("ros2") + text("conformance"))
+    end = record(15, struct.pack("<I", 0)) + record(2, struct.pack("<QQI", 0, 0, 0)) + magic
+    path.write_bytes(head + out + end)
 
 
 def write_bag(path):
@@ -200,5 +211,7 @@ def write_bag(path):
 if __name__ == "__main__":
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent)
     write_mcap(folder / "tube.mcap")
+    for program in ("lz4", "zstd"):
+        write_mcap(folder / f"tube_{program}.mcap", program)
     write_db3(folder / "tube.db3")
     write_bag(folder / "tube.bag")

@@ -91,6 +91,15 @@ TEST_F(Doctor, NamesTheMountThatTheFloorAndTheMotionShow) {
   EXPECT_LT(std::abs(error.translation().z()), 0.1) << turn.remedy;
 }
 
+TEST_F(Doctor, NamesTheLeverArmThatTheMotionShows) {
+  Recording shifted = good_;
+  shifted.T_base_lidar = Pose::translation_of(0.6, 0.0, 0.0) * good_.T_base_lidar;
+  const Diagnosis lever = of(found_in(shifted), "mount: turn and lever arm");
+  EXPECT_NE(lever.health, Health::good);
+  EXPECT_NEAR(mount_in(lever.remedy).translation().x(), good_.T_base_lidar.translation().x(), 0.2)
+      << lever.remedy;
+}
+
 TEST_F(Doctor, FindsWhatTheScansLack) {
   Recording gaps = good_;
   std::vector<std::size_t> kept;

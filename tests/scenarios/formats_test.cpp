@@ -3,11 +3,14 @@
 /// `adit convert`, `adit info` and `adit simulate` on files, as a user runs them.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/ply.hpp"
 #include "adit/io/recording_files.hpp"
 #include "adit/io/tum.hpp"
 #include "support/data.hpp"
+#include "support/foreign_mcap.hpp"
 #include "support/hall.hpp"
 #include "support/program.hpp"
 
@@ -184,6 +187,29 @@ TEST(Info, OfWheelsThatAreRecordedAsJoints) {
     EXPECT_NE(incomplete.err.find("its joints are left_wheel, right_wheel"), std::string::npos)
         << incomplete.err;
   }
+}
+
+TEST(Info, SaysWhatToTypeWhereABagIsNoRecordingYet) {
+  const test::TemporaryFolder folder;
+  const std::string bag = (folder / "bag.mcap").string();
+  const auto next_for = [&](const test::ForeignFile& file) {
+    test::put_file(bag, file.bytes());
+    const nlohmann::json info = nlohmann::json::parse(test::run_adit("--json info " + bag).out);
+    EXPECT_TRUE(info.contains("not_a_recording")) << info;
+    return info.value("next", "");
+  };
+  const auto link = test::link("base", "os_lidar", test::T_base_ouster);
+  EXPECT_EQ(next_for(test::ForeignFile().clouds("/camera/points").clouds("/os/points").links({link})),
+            "adit doctor " + bag + " --points /os/points");
+  test::ForeignFile fleet;
+  for (const std::string robot : {"/b", "/a"})
+    fleet.clouds(robot + "/points").odometry(robot + "/odom", "base");
+  EXPECT_EQ(next_for(fleet.links({link})), "adit doctor " + bag + " --set recording.topics_under=/b");
+  EXPECT_EQ(next_for(test::ForeignFile().clouds("/points")),
+            "adit doctor " + bag + " --mount X,Y,Z,ROLL,PITCH,YAW");
+  EXPECT_EQ(next_for(test::ForeignFile().clouds("/left").clouds("/lidar").links({link})),
+            "adit doctor " + bag + " --points /lidar");
+  EXPECT_EQ(next_for(test::ForeignFile().odometry("/odom")), "") << "no clouds";
 }
 
 TEST(Info, OfSharedFiles) {

@@ -3,8 +3,10 @@
 // Sessions that grow: robots added later, sessions joined, a robot found in a saved map, and a person's word.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "adit/core/format.hpp"
 #include "adit/evaluation/ate.hpp"
 #include "adit/io/session_dir.hpp"
 #include "adit/io/tum.hpp"
@@ -129,6 +131,36 @@ TEST_F(Growing, APersonOverrulesTheTest) {
   expect_refused("slam " + drive("ahead") + " --veto ahead,far --out " + in("x"), 2,
                  "give it with --session");
   expect_refused("slam --session " + in("s"), 2, "give recordings to add");
+}
+
+/// The keyframes of the first loop that joins two robots in that session, as options name them.
+std::string first_loop_of(const SavedSession& session) {
+  for (const SavedLoop& loop : session.loops)
+    if (loop.in_use() && loop.from_robot != loop.to_robot)
+      return format("{}:{},{}:{}", loop.from_robot, loop.loop.from.index, loop.to_robot, loop.loop.to.index);
+  ADD_FAILURE() << "no loop joins two robots";
+  return "";
+}
+
+TEST_F(Growing, APersonLeavesOutALoop) {
+  expect_done("slam " + drive("ahead") + " " + drive("behind") + " --out " + in("s"));
+  const auto num_in_use = [&](const std::string& session) {
+    const Result<SavedSession> saved = read_session(in(session));
+    return std::ranges::count_if(saved->loops, &SavedLoop::in_use);
+  };
+  const std::string loop = first_loop_of(*read_session(in("s")));
+  expect_done("slam --session " + in("s") + " --veto " + loop + " --out " + in("fewer"));
+  EXPECT_EQ(num_in_use("fewer"), num_in_use("s") - 1);
+  EXPECT_NE(text_of("fewer/session.toml").find("a person left out the loop of "), std::string::npos);
+  expect_refused("slam --session " + in("fewer") + " --veto " + loop, 1, "loops.csv lists those in use");
+  expect_done("slam --session " + in("fewer") + " --confirm " + loop + " --out " + in("again"));
+  EXPECT_EQ(num_in_use("again"), num_in_use("s"));
+  EXPECT_NE(text_of("again/session.toml").find("a person confirmed this merge by the loop of "),
+            std::string::npos);
+  expect_refused("slam --session " + in("s") + " --confirm ahead:0,behind:99999", 1,
+                 "belongs to no alignment");
+  expect_refused("slam --session " + in("s") + " --veto ahead:0,behind", 2, "a keyframe of both robots");
+  expect_refused("slam --session " + in("s") + " --veto ahead:x,behind:1", 2, "the number of a keyframe");
 }
 
 TEST_F(Growing, WhatIsDamagedIsNamedAndNothingIsLost) {

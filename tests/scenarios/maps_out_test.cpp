@@ -122,6 +122,23 @@ void expect_fields_and_faces(const std::filesystem::path& folder) {
   EXPECT_GT(static_cast<double>(num_facing), 0.97 * static_cast<double>(mesh->triangles.size()));
 }
 
+/// Coarser clouds, trees of voxels, and poses without stamps.
+void expect_other_forms(const std::filesystem::path& folder, std::size_t num_points) {
+  const std::string convert = "convert " + (folder / "s").string() + " ";
+  expect_done(convert + (folder / "coarse.pcd").string() + " --set maps.voxel_m=0.4");
+  const test::ProgramRun info = test::run_adit("--json info " + (folder / "coarse.pcd").string());
+  EXPECT_LT(nlohmann::json::parse(info.out)["points"].get<std::size_t>(), num_points / 4);
+  expect_done(convert + (folder / "map.bt").string());
+  EXPECT_TRUE(get_file(folder / "map.bt").starts_with("# Octomap OcTree binary file"));
+  expect_done(convert + (folder / "at.kitti").string());
+  for (const char* robot : {"ahead", "behind"}) {
+    const std::string lines = get_file(folder / (std::string("at_") + robot + ".kitti"));
+    const Result<Trajectory> scans = read_tum(folder / "s" / robot / "odometry.tum");
+    ASSERT_TRUE(scans) << scans.error().message;
+    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(lines, '\n')), scans->size());
+  }
+}
+
 /// The covariances of that robot's poses: one for each pose, growing from the place that is held fixed.
 void expect_covariances(const std::filesystem::path& folder, const std::string& robot) {
   expect_done("convert " + (folder / "s").string() + " " + (folder / "at.tum").string() + " --covariance");
@@ -202,6 +219,7 @@ TEST(MapsOut, ASessionBecomesCloudsAndAGridThatARobotCanDriveOn) {
               " --set maps.grid.resolution_m=0.05");
   EXPECT_GT(NavMap(folder / "fine.pgm").width, 1.9 * static_cast<double>(map.width));
 
+  expect_other_forms(folder.path(), num_points);
   expect_graphs(folder.path());
   expect_fields_and_faces(folder.path());
   expect_covariances(folder.path(), "behind");

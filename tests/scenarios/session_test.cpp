@@ -191,6 +191,28 @@ TEST(Session, ExplainsItsMerges) {
   expect_refused("explain " + folder.path().string(), 1, "not a session directory");
 }
 
+TEST(Session, ExplainsWhyItDidNotMergeAndWhereToDrive) {
+  const test::TemporaryFolder folder;
+  put_two_drives(folder.path());
+  const std::string session = (folder / "session").string();
+  // More evidence than a pair can have is asked for.
+  expect_done("slam " + (folder / "routes.yaml").string() +
+              " --lidar os2-32 --set loops.adaptive.merge_check.evidence.error_rate=1e-9 --out " + session);
+  const test::ProgramRun text = run_adit("explain " + session + " ahead behind");
+  ASSERT_EQ(text.exit_code, 0) << text.err;
+  for (const char* part : {"ahead and behind: not merged (too little)", "evidence ", " of 20.7", "unsure"})
+    EXPECT_NE(text.out.find(part), std::string::npos) << text.out;
+  const nlohmann::json pair =
+      nlohmann::json::parse(run_adit("explain " + session + " ahead behind --json").out)[0];
+  EXPECT_FALSE(pair["merged"]);
+  EXPECT_EQ(pair["refused_kind"], "too little");
+  EXPECT_EQ(pair["hypotheses"][0]["outcome"], "unsure");
+  ASSERT_TRUE(pair.contains("where_to_drive")) << pair["why"];
+  EXPECT_GT(pair["where_to_drive"]["missing"].get<double>(), 0.0);
+  EXPECT_NE(pair["why"].get<std::string>().find(" go on along the path of "), std::string::npos)
+      << pair["why"];
+}
+
 TEST(Session, RobotsOfOneNameGetDifferentNames) {
   const test::TemporaryFolder folder;
   put_two_drives(folder.path());

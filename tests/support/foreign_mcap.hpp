@@ -82,6 +82,16 @@ class ForeignFile {
     }
     return *this;
   }
+  /// Poses with these stamps, recorded in their order, 50 ms apart.
+  ForeignFile& odometry_stamped(const std::string& topic, const std::vector<Stamp>& stamps) {
+    const std::uint16_t id = channel(2, topic);
+    Stamp recorded = make_scan(0, 0).stamp;
+    for (const Stamp stamp : stamps) {
+      message(id, recorded, ros::encode_odometry({{"odom", "base_link", {stamp, Pose()}}, {}}));
+      recorded = recorded + Duration(50'000'000);
+    }
+    return *this;
+  }
   ForeignFile& imu(const std::string& topic, const std::vector<ros::ImuMessage>& samples) {
     const std::uint16_t id = channel(4, topic);
     for (const ros::ImuMessage& sample : samples) message(id, sample.sample.stamp, ros::encode_imu(sample));

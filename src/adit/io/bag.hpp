@@ -65,7 +65,8 @@ template <class Decode>
 ///  - FILE.db3, the sqlite storage of rosbag2;
 ///  - FILE.bag, of ROS 1: chunks plain, bz2 or lz4, with or without index (ros1_bag.hpp);
 ///  - FOLDER: a bag folder of rosbag2, its files in the order of metadata.yaml, or by name where there is
-///    none. Files that were compressed as a whole (.db3.zstd) are an error with the remedy.
+///    none. Files that were compressed as a whole (.db3.zstd) are an error with the remedy; one that
+///    cannot be read is left out with a warning, as long as another one can.
 /// Messages that were compressed one by one (zstd, compression mode MESSAGE of rosbag2) are expanded.
 [[nodiscard]] Result<Bag> open_bag(const std::filesystem::path& path);
 /// Of an MCAP file, wherever its bytes come from. Errors name the byte, not the file.

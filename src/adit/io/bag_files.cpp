@@ -77,14 +77,22 @@ Result<Bag> open_file(const fs::path& path) {
   return bag;
 }
 
+/// A file that cannot be read, as one that was opened when power was cut, costs what it holds alone.
 Result<Bag> open_files(const std::vector<fs::path>& files) {
   std::vector<Bag> parts;
+  std::vector<Error> faults;
   for (const fs::path& file : files) {
     Result<Bag> part = open_file(file);
-    if (!part) return part;
-    parts.push_back(std::move(*part));
+    if (part)
+      parts.push_back(std::move(*part));
+    else
+      faults.push_back(part.error());
   }
-  return joined(std::move(parts));
+  if (parts.empty()) return tl::unexpected(faults.front());
+  Bag all = joined(std::move(parts));
+  for (const Error& fault : faults)
+    all.warnings.push_back(format("{}; this one of {} files is left out", fault.message, files.size()));
+  return all;
 }
 
 /// No message in CDR begins as a zstd frame does.

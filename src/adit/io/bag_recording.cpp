@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "adit/core/format.hpp"
+#include "adit/io/ascending.hpp"
 #include "adit/io/bag_pass.hpp"
 #include "adit/io/bag_topics.hpp"
 #include "adit/io/frame_tracks.hpp"
@@ -57,6 +58,7 @@ struct FrameNames {
 struct Tracks {
   std::vector<BagMessage> scans;
   std::vector<Stamp> stamps;
+  std::vector<std::string> warnings;  // about scans
   PoseTrack wheel;
   PoseTrack truth;
   ImuTrack imu;
@@ -340,6 +342,17 @@ BagPass::Visit stamps_into(const Bag& bag, Tracks& tracks) {
   };
 }
 
+/// Leaves out scans whose stamps do not ascend with the others'.
+Result<> put_in_order(Tracks& tracks, const std::string& topic) {
+  const std::vector<std::size_t> kept = longest_ascending(tracks.stamps);
+  const std::optional<std::string> note = note_of_left_out("scans", tracks.stamps, kept);
+  if (note && kept.size() < 2) return fail(topic + ": " + *note);
+  if (note) tracks.warnings.push_back(topic + ": " + *note);
+  tracks.scans = taken(std::move(tracks.scans), kept);
+  tracks.stamps = taken(std::move(tracks.stamps), kept);
+  return {};
+}
+
 Result<Tracks> read_tracks(const Bag& bag, const BagTopics& topics, const RecordingConfig& config,
                            const FrameNames& names) {
   Tracks tracks;
@@ -359,6 +372,8 @@ Result<Tracks> read_tracks(const Bag& bag, const BagTopics& topics, const Record
   const auto truth = reader_in(pass, bag, topics.truth, {});
   if (!truth) return tl::unexpected(truth.error());
   if (Result<> read = pass.run(bag); !read) return tl::unexpected(read.error());
+  if (Result<> done = put_in_order(tracks, names_of(bag, topics.points)); !done)
+    return tl::unexpected(done.error());
   Result<PoseTrack> wheels = finished(*wheel);
   if (!wheels) return tl::unexpected(wheels.error());
   tracks.wheel = std::move(*wheels);
@@ -376,6 +391,7 @@ Recording recording_of(Tracks& tracks, const Bag& bag, const BagTopics& topics,
   take_metadata(recording, bag, names_of(bag, topics.points));
   if (!config.topics_under.empty())
     recording.name = config.topics_under.substr(config.topics_under.rfind('/') + 1);
+  std::ranges::copy(tracks.warnings, std::back_inserter(recording.warnings));
   recording.wheel = std::move(tracks.wheel.poses);
   recording.wheel_covariance = tracks.wheel.covariance;
   std::ranges::copy(tracks.wheel.warnings, std::back_inserter(recording.warnings));
@@ -432,7 +448,10 @@ Result<Recording> read_recording(ByteSource source, const RecordingConfig& confi
 Result<Recording> read_recording(const std::filesystem::path& path, const RecordingConfig& config) {
   Result<Bag> bag = open_bag(path);
   if (!bag) return tl::unexpected(bag.error());
+  const std::vector<std::string> warnings = bag->warnings;
   Result<Recording> recording = read_recording(std::move(*bag), config);
+  if (!recording && !warnings.empty())  // what is missing may lie in what could not be read
+    return fail(format("{}: {} ({})", path.string(), recording.error().message, fmt::join(warnings, "; ")));
   if (!recording) return fail(path.string(), recording.error());
   recording->read_scan = [read = std::move(recording->read_scan),
                           name = path.string()](std::size_t i) -> Result<Scan> {

@@ -125,6 +125,24 @@ TEST(Bag, AFolderIsOneRecordingHoweverItWasSplit) {
   }
 }
 
+TEST(Bag, AFileThatCannotBeReadCostsItselfAlone) {
+  const Bag bag = a_bag();
+  for (const char* content : {"", "SQLite format 3 ..."}) {
+    const test::TemporaryFolder folder;
+    write_db3(folder / "a_0.db3", bag, bag.messages);
+    test::put_file(folder / "a_1.db3", content);
+    const Result<Bag> whole = open_bag(folder.path());
+    ASSERT_TRUE(whole) << whole.error().message;
+    EXPECT_EQ(whole->messages.size(), bag.messages.size());
+    ASSERT_EQ(whole->warnings.size(), 1U);
+    EXPECT_NE(whole->warnings.front().find("a_1.db3"), std::string::npos) << whole->warnings.front();
+    EXPECT_NE(whole->warnings.front().find("this one of 2 files is left out"), std::string::npos);
+    EXPECT_TRUE(open_recording(folder.path().string()));
+    fs::remove(folder / "a_0.db3");
+    EXPECT_FALSE(open_bag(folder.path())) << "nothing is left";
+  }
+}
+
 TEST(Bag, WhatAFolderLacksIsNamed) {
   const test::TemporaryFolder folder;
   const fs::path metadata = folder / "metadata.yaml";

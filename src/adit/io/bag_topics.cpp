@@ -70,11 +70,12 @@ std::string whole_name(const std::string& topic, const std::string& under) {
 
 /// How people choose one of several topics.
 struct TopicChoice {
-  std::string_view type;      ///< "clouds"
-  std::string_view option;    ///< "--points"
-  std::string topic;          ///< "": the only one.
-  std::string under;          ///< RecordingConfig::topics_under.
-  TopicIndices further = {};  ///< That may be asked for, too.
+  std::string_view type;       ///< "clouds"
+  std::string_view option;     ///< "--points"
+  std::string topic;           ///< "": the only one.
+  std::string under;           ///< RecordingConfig::topics_under.
+  TopicIndices further = {};   ///< That may be asked for, too.
+  std::string otherwise = {};  ///< What else may be meant, to be said after the choices.
 };
 
 /// How likely a topic is the one that is meant: by its name, then by its messages.
@@ -90,14 +91,22 @@ std::pair<int, std::size_t> likelihood(const Bag& bag, std::size_t topic) {
   return {words, num_messages(bag, topic)};
 }
 
-/// "--points /lidar/points (120 messages) or --points /camera/points (40 messages)", the likeliest first.
-std::string choices(const Bag& bag, TopicIndices topics, const TopicChoice& choice) {
+TopicIndices likeliest_first(const Bag& bag, TopicIndices topics) {
   std::ranges::stable_sort(topics, std::ranges::greater(),
                            [&](std::size_t topic) { return likelihood(bag, topic); });
+  return topics;
+}
+
+/// As options take it, below `under`.
+std::string name_to_type(const Bag& bag, std::size_t topic, const std::string& under) {
+  return bag.topics[topic].name.substr(under.empty() ? 0 : under.size() + 1);
+}
+
+/// "--points /lidar/points (120 messages) or --points /camera/points (40 messages)", the likeliest first.
+std::string choices(const Bag& bag, const TopicIndices& topics, const TopicChoice& choice) {
   std::vector<std::string> texts;
-  for (const std::size_t topic : topics)
-    texts.push_back(format("{} {} ({} messages)", choice.option,
-                           bag.topics[topic].name.substr(choice.under.empty() ? 0 : choice.under.size() + 1),
+  for (const std::size_t topic : likeliest_first(bag, topics))
+    texts.push_back(format("{} {} ({} messages)", choice.option, name_to_type(bag, topic, choice.under),
                            num_messages(bag, topic)));
   return format("{}", fmt::join(texts, " or "));
 }
@@ -116,8 +125,8 @@ Result<> choose_one(const Bag& bag, TopicIndices& topics, const TopicChoice& cho
                        all.empty() ? "is none" : "are: " + all));
   }
   if (topics.size() < 2) return {};
-  return fail(format("several topics of {}; give one of them, the likeliest first: {}", choice.type,
-                     choices(bag, topics, choice)));
+  return fail(format("several topics of {}; give one of them, the likeliest first: {}{}", choice.type,
+                     choices(bag, topics, choice), choice.otherwise));
 }
 
 /// What people call ground truth is no wheel odometry, whatever its name says.
@@ -167,6 +176,16 @@ Result<> take_transforms(const Bag& bag, BagTopics& topics, const RecordingConfi
   return {};
 }
 
+/// Where several topics of clouds may be of several robots: how to take them.
+std::string for_fleets(const Bag& bag, const RecordingConfig& config) {
+  const std::vector<std::string> robots = namespaces_of(bag);
+  if (!config.topics_under.empty() || robots.size() < 2) return "";
+  return format(
+      "; if each namespace is another robot, adit slam --namespaces takes them all, and --set "
+      "recording.topics_under={} that one",
+      robots.front());
+}
+
 }  // namespace
 
 std::string names_of(const Bag& bag, const TopicIndices& topics) {
@@ -189,7 +208,8 @@ Result<BagTopics> choose_topics(const Bag& bag, const RecordingConfig& given) {
   if (Result<> taken = take_transforms(bag, topics, config); !taken) return tl::unexpected(taken.error());
   const std::string imu = config.imu == kNoImu ? "" : config.imu;
   const bool has_wheels = config.wheel != kNoWheel;
-  return choose_one(bag, topics.points, {"clouds", "--points", config.points, config.topics_under})
+  return choose_one(bag, topics.points,
+                    {"clouds", "--points", config.points, config.topics_under, {}, for_fleets(bag, config)})
       .and_then([&] {
         return choose_one(bag, topics.imu, {"IMUs", "--imu", imu, config.topics_under});
       })
@@ -206,6 +226,29 @@ Result<BagTopics> choose_topics(const Bag& bag, const RecordingConfig& given) {
             {"ground truth", "--truth", config.truth == kNoTruth ? "" : config.truth, config.topics_under});
       })
       .map([&] { return std::move(topics); });
+}
+
+RecordingConfig with_likeliest_topics(const Bag& bag, RecordingConfig config) {
+  while (config.topics_under.ends_with('/')) config.topics_under.pop_back();
+  BagTopics topics = find_topics(bag, config.topics_under);
+  if (config.topics_under.empty() && config.points.empty() && topics.points.size() > 1) {
+    const std::string likeliest = bag.topics[likeliest_first(bag, topics.points).front()].name;
+    for (const std::string& robot : namespaces_of(bag))  // a robot has wheels of its own
+      if (likeliest.starts_with(robot + "/") && !find_topics(bag, robot).wheel.empty())
+        config.topics_under = robot;
+    topics = find_topics(bag, config.topics_under);
+  }
+  take_truth(bag, topics, config);
+  take_wheels(bag, topics, config);
+  const auto choose = [&](std::string& choice, const TopicIndices& among) {
+    if (choice.empty() && among.size() > 1)
+      choice = name_to_type(bag, likeliest_first(bag, among).front(), config.topics_under);
+  };
+  choose(config.points, topics.points);
+  choose(config.wheel, topics.wheel);
+  choose(config.imu, topics.imu);
+  choose(config.truth, topics.truth);
+  return config;
 }
 
 std::vector<std::string> namespaces_of(const Bag& bag) {

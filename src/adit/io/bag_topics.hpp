@@ -37,6 +37,10 @@ struct BagTopics {
 /// there are no clouds or not the topic asked for.
 [[nodiscard]] Result<BagTopics> choose_topics(const Bag& bag, const RecordingConfig& config);
 
+/// `config` with the likeliest topic wherever `choose_topics` would fail because several fit; of one
+/// robot, where namespaces with clouds have wheels, too.
+[[nodiscard]] RecordingConfig with_likeliest_topics(const Bag& bag, RecordingConfig config);
+
 /// The namespaces that have clouds, "/husky1", in alphabetical order: the first part of the topics' names in
 /// which they differ, with what is before it. None where a bag has no clouds, or they have no namespace.
 [[nodiscard]] std::vector<std::string> namespaces_of(const Bag& bag);

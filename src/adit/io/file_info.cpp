@@ -336,18 +336,32 @@ Bag quickly_read(Bag bag, Json& info) {
   return beginning_of(std::move(bag), share * span);
 }
 
+/// The options with which a bag that is no recording yet becomes one, the likeliest; none where none is
+/// known.
+std::optional<RecordingConfig> what_to_try(const Bag& bag, const RecordingConfig& config) {
+  RecordingConfig likeliest = with_likeliest_topics(bag, config);
+  if (read_recording(bag, likeliest)) return likeliest;
+  if (!likeliest.mount.empty()) return std::nullopt;
+  likeliest.mount = "0,0,0";
+  if (!read_recording(bag, likeliest)) return std::nullopt;
+  likeliest.mount = "X,Y,Z,ROLL,PITCH,YAW";  // to be filled in
+  return likeliest;
+}
+
 /// A bag, with what adit makes of it, or why it cannot use it.
 Result<Json> bag_info(const fs::path& path, const RecordingConfig& config) {
   Result<Bag> bag = open_bag(path);
   if (!bag) return tl::unexpected(bag.error());
   Json info = bag_json(*bag, lower_case(path.extension().string()) == ".mcap", config);
-  const Result<Recording> recording = read_recording(quickly_read(std::move(*bag), info), config);
+  const Bag looked_at = quickly_read(std::move(*bag), info);
+  const Result<Recording> recording = read_recording(looked_at, config);
   if (recording) {
     info.update(recording_json(*recording));
     info["next"] = next_command(path, config);
-  } else {
-    info["not_a_recording"] = format("{}: {}", path.string(), recording.error().message);
+    return info;
   }
+  info["not_a_recording"] = format("{}: {}", path.string(), recording.error().message);
+  if (const auto options = what_to_try(looked_at, config)) info["next"] = next_command(path, *options);
   return info;
 }
 

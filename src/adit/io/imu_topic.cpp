@@ -3,6 +3,7 @@
 #include "adit/io/imu_topic.hpp"
 
 #include "adit/core/format.hpp"
+#include "adit/io/ascending.hpp"
 #include "adit/io/ros_messages.hpp"
 #include "adit/io/tum.hpp"
 
@@ -18,10 +19,6 @@ std::string_view missing_in(const ImuCovariance& covariance) {
 
 }  // namespace
 
-void ImuReader::LeftOut::add(Stamp stamp) {
-  if (count++ == 0) first = stamp;
-}
-
 Result<> ImuReader::add(const BagMessage& message) {
   const Result<ros::ImuMessage> imu = decoded(bag_, message, ros::decode_imu);
   if (!imu) return fail(format("IMU, message {}", num_messages_), imu.error());
@@ -30,24 +27,23 @@ Result<> ImuReader::add(const BagMessage& message) {
   }
   const ImuSample& sample = imu->sample;
   if (!sample.angular_velocity.allFinite() || !sample.specific_force.allFinite()) {
-    not_finite_.add(sample.stamp);
-  } else if (!track_.samples.empty() && sample.stamp <= track_.samples.back().stamp) {
-    backward_.add(sample.stamp);
+    if (num_not_finite_++ == 0) first_not_finite_ = sample.stamp;
   } else {
     track_.samples.push_back(sample);
   }
   return {};
 }
 
-void ImuReader::report(const LeftOut& left_out, std::string_view what) {
-  if (left_out.count == 0) return;
-  track_.remarks.push_back(format("imu: {} of {} samples are left out, {}; the first is at {} s",
-                                  left_out.count, num_messages_, what, stamp_text(left_out.first)));
-}
-
 ImuTrack ImuReader::finish() {
-  report(backward_, "whose stamps are not after those before (check the driver's clock)");
-  report(not_finite_, "whose numbers are not finite (check the driver)");
+  const std::vector<Stamp> stamps = stamps_of(track_.samples);
+  const std::vector<std::size_t> kept = longest_ascending(stamps);
+  track_.samples = taken(std::move(track_.samples), kept);
+  if (const auto note = note_of_left_out("samples", stamps, kept)) track_.remarks.push_back("imu: " + *note);
+  if (num_not_finite_ > 0)
+    track_.remarks.push_back(
+        format("imu: {} of {} samples are left out, whose numbers are not finite (check the driver); the "
+               "first is at {} s",
+               num_not_finite_, num_messages_, stamp_text(first_not_finite_)));
   if (const std::string_view missing = missing_in(track_.covariance); !missing.empty()) {
     track_.samples.clear();
     track_.remarks = {format(

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "adit/core/records.hpp"
@@ -20,8 +19,9 @@ struct ImuTrack {
   std::vector<std::string> remarks;  ///< What was left out and why, a sentence each with its remedy.
 };
 
-/// Takes the messages in their order. Samples whose stamps do not ascend or whose numbers are not finite are
-/// left out, as is an IMU that measures only rates or only accelerations; `remarks` says so.
+/// Takes the messages in their order. Samples whose stamps do not ascend with the others' or whose numbers
+/// are not finite are left out, as is an IMU that measures only rates or only accelerations; `remarks` says
+/// so.
 class ImuReader {
  public:
   /// `bag` must outlive it.
@@ -32,19 +32,11 @@ class ImuReader {
   [[nodiscard]] ImuTrack finish();
 
  private:
-  /// Samples left out for one reason.
-  struct LeftOut {
-    std::size_t count = 0;
-    Stamp first;
-    void add(Stamp stamp);
-  };
-  void report(const LeftOut& left_out, std::string_view what);
-
   const Bag& bag_;
   ImuTrack track_;
   std::size_t num_messages_ = 0;
-  LeftOut backward_;
-  LeftOut not_finite_;
+  std::size_t num_not_finite_ = 0;
+  Stamp first_not_finite_;
 };
 
 }  // namespace adit

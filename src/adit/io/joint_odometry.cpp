@@ -9,6 +9,7 @@
 #include <set>
 
 #include "adit/core/format.hpp"
+#include "adit/io/ascending.hpp"
 #include "adit/io/text.hpp"
 #include "adit/robot/scan_loop.hpp"
 
@@ -180,6 +181,24 @@ Pose JointOdometry::step(std::size_t sample) const {
   return Pose::exp(twist);
 }
 
+/// Leaves out samples whose stamps do not ascend with the others', and says so.
+std::optional<std::string> JointOdometry::put_in_order() {
+  const std::vector<std::size_t> kept = longest_ascending(stamps_);
+  const std::optional<std::string> note = note_of_left_out("messages", stamps_, kept);
+  if (!note) return note;
+  std::vector<double> angles;
+  std::vector<double> velocities;
+  for (const std::size_t sample : kept)
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      angles.push_back(angle(sample, j));
+      velocities.push_back(velocity(sample, j));
+    }
+  angles_ = std::move(angles);
+  velocities_ = std::move(velocities);
+  stamps_ = taken(std::move(stamps_), kept);
+  return note;
+}
+
 Result<JointTrack> JointOdometry::finish() && {
   if (stamps_.empty()) {
     std::vector<std::string> wanted;
@@ -188,6 +207,7 @@ Result<JointTrack> JointOdometry::finish() && {
     return fail(format("no message has all of {} with finite angles or velocities; its joints are {}",
                        joints_text(wanted), joints_text(seen_)));
   }
+  const std::optional<std::string> left_out = put_in_order();
   by_angles_ = has_moving_angles();
   const auto wheels_have_velocities = [&] {
     for (std::size_t i = 0; i < stamps_.size(); ++i)
@@ -219,6 +239,7 @@ Result<JointTrack> JointOdometry::finish() && {
         "{} jumps of more than {} m/s (a driver that was started again, or another wheel_radius); for a "
         "second after each the wheels are not used",
         num_jumps, kFastestWheel));
+  if (left_out) track.warnings.push_back(*left_out);
   return track;
 }
 

@@ -42,7 +42,8 @@ class JointOdometry {
 
   /// Whether the message has all joints of the drive, with finite angles or velocities.
   [[nodiscard]] bool has_wheels(const ros::JointStateMessage& message);
-  /// A message that has the wheels, later than the one before.
+  /// A message that has the wheels. Those whose stamps do not ascend with the others' are left out at the
+  /// end (longest_ascending), with a warning.
   void add(const ros::JointStateMessage& message);
   /// Fails where no message had the wheels: the joints that there are are named.
   Result<JointTrack> finish() &&;
@@ -63,6 +64,7 @@ class JointOdometry {
   [[nodiscard]] std::vector<double> rolled(std::size_t sample) const;
   [[nodiscard]] double curvature(std::size_t sample) const;
   [[nodiscard]] Pose step(std::size_t sample) const;
+  std::optional<std::string> put_in_order();
 
   JointDriveConfig drive_;
   std::vector<Joint> joints_;  ///< Left wheels, right wheels, steering.

@@ -3,9 +3,11 @@
 #include "adit/io/kitti.hpp"
 
 #include <cmath>
+#include <optional>
 
 #include "adit/core/format.hpp"
 #include "adit/io/packed_cloud.hpp"
+#include "adit/io/text.hpp"
 
 namespace adit {
 
@@ -59,6 +61,52 @@ std::string write_kitti(const PointCloud& cloud) {
   bare.intensities = cloud.intensities;
   bare.intensities.resize(cloud.size(), 0.0F);
   return packed_rows(bare);
+}
+
+namespace {
+
+/// The upper three rows of a transform, row by row.
+Result<Pose> pose_of(std::string_view line) {
+  constexpr double kNearly = 1e-3;  // files have six digits or more
+  std::vector<double> numbers;
+  for (const std::string_view word : split_words(line)) {
+    const std::optional<double> number = parse_double(word);
+    if (!number || !std::isfinite(*number)) return fail(format("'{}' is not a finite number", word));
+    numbers.push_back(*number);
+  }
+  if (numbers.size() != 12)
+    return fail(format("{} numbers; a pose has twelve, the upper three rows of its matrix", numbers.size()));
+  const Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> rows(numbers.data());
+  const Matrix3 R = rows.leftCols<3>();
+  if (!(R * R.transpose()).isIdentity(kNearly) || R.determinant() < 0.0)
+    return fail("the left part of the matrix is no rotation");
+  return Pose(Eigen::Quaterniond(R).normalized(), rows.col(3));
+}
+
+}  // namespace
+
+Result<std::vector<Pose>> read_kitti_poses(std::string_view text) {
+  std::vector<Pose> poses;
+  LineReader lines(text);
+  while (lines.next()) {
+    if (split_words(lines.line()).empty()) continue;
+    const Result<Pose> pose = pose_of(lines.line());
+    if (!pose) return fail(format("line {}", lines.number()), pose.error());
+    poses.push_back(*pose);
+  }
+  return poses;
+}
+
+Result<Pose> read_kitti_calibration(std::string_view text) {
+  constexpr std::string_view kKey = "Tr:";
+  LineReader lines(text);
+  while (lines.next()) {
+    if (!lines.line().starts_with(kKey)) continue;
+    const Result<Pose> pose = pose_of(lines.line().substr(kKey.size()));
+    if (!pose) return fail(format("line {}", lines.number()), pose.error());
+    return pose;
+  }
+  return fail("has no line 'Tr:', which says where the LiDAR sits on the camera");
 }
 
 std::string write_kitti_poses(const Trajectory& trajectory) {

@@ -102,10 +102,10 @@ TEST(McapImu, SamplesOfTheImuThatCannotBeUsedAreLeftOut) {
   backward[2].sample.stamp = backward[0].sample.stamp;
   const Recording shorter = read(backward);
   EXPECT_EQ(shorter.imu.size(), 2U);
-  EXPECT_EQ(
-      shorter.assumptions,
-      std::vector<std::string>{"imu: 1 of 3 samples are left out, whose stamps are not after those before "
-                               "(check the driver's clock); the first is at 1700000000.123456789 s"});
+  EXPECT_EQ(shorter.assumptions,
+            std::vector<std::string>{
+                "imu: 1 of 3 samples are left out, whose stamps do not ascend with the others' "
+                "(check the driver's clock); the first is at 1700000000.123456789 s"});
   std::vector<ros::ImuMessage> broken = imu_messages();
   broken[1].sample.angular_velocity.y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(read(broken).imu.size(), 2U);

@@ -11,6 +11,7 @@
 #include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/core/version.hpp"
+#include "adit/io/ascending.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/mcap_writer.hpp"
 #include "adit/io/ros_messages.hpp"
@@ -35,13 +36,6 @@ Result<> check_stamps(const std::vector<Stamp>& stamps, std::string_view what) {
     }
   }
   return {};
-}
-
-template <class T>
-std::vector<Stamp> stamps_of(const std::vector<T>& track) {
-  std::vector<Stamp> stamps;
-  for (const T& entry : track) stamps.push_back(entry.stamp);
-  return stamps;
 }
 
 // One chunk per scan, and what the other sensors measured in a few seconds in chunks of their own, so that a

@@ -321,6 +321,27 @@ TEST(Mcap, OneOfSeveralTopicsOfCloudsCanBeChosen) {
   EXPECT_EQ(rear->name, "rear");
 }
 
+TEST(Mcap, AScanThatWasSentTwiceCountsOnce) {
+  const auto cloud = [](std::size_t i) {
+    const Scan scan = test::make_scan(i, 4);
+    return std::pair(scan.stamp, ros::encode_cloud(scan, "os_lidar"));
+  };
+  const auto read = [](const std::vector<std::pair<Stamp, std::string>>& clouds) {
+    return ForeignFile()
+        .cloud_messages("/points", clouds, Duration(5'000'000))
+        .links({test::link("base", "os_lidar", test::T_base_ouster)})
+        .read();
+  };
+  const Result<Recording> recording = read({cloud(0), cloud(1), cloud(1), cloud(2)});
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->num_scans(), 3U);
+  EXPECT_EQ(recording->read_scan(2)->cloud.points, test::make_scan(2, 4).cloud.points);
+  ASSERT_EQ(recording->warnings.size(), 1U);
+  EXPECT_TRUE(recording->warnings.front().starts_with("/points: 1 of 4 scans are left out"))
+      << recording->warnings.front();
+  EXPECT_ERROR(read({cloud(1), cloud(1), cloud(1)}), "/points: 2 of 3 scans are left out");
+}
+
 TEST(Mcap, RobotsOfOneBagAreTakenByTheirNamespaces) {
   ForeignFile file;
   file.clouds("/fleet/husky2/points", "husky2/lidar")
@@ -331,7 +352,9 @@ TEST(Mcap, RobotsOfOneBagAreTakenByTheirNamespaces) {
               test::link("husky2/base_link", "husky2/lidar", test::T_ouster_lidar)});
   EXPECT_EQ(namespaces_of(open_mcap_bag(memory_source(file.bytes())).value()),
             std::vector<std::string>({"/fleet/husky1", "/fleet/husky2"}));
-  EXPECT_ERROR(file.read(), "several topics of clouds");
+  EXPECT_ERROR(file.read(),
+               "if each namespace is another robot, adit slam --namespaces takes them all, and --set "
+               "recording.topics_under=/fleet/husky1 that one");
   for (const auto& [robot, mount] :
        {std::pair("husky1", test::T_base_ouster), {"husky2", test::T_ouster_lidar}}) {
     const Result<Recording> recording = file.read({.topics_under = std::string("/fleet/") + robot});

@@ -20,6 +20,19 @@ ForeignFile file_with_links() {
   return ForeignFile().clouds("/points").links({{"base_link", "os_lidar", {{5}, test::T_base_ouster}}});
 }
 
+TEST(McapWheel, AClockThatJumpsAheadSilencesNothingElse) {
+  const auto at = [](double seconds) { return test::make_scan(0, 0).stamp + from_seconds(seconds); };
+  ForeignFile file = file_with_links();
+  file.odometry_stamped("/odom", {at(0.0), at(0.05), at(3600.0), at(3600.05), at(0.2), at(0.25), at(0.3)});
+  const Result<Recording> recording = file.read();
+  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_EQ(recording->wheel.size(), 5U);
+  EXPECT_EQ(recording->wheel.back().stamp, at(0.3));
+  ASSERT_EQ(recording->warnings.size(), 1U);
+  EXPECT_TRUE(recording->warnings.front().starts_with("/odom: 2 of 7 messages are left out"))
+      << recording->warnings.front();
+}
+
 TEST(McapWheel, OneOfSeveralTopicsCanBeChosenOrNone) {
   ForeignFile file = file_with_links();
   file.odometry("/wheels/odom").odometry("/fused/odom");

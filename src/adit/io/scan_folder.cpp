@@ -12,6 +12,7 @@
 #include "adit/core/progress.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/folder_mount.hpp"
+#include "adit/io/kitti.hpp"
 #include "adit/io/mount.hpp"
 #include "adit/io/packed_cloud.hpp"
 #include "adit/io/recording_toml.hpp"
@@ -105,14 +106,31 @@ Result<std::vector<Stamp>> stamps_from_numbers(const fs::path& folder, const std
   return stamps;
 }
 
+/// The sequence of a folder "velodyne", where KITTI keeps what belongs to it; else the folder itself.
+fs::path sequence_of(const fs::path& folder) {
+  const fs::path full = fs::weakly_canonical(folder);
+  return full.filename().string().starts_with("velodyne") ? full.parent_path() : folder;
+}
+
+/// Of a sequence of KITTI the folder of its clouds; else the folder itself.
+fs::path clouds_of(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::is_directory(folder / "velodyne", ignored) || list_scans(folder)) return folder;
+  return folder / "velodyne";
+}
+
+/// A file beside the clouds, or in their sequence.
+fs::path beside_clouds(const fs::path& folder, const char* name) {
+  std::error_code ignored;
+  const fs::path beside = folder / name;
+  return fs::exists(beside, ignored) ? beside : sequence_of(folder) / name;
+}
+
 /// stamps.txt, or the times.txt of KITTI, which lies beside the folder of its scans.
 std::optional<fs::path> stamp_file(const fs::path& folder) {
-  std::vector<fs::path> files = {folder / "stamps.txt", folder / "times.txt"};
-  const fs::path full = fs::weakly_canonical(folder);
-  if (full.filename().string().starts_with("velodyne")) files.push_back(full.parent_path() / "times.txt");
-  for (const fs::path& file : files) {
+  for (const char* name : {"stamps.txt", "times.txt"}) {
     std::error_code ignored;
-    if (fs::exists(file, ignored)) return file;
+    if (const fs::path file = beside_clouds(folder, name); fs::exists(file, ignored)) return file;
   }
   return std::nullopt;
 }
@@ -152,10 +170,12 @@ Result<> check_recording(const fs::path& folder, const Recording& recording) {
   if (recording.wheel.empty()) return {};
   const Stamp first = recording.scan_stamps.front();
   const Stamp last = recording.scan_stamps.back();
-  if (recording.wheel.front().stamp <= first && last <= recording.wheel.back().stamp) return {};
-  return fail(format("{}: odometry.tum goes from {} to {} and does not cover the scans from {} to {}",
-                     folder.string(), stamp_text(recording.wheel.front().stamp),
-                     stamp_text(recording.wheel.back().stamp), stamp_text(first), stamp_text(last)));
+  if (recording.wheel.front().stamp <= last && first <= recording.wheel.back().stamp) return {};
+  return fail(
+      format("{}: odometry.tum goes from {} to {} and covers none of the scans from {} to {}; are its "
+             "stamps of the same clock?",
+             folder.string(), stamp_text(recording.wheel.front().stamp),
+             stamp_text(recording.wheel.back().stamp), stamp_text(first), stamp_text(last)));
 }
 
 /// Stamps, wheels and ground truth.
@@ -169,14 +189,56 @@ Result<Recording> read_tracks(const fs::path& folder, const std::vector<ScanFile
   }
   const auto stamps = file ? read_stamps_for(*file, scans.size()) : stamps_from_numbers(folder, scans);
   if (!stamps) return tl::unexpected(stamps.error());
-  Result<Trajectory> wheel = read_optional(folder / "odometry.tum");
+  Result<Trajectory> wheel = read_optional(beside_clouds(folder, "odometry.tum"));
   if (!wheel) return tl::unexpected(wheel.error());
-  Result<Trajectory> truth = read_optional(folder / "groundtruth.tum");
+  Result<Trajectory> truth = read_optional(beside_clouds(folder, "groundtruth.tum"));
   if (!truth) return tl::unexpected(truth.error());
   recording.scan_stamps = select(*stamps, selection);
   recording.wheel = std::move(*wheel);
   recording.truth = std::move(*truth);
   return check_recording(folder, recording).map([&] { return std::move(recording); });
+}
+
+/// KITTI's poses of a sequence: poses.txt in it, or poses/07.txt beside the folder of the sequences.
+std::optional<fs::path> kitti_poses_of(const fs::path& sequence) {
+  const fs::path full = fs::weakly_canonical(sequence);
+  const fs::path of_set = full.parent_path().parent_path() / "poses" / (full.filename().string() + ".txt");
+  for (const fs::path& file : {full / "poses.txt", of_set}) {
+    std::error_code ignored;
+    if (fs::exists(file, ignored)) return file;
+  }
+  return std::nullopt;
+}
+
+/// T_world_lidar of each scan of the folder, from KITTI's poses, which are the camera's.
+Result<std::vector<Pose>> kitti_truth(const fs::path& file, const fs::path& sequence, std::size_t num_scans) {
+  Result<std::vector<Pose>> poses = read_bytes(file).and_then(read_kitti_poses);
+  if (!poses) return fail(file.string(), poses.error());
+  if (poses->size() != num_scans)
+    return fail(format("{}: {} poses for {} scans", file.string(), poses->size(), num_scans));
+  const fs::path calibration = sequence / "calib.txt";
+  const Result<Pose> T_camera_lidar = read_bytes(calibration).and_then(read_kitti_calibration);
+  if (!T_camera_lidar) return fail(calibration.string(), T_camera_lidar.error());
+  for (Pose& pose : *poses) pose = pose * *T_camera_lidar;
+  return poses;
+}
+
+/// Ground truth of a sequence of KITTI, where nothing else is there.
+void take_kitti_truth(Recording& recording, const fs::path& sequence, std::size_t num_scans,
+                      ScanSelection selection) {
+  std::error_code ignored;
+  if (!recording.truth.empty() || !fs::exists(sequence / "times.txt", ignored)) return;
+  const std::optional<fs::path> file = kitti_poses_of(sequence);
+  if (!file) return;
+  const Result<std::vector<Pose>> T_world_lidar = kitti_truth(*file, sequence, num_scans);
+  if (!T_world_lidar) {
+    recording.assumptions.push_back("ground truth: it is left out; " + T_world_lidar.error().message);
+    return;
+  }
+  const Pose T_lidar_base = recording.T_base_lidar.inverse();
+  const std::vector<Pose> selected = select(*T_world_lidar, selection);
+  for (std::size_t i = 0; i < selected.size(); ++i)
+    recording.truth.push_back({recording.scan_stamps[i], selected[i] * T_lidar_base});
 }
 
 // Point times beside a KITTI .bin.
@@ -256,15 +318,16 @@ Result<> write_tracks(const fs::path& folder, const Recording& recording) {
 
 }  // namespace
 
-Result<Recording> read_scan_folder(const fs::path& folder, ScanSelection selection,
+Result<Recording> read_scan_folder(const fs::path& given, ScanSelection selection,
                                    const FolderReading& reading) {
+  const fs::path folder = clouds_of(given);
   if (selection.step == 0) return fail(folder.string() + ": every 0-th scan; the step is 1 or more");
   const Result<std::vector<ScanFile>> scans = list_scans(folder);
   if (!scans) return tl::unexpected(scans.error());
   if (Result<> checked = check_scans(folder, *scans); !checked) return tl::unexpected(checked.error());
   Result<Recording> recording = read_tracks(folder, *scans, selection);
   if (!recording) return recording;
-  const Result<RecordingToml> file = read_recording_toml(folder / "recording.toml");
+  const Result<RecordingToml> file = read_recording_toml(beside_clouds(folder, "recording.toml"));
   if (!file) return tl::unexpected(file.error());
   std::vector<fs::path> clouds;
   for (const ScanFile& scan : select(*scans, selection)) clouds.push_back(scan.path);
@@ -272,13 +335,14 @@ Result<Recording> read_scan_folder(const fs::path& folder, ScanSelection selecti
   const Result<FolderMount> mount =
       mount_of_folder(clouds, *file, reading.T_base_lidar, wheels, reading.time_unit);
   if (!mount) return fail(folder.string(), mount.error());
-  recording->name = file->robot.empty() ? name_of(folder) : file->robot;
+  recording->name = file->robot.empty() ? name_of(given) : file->robot;
   recording->lidar = file->lidar;
   std::ranges::copy(lines_of(file->assumed), std::back_inserter(recording->assumptions));
   if (!mount->assumption.empty()) recording->assumptions.push_back(mount->assumption);
   if (reading.T_base_lidar) set_mount(*recording, mount->T_base_lidar);
   recording->T_base_lidar = mount->T_base_lidar;
   recording->mount_source = mount->source;
+  take_kitti_truth(*recording, sequence_of(folder), scans->size(), selection);
   // What the first cloud shows of the times holds for all.
   const Result<CloudFile> first = read_cloud_file(clouds.front(), reading.time_unit);
   if (!first) return tl::unexpected(first.error());

@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: MIT
 /// A folder of clouds as the recording of one robot.
 ///
-/// Scans are all .pcd, .ply or .bin files of the folder (of one kind), ordered by the last number in their
-/// names. Beside them, each where it is known:
-///  - `stamps.txt`, or KITTI's `times.txt` here or beside a folder `velodyne`: one decimal stamp in seconds
-///  per
-///    line, one line per scan. Without either, the number in the name counts as seconds (0017.pcd: 17 s);
+/// Scans are all .pcd, .ply or .bin files of the folder (of one kind), or of its folder `velodyne`, as in a
+/// sequence of KITTI, ordered by the last number in their names. Beside them, or in the
+/// sequence, each where it is known:
+///  - `stamps.txt`, or KITTI's `times.txt`: one decimal stamp in seconds per line,
+///    one line per scan. Without either, the number in the name counts as seconds (0017.pcd: 17 s);
 ///  - `recording.toml`: `robot` and `lidar`, their names, and `mount`, the pose of the LiDAR on the robot
-///  (see
-///    mount.hpp) when the clouds are in the LiDAR's frame;
-///  - `odometry.tum` (T_wheelodom_base) and `groundtruth.tum` (T_world_base), on the clock of the stamps;
+///    (see mount.hpp) when the clouds are in the LiDAR's frame;
+///  - `odometry.tum` (T_wheelodom_base) and `groundtruth.tum` (T_world_base), on the clock of the stamps; of
+///    a sequence of KITTI the poses of its camera (`poses.txt`, or `poses/07.txt` of the set), by way of
+///    `calib.txt`;
 ///  - `NNNNNN.offsets` beside a .bin, which has no room for them: the points' times, int32 nanoseconds from
-///  the
-///    scan's stamp, little-endian.
+///    the scan's stamp, little-endian.
 ///
 /// The mount comes from, in this order: the caller; recording.toml; the VIEWPOINT that all .pcd files share;
 /// the clouds themselves, when they show clearly where the sensor stood (geometry/sensor_origin.hpp: then the
@@ -46,7 +46,7 @@ struct FolderReading {
 
 /// Scans are read when asked for, from any
 /// thread. Errors: no clouds, clouds of several kinds, two scans of one number, a single scan, stamps not
-/// ascending or not as many as scans, an odometry that does not cover the scans, wheels without a mount.
+/// ascending or not as many as scans, an odometry that covers none of the scans, wheels without a mount.
 Result<Recording> read_scan_folder(const std::filesystem::path& folder, ScanSelection selection = {},
                                    const FolderReading& reading = {});
 

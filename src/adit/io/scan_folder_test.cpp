@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "adit/core/format.hpp"
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/recording_files.hpp"
 #include "adit/io/tum.hpp"
@@ -34,6 +35,54 @@ TEST(ScanFolder, OrderedByNumberAndStampedByIt) {
   EXPECT_EQ(scan->stamp, recording->scan_stamps[2]);
 }
 
+TEST(ScanFolder, ASequenceOfKittiHasItsTruth) {
+  const TemporaryFolder folder;
+  const auto sequence = folder / "07";
+  std::filesystem::create_directories(sequence / "velodyne");
+  for (int i = 0; i < 3; ++i)
+    ASSERT_TRUE(write_cloud(sequence / "velodyne" / format("{:06}.bin", i), one_point(1)));
+  put_file(sequence / "times.txt", "0.0\n0.1\n0.2\n");
+  // The camera looks ahead along its z, 2 m a scan; the LiDAR's x is ahead. It sits 0.3 m behind the camera.
+  constexpr const char* kPoses =
+      "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 2\n1 0 0 0 0 1 0 0 0 0 1 4\n";
+  put_file(sequence / "poses.txt", kPoses);
+  const auto left_out = [&] {
+    const Result<Recording> without = read_scan_folder(sequence);
+    EXPECT_TRUE(without && without->truth.empty());
+    return without ? format("{}", fmt::join(without->assumptions, "\n")) : without.error().message;
+  };
+  EXPECT_NE(left_out().find("ground truth: it is left out; "), std::string::npos) << "no calibration";
+  put_file(sequence / "calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: 0 -1 0 0 0 0 -1 0 1 0 0 -0.3\n");
+
+  const FolderReading reading{Pose::planar(1.5, 0.0, 0.0)};
+  for (const auto& path : {sequence, sequence / "velodyne"}) {
+    const Result<Recording> recording = read_scan_folder(path, {.first = 1}, reading);
+    ASSERT_TRUE(recording) << recording.error().message;
+    EXPECT_EQ(recording->name, path.filename().string());
+    ASSERT_EQ(recording->truth.size(), 2U);
+    EXPECT_EQ(recording->truth[0].stamp, recording->scan_stamps[0]);
+    const Pose T_first_second = recording->truth[0].T_world_body.inverse() * recording->truth[1].T_world_body;
+    EXPECT_LT((T_first_second.log() - Pose::translation_of(2, 0, 0).log()).norm(), 1e-9);
+    // 2 m ahead, 0.3 m back to the LiDAR and 1.5 m back to the base, along the camera's z.
+    EXPECT_LT((recording->truth[0].T_world_body.translation() - Vector3(0, 0, 0.2)).norm(), 1e-9);
+  }
+  put_file(sequence / "poses.txt",
+           "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 2 0 0 0 0 1 2\n1 0 0 0 0 1 0 0 0 0 1 4\n");
+  EXPECT_NE(left_out().find("poses.txt: line 2: the left part of the matrix is no rotation"),
+            std::string::npos);
+  put_file(sequence / "poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  EXPECT_NE(left_out().find("poses.txt: 1 poses for 3 scans"), std::string::npos);
+  // Where KITTI itself has them.
+  std::filesystem::create_directories(folder / "set/sequences");
+  std::filesystem::create_directories(folder / "set/poses");
+  std::filesystem::rename(sequence, folder / "set/sequences/07");
+  std::filesystem::remove(folder / "set/sequences/07/poses.txt");
+  put_file(folder / "set/poses/07.txt", kPoses);
+  EXPECT_EQ(read_scan_folder(folder / "set/sequences/07")->truth.size(), 3U);
+  put_file(folder / "set/sequences/07/calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\n");
+  EXPECT_TRUE(read_scan_folder(folder / "set/sequences/07")->truth.empty()) << "no line Tr:";
+}
+
 TEST(ScanFolder, BadFolders) {
   const TemporaryFolder folder;
   EXPECT_ERROR(read_scan_folder(folder.path()), "no clouds in it");
@@ -49,8 +98,12 @@ TEST(ScanFolder, BadFolders) {
   put_file(folder / "stamps.txt", "1.5\n");
   EXPECT_ERROR(read_scan_folder(folder.path()), "stamps.txt: 1 stamps for 2 scans");
   put_file(folder / "stamps.txt", "1.5\n2.5\n");
+  put_file(folder / "odometry.tum", "3 0 0 0 0 0 0 1\n4 0 0 0 0 0 0 1\n");
+  EXPECT_ERROR(read_scan_folder(folder.path()), "covers none of the scans");
   put_file(folder / "odometry.tum", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n");
-  EXPECT_ERROR(read_scan_folder(folder.path()), "does not cover the scans");
+  const Result<Recording> longer = read_scan_folder(folder.path(), {}, {.T_base_lidar = Pose()});
+  ASSERT_TRUE(longer) << longer.error().message;
+  EXPECT_EQ(longer->num_scans(), 2U) << "the last one is later than the wheels";
   ASSERT_TRUE(write_cloud(folder / "3.ply", one_point(1)));
   EXPECT_ERROR(read_scan_folder(folder.path()), "several kinds");
   ASSERT_TRUE(write_cloud(folder / "map.ply", one_point(1)));

@@ -6,53 +6,41 @@
 #include <utility>
 
 #include "adit/core/format.hpp"
+#include "adit/io/ascending.hpp"
 #include "adit/io/joint_odometry.hpp"
 #include "adit/io/ros_messages.hpp"
-#include "adit/io/tum.hpp"
 #include "adit/robot/wheel_covariance.hpp"
 
 namespace adit {
 namespace {
 
-/// What all readers of wheels share: the place of a message, and stamps that ascend.
-class AscendingReader : public PoseReader {
+/// What all readers of wheels share: errors name the message, warnings the topic.
+class TopicReader : public PoseReader {
  public:
-  AscendingReader(const Bag& bag, std::size_t topic) : bag_(bag), topic_(bag.topics[topic].name) {}
+  TopicReader(const Bag& bag, std::size_t topic) : bag_(bag), topic_(bag.topics[topic].name) {}
+
+  Result<> add(const BagMessage& message) final {
+    const std::size_t number = num_messages_++;
+    if (const Result<> taken = take(message); !taken)
+      return fail(format("{}, message {}", topic_, number), taken.error());
+    return {};
+  }
+  Result<PoseTrack> finish() final {
+    Result<PoseTrack> track = take_track();
+    if (!track) return fail(topic_, track.error());
+    for (std::string& warning : track->warnings) warning = topic_ + ": " + warning;
+    return track;
+  }
 
  protected:
-  template <class Decode>
-  [[nodiscard]] auto next(const BagMessage& message, Decode decode) {
-    place_ = format("{}, message {}", topic_, num_messages_++);
-    return decoded(bag_, message, decode);
-  }
-  /// Whether the message is to be taken.
-  [[nodiscard]] bool ascends(Stamp stamp) {
-    const bool is_later = !last_ || stamp > *last_;
-    if (is_later) {
-      last_ = stamp;
-    } else if (num_left_out_++ == 0) {
-      first_left_out_ = stamp;
-    }
-    return is_later;
-  }
-  void warn_of_left_out(PoseTrack& track) const {
-    if (num_left_out_ == 0) return;
-    track.warnings.push_back(format(
-        "{}: {} of {} messages are left out, whose stamps are not after those before (check the driver's "
-        "clock); the first is at {} s",
-        topic_, num_left_out_, num_messages_, stamp_text(first_left_out_)));
-  }
-  [[nodiscard]] const std::string& place() const { return place_; }
-  [[nodiscard]] const std::string& topic() const { return topic_; }
+  virtual Result<> take(const BagMessage& message) = 0;
+  virtual Result<PoseTrack> take_track() = 0;
+  [[nodiscard]] const Bag& bag() const { return bag_; }
 
  private:
   const Bag& bag_;
   std::string topic_;
-  std::string place_;
   std::size_t num_messages_ = 0;
-  std::optional<Stamp> last_;
-  std::size_t num_left_out_ = 0;
-  Stamp first_left_out_;
 };
 
 /// Keeps the first covariances, or the first that cannot be.
@@ -65,19 +53,22 @@ void take_covariance(WheelCovariance& kept, const WheelCovariance& stated, bool 
     kept.twist = stated.twist;
 }
 
-class OdometryReader final : public AscendingReader {
+class OdometryReader final : public TopicReader {
  public:
-  using AscendingReader::AscendingReader;
-  Result<> add(const BagMessage& message) override {
-    const Result<ros::OdometryMessage> pose = next(message, ros::decode_odometry);
-    if (!pose) return fail(place(), pose.error());
-    if (!ascends(pose->pose.stamp)) return {};
-    take_covariance(track_.covariance, pose->covariance, track_.poses.empty());
-    track_.poses.push_back(pose->pose);
-    return {};
+  using TopicReader::TopicReader;
+
+ protected:
+  Result<> take(const BagMessage& message) override {
+    return decoded(bag(), message, ros::decode_odometry).map([&](const ros::OdometryMessage& odometry) {
+      take_covariance(track_.covariance, odometry.covariance, track_.poses.empty());
+      track_.poses.push_back(odometry.pose);
+    });
   }
-  Result<PoseTrack> finish() override {
-    warn_of_left_out(track_);
+  Result<PoseTrack> take_track() override {
+    const std::vector<Stamp> stamps = stamps_of(track_.poses);
+    const std::vector<std::size_t> kept = longest_ascending(stamps);
+    track_.poses = taken(std::move(track_.poses), kept);
+    if (const auto note = note_of_left_out("messages", stamps, kept)) track_.warnings.push_back(*note);
     return std::move(track_);
   }
 
@@ -86,63 +77,63 @@ class OdometryReader final : public AscendingReader {
 };
 
 /// A gap is driven through as if the mean of the twists around it held.
-class TwistReader final : public AscendingReader {
+class TwistReader final : public TopicReader {
  public:
-  using AscendingReader::AscendingReader;
-  Result<> add(const BagMessage& message) override {
+  using TopicReader::TopicReader;
+
+ protected:
+  Result<> take(const BagMessage& message) override {
     constexpr double kFastest = 1000.0;  // m/s, rad/s: beyond it a message is damaged
-    const Result<ros::TwistMessage> twist = next(message, ros::decode_twist);
-    if (!twist) return fail(place(), twist.error());
-    if (!(twist->twist.cwiseAbs().maxCoeff() < kFastest))
-      return fail(format("{}: no robot is faster than {} m/s or rad/s", place(), kFastest));
-    if (!ascends(twist->stamp)) return {};
-    Pose T_odom_body;
-    if (!track_.poses.empty()) {
-      const StampedPose& before = track_.poses.back();
-      const double dt = to_seconds(twist->stamp - before.stamp);
-      longest_gap_ = std::max(longest_gap_, dt);
-      T_odom_body = before.T_world_body * Pose::exp(0.5 * dt * (last_ + twist->twist));
-    }
-    track_.poses.push_back({twist->stamp, T_odom_body});
-    last_ = twist->twist;
+    const Result<ros::TwistMessage> read = decoded(bag(), message, ros::decode_twist);
+    if (!read) return tl::unexpected(read.error());
+    if (!(read->twist.cwiseAbs().maxCoeff() < kFastest))
+      return fail(format("no robot is faster than {} m/s or rad/s", kFastest));
+    stamps_.push_back(read->stamp);
+    twists_.push_back(read->twist);
     return {};
   }
-  Result<PoseTrack> finish() override {
+  Result<PoseTrack> take_track() override {
     constexpr double kLongestGap = 0.5;  // seconds
-    if (longest_gap_ > kLongestGap) {
-      track_.warnings.push_back(
-          format("{}: a gap of {:.1f} s was driven through at the mean of the twists around it", topic(),
-                 longest_gap_));
+    const std::vector<std::size_t> kept = longest_ascending(stamps_);
+    PoseTrack track;
+    double longest_gap = 0.0;
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      Pose T_odom_body;
+      if (k > 0) {
+        const double dt = to_seconds(stamps_[kept[k]] - stamps_[kept[k - 1]]);
+        longest_gap = std::max(longest_gap, dt);
+        T_odom_body =
+            track.poses.back().T_world_body * Pose::exp(0.5 * dt * (twists_[kept[k - 1]] + twists_[kept[k]]));
+      }
+      track.poses.push_back({stamps_[kept[k]], T_odom_body});
     }
-    warn_of_left_out(track_);
-    return std::move(track_);
+    if (longest_gap > kLongestGap)
+      track.warnings.push_back(
+          format("a gap of {:.1f} s was driven through at the mean of the twists around it", longest_gap));
+    if (const auto note = note_of_left_out("messages", stamps_, kept)) track.warnings.push_back(*note);
+    return track;
   }
 
  private:
-  PoseTrack track_;
-  Vector6 last_ = Vector6::Zero();
-  double longest_gap_ = 0.0;
+  std::vector<Stamp> stamps_;
+  std::vector<Vector6> twists_;
 };
 
-class JointReader final : public AscendingReader {
+class JointReader final : public TopicReader {
  public:
   JointReader(const Bag& bag, std::size_t topic, JointOdometry odometry)
-      : AscendingReader(bag, topic), odometry_(std::move(odometry)) {}
-  Result<> add(const BagMessage& message) override {
-    const Result<ros::JointStateMessage> joints = next(message, ros::decode_joint_state);
-    if (!joints) return fail(place(), joints.error());
-    // Drivers share the topic; only messages with the wheels have to ascend.
-    if (!odometry_.has_wheels(*joints) || !ascends(joints->stamp)) return {};
-    odometry_.add(*joints);
-    return {};
+      : TopicReader(bag, topic), odometry_(std::move(odometry)) {}
+
+ protected:
+  Result<> take(const BagMessage& message) override {
+    return decoded(bag(), message, ros::decode_joint_state).map([&](const ros::JointStateMessage& joints) {
+      if (odometry_.has_wheels(joints)) odometry_.add(joints);  // drivers share the topic
+    });
   }
-  Result<PoseTrack> finish() override {
-    Result<JointTrack> joints = std::move(odometry_).finish();
-    if (!joints) return fail(topic(), joints.error());
-    PoseTrack track{std::move(joints->poses), {}};
-    for (const std::string& warning : joints->warnings) track.warnings.push_back(topic() + ": " + warning);
-    warn_of_left_out(track);
-    return track;
+  Result<PoseTrack> take_track() override {
+    return std::move(odometry_).finish().map([](JointTrack&& joints) {
+      return PoseTrack{std::move(joints.poses), {}, std::move(joints.warnings)};
+    });
   }
 
  private:

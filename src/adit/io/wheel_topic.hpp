@@ -22,8 +22,8 @@ struct PoseTrack {
   std::vector<std::string> warnings = {};  ///< What was left out or bridged, a sentence each.
 };
 
-/// Takes the messages of one topic one by one. Messages whose stamps do not ascend are left out, which a
-/// warning counts.
+/// Takes the messages of one topic one by one. Messages whose stamps do not ascend with the others' are left
+/// out (longest_ascending), which a warning counts.
 class PoseReader {
  public:
   virtual ~PoseReader() = default;

@@ -8,8 +8,8 @@
 
 #include "adit/core/format.hpp"
 #include "adit/geometry/normals.hpp"
-#include "adit/geometry/point_grid.hpp"
 #include "adit/geometry/surface_mesh.hpp"
+#include "adit/geometry/voxel_grid.hpp"
 #include "adit/io/crs.hpp"
 #include "adit/io/map_cloud.hpp"
 #include "adit/io/mesh_files.hpp"
@@ -24,17 +24,28 @@ namespace {
 /// that is not too many points.
 double normal_radius(double voxel_m) { return std::max(3.0 * voxel_m, std::min(0.3, 6.0 * voxel_m)); }
 
-/// Normals in the frame of the map, turned to the nearest place from which the robot looked.
+/// The keyframe from which each voxel was seen first: that of its point in `merged_cloud`.
+VoxelTable first_views(const RobotMap& map, const std::vector<Pose>& T_world_keyframe,
+                       const VoxelGrid& grid) {
+  VoxelTable keyframes;
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k)
+    for (const Eigen::Vector3f& point : transformed(T_world_keyframe[k], *map.keyframes[k].cloud).points)
+      if (const auto voxel = grid.key_of(point))
+        keyframes.find_or_insert(*voxel, static_cast<std::uint32_t>(k));
+  return keyframes;
+}
+
+/// Normals in the frame of the map, turned to the place from which the robot saw the point: the nearest place
+/// may be on the other side of a thin wall.
 std::vector<Eigen::Vector3f> normals_of(const std::vector<Eigen::Vector3f>& points, const RobotMap& map,
-                                        const std::vector<Pose>& T_world_keyframe, double radius) {
-  constexpr double kBetweenKeyframes = 5.0;  // metres, about
-  std::vector<Eigen::Vector3f> viewpoints;
-  for (const Pose& pose : T_world_keyframe) viewpoints.push_back((pose * map.viewpoint).cast<float>());
-  const PointGrid grid(viewpoints, kBetweenKeyframes);
-  std::vector<Eigen::Vector3f> normals = estimate_normals(points, static_cast<float>(radius));
+                                        const std::vector<Pose>& T_world_keyframe, double voxel_m) {
+  const VoxelGrid grid(voxel_m);
+  const VoxelTable keyframes = first_views(map, T_world_keyframe, grid);
+  std::vector<Eigen::Vector3f> normals = estimate_normals(points, static_cast<float>(normal_radius(voxel_m)));
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto nearest = grid.nearest(points[i]);
-    if (nearest && normals[i].dot(viewpoints[nearest->index] - points[i]) < 0.0F) normals[i] = -normals[i];
+    const std::uint32_t seen_from = keyframes.find(grid.key_of(points[i]).value()).value();
+    const Eigen::Vector3f viewpoint = (T_world_keyframe[seen_from] * map.viewpoint).cast<float>();
+    if (normals[i].dot(viewpoint - points[i]) < 0.0F) normals[i] = -normals[i];
   }
   return normals;
 }
@@ -48,7 +59,7 @@ MapCloud map_cloud(const JointMap& map, double voxel_m, bool with_normals) {
     out.robots.resize(out.cloud.size(), static_cast<std::uint16_t>(map.maps[i]->id.value + 1));
     if (!with_normals) continue;
     const std::vector<Eigen::Vector3f> normals =
-        normals_of(cloud.points, *map.maps[i], map.T_world_keyframe[i], normal_radius(voxel_m));
+        normals_of(cloud.points, *map.maps[i], map.T_world_keyframe[i], voxel_m);
     out.normals.insert(out.normals.end(), normals.begin(), normals.end());
   }
   return out;

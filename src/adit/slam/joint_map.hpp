@@ -77,9 +77,9 @@ struct JointMap {
 Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config,
                          const OutputFrame& frame = {});
 
-/// Writes the surface of the map (surface_mesh of its points) as a .ply with faces that look to the nearest
-/// place of the robot that saw them, less `float_offset`, which the header states. Fails on other endings,
-/// and where too little was seen for a surface.
+/// Writes the surface of the map (surface_mesh of its points) as a .ply with faces that look to where they
+/// were seen from, less `float_offset`, which the header states. Fails on other endings, and where too little
+/// was seen for a surface.
 Result<> write_joint_mesh(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config,
                           const OutputFrame& frame = {});
 

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <iterator>
 #include <map>
+#include <optional>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -150,42 +152,109 @@ Result<RobotId> robot_called(const FleetGraph& fleet, const std::string& name) {
   return fail(format("no robot is called {}; there are:{}", printable(name), names));
 }
 
-/// The verdict that takes the place of the test's.
-Result<MergeCheck> verdict_by(const Ruling& ruling, const FleetGraph& fleet) {
+constexpr std::string_view kQuoting = "; the test had said: ";
+constexpr std::string_view kLeftOut = "a person left out the loop of ";
+
+/// What the test had said, to be quoted; a ruling that went before is taken back, not quoted.
+std::string quote_of_test(const std::string& reason) {
+  std::string_view said = reason;
+  while (said.starts_with(kLeftOut)) said.remove_prefix(std::min(said.size(), said.find("; ") + 2));
+  if (const std::size_t at = said.find(kQuoting); at != std::string_view::npos)
+    said.remove_prefix(at + kQuoting.size());
+  return said.empty() ? "" : std::string(kQuoting) + std::string(said);
+}
+
+/// The robots of a ruling, and its loop with the keyframe of the first one first.
+struct RuledOver {
+  RobotPair robots;
+  std::optional<std::pair<std::uint32_t, std::uint32_t>> loop;
+};
+Result<RuledOver> ruled_over(const Ruling& ruling, const FleetGraph& fleet) {
   const Result<RobotId> one = robot_called(fleet, ruling.a);
   if (!one) return tl::unexpected(one.error());
   const Result<RobotId> other = robot_called(fleet, ruling.b);
   if (!other) return tl::unexpected(other.error());
   if (*one == *other) return fail("a ruling is about two robots, not twice about " + ruling.a);
-  const RobotPair pair = std::minmax(*one, *other);
-  const auto tested = fleet.checks.find(pair);
+  RuledOver out{std::minmax(*one, *other), {}};
+  if (ruling.loop)
+    out.loop = *one < *other ? std::pair(ruling.loop->of_a, ruling.loop->of_b)
+                             : std::pair(ruling.loop->of_b, ruling.loop->of_a);
+  return out;
+}
+
+/// "ahead:12 and behind:40"
+std::string name_of_loop(const Ruling& ruling) {
+  return format("{}:{} and {}:{}", ruling.a, ruling.loop->of_a, ruling.b, ruling.loop->of_b);
+}
+
+/// One loop less joins the two.
+Result<MergeCheck> without_loop(MergeCheck check, const Ruling& ruling,
+                                std::pair<std::uint32_t, std::uint32_t> loop) {
+  if (!check.accepted || std::erase(check.loops, loop) == 0)
+    return fail(format("the loop of {} joins nothing that could be kept apart; loops.csv lists those in use",
+                       name_of_loop(ruling)));
+  check.accepted = !check.loops.empty();
+  if (!check.accepted) {
+    check.refused_kind = RefusalKind::unknown;
+    check.hypotheses.front().outcome = HypothesisOutcome::unsure;
+  }
+  check.reason = format("{}{}{}; {}", kLeftOut, name_of_loop(ruling), check.accepted ? "" : ", the last one",
+                        check.reason);
+  return check;
+}
+
+MergeCheck kept_apart(MergeCheck check) {
+  check.accepted = false;
+  check.refused_kind = RefusalKind::unknown;
+  check.reason = "a person keeps these maps apart" + quote_of_test(check.reason);
+  if (!check.hypotheses.empty()) check.hypotheses.front().outcome = HypothesisOutcome::unsure;
+  return check;
+}
+
+/// By the best alignment, or by the one that the loop belongs to.
+Result<MergeCheck> confirmed(MergeCheck check, const Ruling& ruling, const RuledOver& over) {
+  auto hypothesis = check.hypotheses.begin();
+  if (over.loop) {
+    hypothesis = std::ranges::find_if(check.hypotheses, [&](const MergeHypothesis& one) {
+      return std::ranges::find(one.loops, *over.loop) != one.loops.end();
+    });
+    if (hypothesis == check.hypotheses.end())
+      return fail(
+          format("the loop of {} belongs to no alignment that could be confirmed; loops.csv lists the "
+                 "hypothesis of each",
+                 name_of_loop(ruling)));
+  }
+  if (hypothesis == check.hypotheses.end() || hypothesis->loops.empty())
+    return fail(format("{} and {}: no alignment was found that could be confirmed", ruling.a, ruling.b));
+  // What a check says of loops and evidence is of the first one.
+  if (check.hypotheses.front().outcome == HypothesisOutcome::accepted)
+    check.hypotheses.front().outcome = HypothesisOutcome::behind;
+  std::rotate(check.hypotheses.begin(), hypothesis, hypothesis + 1);
+  MergeHypothesis& best = check.hypotheses.front();
+  best.outcome = HypothesisOutcome::accepted;
+  check.accepted = true;
+  check.loops = best.loops;
+  check.evidence = best.evidence;
+  check.num_checked = best.num_checked;
+  check.num_passed = best.num_passed;
+  check.reason = (over.loop ? "a person confirmed this merge by the loop of " + name_of_loop(ruling)
+                            : std::string("a person confirmed this merge")) +
+                 quote_of_test(check.reason);
+  return check;
+}
+
+/// The verdict that takes the place of the test's.
+Result<MergeCheck> verdict_by(const Ruling& ruling, const FleetGraph& fleet) {
+  const Result<RuledOver> over = ruled_over(ruling, fleet);
+  if (!over) return tl::unexpected(over.error());
+  const auto tested = fleet.checks.find(over->robots);
   MergeCheck check;
   if (tested != fleet.checks.end()) check = tested->second;
-  check.a = pair.first;
-  check.b = pair.second;
+  check.a = over->robots.first;
+  check.b = over->robots.second;
   check.advice.reset();
-  // A ruling that went before is taken back, not quoted.
-  const std::string quoting = "; the test had said: ";
-  const std::size_t quoted = check.reason.find(quoting);
-  std::string said = check.reason;
-  if (quoted != std::string::npos) said = check.reason.substr(quoted + quoting.size());
-  if (!said.empty()) said = quoting + said;
-  const auto set_best = [&](HypothesisOutcome outcome) {
-    if (!check.hypotheses.empty()) check.hypotheses.front().outcome = outcome;
-  };
-  if (ruling.kind == Ruling::Kind::veto) {
-    check.accepted = false;
-    check.refused_kind = RefusalKind::unknown;
-    check.reason = "a person keeps these maps apart" + said;
-    set_best(HypothesisOutcome::unsure);
-    return check;
-  }
-  if (check.loops.empty())
-    return fail(format("{} and {}: no alignment was found that could be confirmed", ruling.a, ruling.b));
-  check.accepted = true;
-  check.reason = "a person confirmed this merge" + said;
-  set_best(HypothesisOutcome::accepted);
-  return check;
+  if (ruling.kind == Ruling::Kind::confirm) return confirmed(std::move(check), ruling, *over);
+  return over->loop ? without_loop(std::move(check), ruling, *over->loop) : kept_apart(std::move(check));
 }
 
 Result<> rule(Agent& agent, const std::vector<Ruling>& rulings) {

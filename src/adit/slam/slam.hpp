@@ -12,6 +12,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "adit/io/session_dir.hpp"
@@ -34,16 +36,23 @@ struct SlamRun {
   std::vector<Georeference> georeferences;
 };
 
-/// What a person says of two robots, by name, against the test.
+/// What a person says of two robots, by name, or of one loop between them, against the test.
 struct Ruling {
   /// Which of the two.
   enum class Kind : std::uint8_t {
-    veto,     ///< Their loops join nothing; they may still share a map through other robots.
-    confirm,  ///< They are joined by the best alignment that was found, as long as cycles with others close.
+    veto,     ///< Their loops, or that one, join nothing; others may still join their maps.
+    confirm,  ///< They are joined by the best alignment that was found, or by that of the loop, as long as
+              ///< cycles with others close.
   };
-  Kind kind = Kind::veto;  ///< What is said.
-  std::string a;           ///< One robot.
-  std::string b;           ///< The other.
+  /// The keyframes that a loop joins.
+  struct Loop {
+    std::uint32_t of_a = 0;  ///< Index of a's keyframe.
+    std::uint32_t of_b = 0;  ///< Index of b's keyframe.
+  };
+  Kind kind = Kind::veto;         ///< What is said.
+  std::string a;                  ///< One robot.
+  std::string b;                  ///< The other.
+  std::optional<Loop> loop = {};  ///< None: of all loops between them.
 };
 
 /// Maps every robot, lets each meet every other, and solves for the joint maps. With the default
@@ -60,7 +69,7 @@ struct Ruling {
 /// number, with a note. `rulings` come last and are kept as the reason of the pair. Fails, too, where there
 /// are more than 256 robots, where sessions described places in different ways, on a ruling about a robot
 /// that does not exist, under a policy without merge checks, and where no alignment was found that could be
-/// confirmed.
+/// confirmed, or a loop is in none or not in use.
 [[nodiscard]] Result<SlamRun> slam_on(std::vector<SavedFleet> saved, std::vector<Recording> recordings,
                                       const SlamConfig& config, const std::vector<Ruling>& rulings = {});
 

@@ -65,6 +65,7 @@ std::string reason_of(const LoopOutcome& outcome, const MergeCheck* check,
     return "maps not joined: " + pair->refused_reason;
   if (outcome.is_selected)
     return "switched off by GNC: errs by more than noise from what odometry and the other loops say";
+  if (passed && check->accepted) return "not in use: a person left it out";
   if (check != nullptr && !check->hypotheses.empty())
     return hypothesis ? "not in use: " + finding(*check, *hypothesis)
                       : std::string("not in use: agrees with too few other loops to be a hypothesis");
