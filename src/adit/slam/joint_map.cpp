@@ -24,29 +24,51 @@ namespace {
 /// that is not too many points.
 double normal_radius(double voxel_m) { return std::max(3.0 * voxel_m, std::min(0.3, 6.0 * voxel_m)); }
 
-/// The keyframe from which each voxel was seen first: that of its point in `merged_cloud`.
-VoxelTable first_views(const RobotMap& map, const std::vector<Pose>& T_world_keyframe,
-                       const VoxelGrid& grid) {
-  VoxelTable keyframes;
-  for (std::size_t k = 0; k < map.keyframes.size(); ++k)
-    for (const Eigen::Vector3f& point : transformed(T_world_keyframe[k], *map.keyframes[k].cloud).points)
-      if (const auto voxel = grid.key_of(point))
-        keyframes.find_or_insert(*voxel, static_cast<std::uint32_t>(k));
-  return keyframes;
-}
-
-/// Normals in the frame of the map, turned to the place from which the robot saw the point: the nearest place
-/// may be on the other side of a thin wall.
-std::vector<Eigen::Vector3f> normals_of(const std::vector<Eigen::Vector3f>& points, const RobotMap& map,
-                                        const std::vector<Pose>& T_world_keyframe, double voxel_m) {
-  const VoxelGrid grid(voxel_m);
-  const VoxelTable keyframes = first_views(map, T_world_keyframe, grid);
-  std::vector<Eigen::Vector3f> normals = estimate_normals(points, static_cast<float>(normal_radius(voxel_m)));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t seen_from = keyframes.find(grid.key_of(points[i]).value()).value();
-    const Eigen::Vector3f viewpoint = (T_world_keyframe[seen_from] * map.viewpoint).cast<float>();
-    if (normals[i].dot(viewpoint - points[i]) < 0.0F) normals[i] = -normals[i];
+/// From where each voxel of a map was seen the nearest: at a grazing angle the sides of a surface are not
+/// told apart.
+class NearestViews {
+ public:
+  NearestViews(const RobotMap& map, const std::vector<Pose>& T_world_keyframe, double voxel_m)
+      : grid_(voxel_m) {
+    for (std::size_t k = 0; k < map.keyframes.size(); ++k) {
+      const Eigen::Vector3f viewpoint = (T_world_keyframe[k] * map.viewpoint).cast<float>();
+      const PointCloud cloud = transformed(T_world_keyframe[k], *map.keyframes[k].cloud);
+      for (const Eigen::Vector3f& point : cloud.points) add(point, viewpoint);
+    }
   }
+  /// Of a point of the map.
+  [[nodiscard]] const Eigen::Vector3f& viewpoint_of(const Eigen::Vector3f& point) const {
+    return views_[numbers_.find(grid_.key_of(point).value()).value()].viewpoint;
+  }
+
+ private:
+  struct View {
+    Eigen::Vector3f viewpoint;
+    float range = 0.0F;
+  };
+  void add(const Eigen::Vector3f& point, const Eigen::Vector3f& viewpoint) {
+    const auto voxel = grid_.key_of(point);
+    if (!voxel) return;
+    const View view{viewpoint, (viewpoint - point).norm()};
+    const auto number = numbers_.find_or_insert(*voxel, static_cast<std::uint32_t>(views_.size()));
+    if (!number)
+      views_.push_back(view);
+    else if (view.range < views_[*number].range)
+      views_[*number] = view;
+  }
+
+  VoxelGrid grid_;
+  VoxelTable numbers_;
+  std::vector<View> views_;
+};
+
+/// Normals in the frame of the map, turned to where the robot saw the point from: the nearest place of the
+/// robot may be on the other side of a thin wall.
+std::vector<Eigen::Vector3f> normals_of(const std::vector<Eigen::Vector3f>& points, const NearestViews& views,
+                                        double radius) {
+  std::vector<Eigen::Vector3f> normals = estimate_normals(points, static_cast<float>(radius));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (normals[i].dot(views.viewpoint_of(points[i]) - points[i]) < 0.0F) normals[i] = -normals[i];
   return normals;
 }
 
@@ -58,8 +80,8 @@ MapCloud map_cloud(const JointMap& map, double voxel_m, bool with_normals) {
     append(out.cloud, cloud);
     out.robots.resize(out.cloud.size(), static_cast<std::uint16_t>(map.maps[i]->id.value + 1));
     if (!with_normals) continue;
-    const std::vector<Eigen::Vector3f> normals =
-        normals_of(cloud.points, *map.maps[i], map.T_world_keyframe[i], voxel_m);
+    const NearestViews views(*map.maps[i], map.T_world_keyframe[i], voxel_m);
+    const std::vector<Eigen::Vector3f> normals = normals_of(cloud.points, views, normal_radius(voxel_m));
     out.normals.insert(out.normals.end(), normals.begin(), normals.end());
   }
   return out;
