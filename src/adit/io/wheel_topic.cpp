@@ -28,7 +28,7 @@ class TopicReader : public PoseReader {
   Result<PoseTrack> finish() final {
     Result<PoseTrack> track = take_track();
     if (!track) return fail(topic_, track.error());
-    for (std::string& warning : track->warnings) warning = topic_ + ": " + warning;
+    for (std::string& warning : track->warnings) warning.insert(0, topic_ + ": ");
     return track;
   }
 
