@@ -387,15 +387,37 @@ std::optional<MountByMotion> mount_from(const std::vector<SideMotion>& motions) 
   return out;
 }
 
+/// Of the stretches of `length` scans the `num` in which the wheels turn most: their first scans.
+std::vector<std::size_t> where_it_turns(const Recording& recording, const std::vector<std::size_t>& scans,
+                                        std::size_t length, std::size_t num) {
+  std::vector<std::pair<double, std::size_t>> stretches;
+  for (std::size_t begin = 0; begin + length < scans.size(); begin += length) {
+    double turned = 0.0;
+    for (std::size_t i = begin + 1; i <= begin + length; ++i) {
+      const Result<Pose> before = pose_at(recording.wheel, recording.scan_stamps[scans[i - 1]]);
+      const Result<Pose> after = pose_at(recording.wheel, recording.scan_stamps[scans[i]]);
+      if (before && after) turned += std::abs((before->inverse() * *after).yaw());
+    }
+    stretches.emplace_back(-turned, begin);
+  }
+  std::ranges::sort(stretches);
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < std::min(num, stretches.size()); ++i) out.push_back(stretches[i].second);
+  return out;
+}
+
 }  // namespace
 
 std::optional<MountByMotion> mount_by_motion(const Recording& recording) {
-  constexpr std::size_t kStretches = 12;
+  constexpr std::size_t kStretches =
+      6;                               // over the whole drive, and as many where it turns: for the lever arm
   constexpr std::size_t kLength = 25;  // scans
   if (recording.wheel.size() < 2) return {};
   const std::vector<std::size_t> scans = scans_to_check(recording);
-  const std::vector<std::size_t> starts =
+  std::vector<std::size_t> starts =
       spread_over(scans.size() > kLength ? scans.size() - kLength : 0, kStretches);
+  for (const std::size_t start : where_it_turns(recording, scans, kLength, kStretches))
+    if (std::ranges::find(starts, start) == starts.end()) starts.push_back(start);
   std::vector<std::vector<SideMotion>> of_stretches(starts.size());
   parallel_for_each(starts.size(), [&](std::size_t i) {
     of_stretches[i] = side_motions(recording, std::span(scans).subspan(starts[i], kLength));
