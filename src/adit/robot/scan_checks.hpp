@@ -69,8 +69,9 @@ struct MountByMotion {
   double ahead_sigma_m = 0.0;  ///< Infinite on a drive without curves.
   std::size_t num_steps = 0;   ///< From scan to scan, where the motion was well measured; 40 or more.
 };
-/// Registers some 300 scans, half of them where the robot turns most. None without wheels, or where the scans leave too much of the motion open. A
-/// vehicle whose middle of turning is not the base's origin shows as `ahead_m`, too.
+/// Registers some 300 scans, half of them where the robot turns most. None without wheels, or where the scans
+/// leave too much of the motion open. A vehicle whose middle of turning is not the base's origin shows as
+/// `ahead_m`, too.
 [[nodiscard]] std::optional<MountByMotion> mount_by_motion(const Recording& recording);
 
 }  // namespace adit
