@@ -25,7 +25,8 @@ Result<CloudFile> read_kitti(std::string_view bytes);
 /// rotation to 1e-3, which is then made one; the line is named.
 [[nodiscard]] Result<std::vector<Pose>> read_kitti_poses(std::string_view text);
 
-/// T_camera_lidar of KITTI's calib.txt, its line "Tr:"; fails where there is none, or as read_kitti_poses.
+/// Where the LiDAR sits on the camera, T_camera_lidar in metres: the line "Tr:" of KITTI's calib.txt. Fails
+/// where there is no such line, and where it is no pose.
 [[nodiscard]] Result<Pose> read_kitti_calibration(std::string_view text);
 
 /// KITTI's pose file: one line per pose, the upper three rows of T_world_body row by row, without stamps.

@@ -3,15 +3,16 @@
 /// A folder of clouds as the recording of one robot.
 ///
 /// Scans are all .pcd, .ply or .bin files of the folder (of one kind), or of its folder `velodyne`, as in a
-/// sequence of KITTI, ordered by the last number in their names. Beside them, or in the
-/// sequence, each where it is known:
-///  - `stamps.txt`, or KITTI's `times.txt`: one decimal stamp in seconds per line,
-///    one line per scan. Without either, the number in the name counts as seconds (0017.pcd: 17 s);
+/// sequence of KITTI, ordered by the last number in their names. Beside them, or in the sequence, each where
+/// it is known:
+///  - `stamps.txt`, or KITTI's `times.txt`: one decimal stamp in seconds per line, one line per scan. Without
+///    either, the number in the name counts as seconds (0017.pcd: 17 s);
 ///  - `recording.toml`: `robot` and `lidar`, their names, and `mount`, the pose of the LiDAR on the robot
 ///    (see mount.hpp) when the clouds are in the LiDAR's frame;
-///  - `odometry.tum` (T_wheelodom_base) and `groundtruth.tum` (T_world_base), on the clock of the stamps; of
-///    a sequence of KITTI the poses of its camera (`poses.txt`, or `poses/07.txt` of the set), by way of
-///    `calib.txt`;
+///  - `odometry.tum` (T_wheelodom_base) and `groundtruth.tum` (T_world_base), on the clock of the stamps.
+///    Without the latter, the ground truth of a sequence of KITTI is that of its camera (`poses.txt`, or
+///    `poses/07.txt` of the whole set) by way of `calib.txt`; where they do not fit it is left out, and the
+///    recording's `assumptions` say why;
 ///  - `NNNNNN.offsets` beside a .bin, which has no room for them: the points' times, int32 nanoseconds from
 ///    the scan's stamp, little-endian.
 ///
@@ -44,9 +45,9 @@ struct FolderReading {
   std::optional<TimeUnit> time_unit = {};  ///< Of the times of points (packed_cloud.hpp).
 };
 
-/// Scans are read when asked for, from any
-/// thread. Errors: no clouds, clouds of several kinds, two scans of one number, a single scan, stamps not
-/// ascending or not as many as scans, an odometry that covers none of the scans, wheels without a mount.
+/// Scans are read when asked for, from any thread. Errors: no clouds, clouds of several kinds, two scans of
+/// one number, a single scan, stamps not ascending or not as many as scans, an odometry that covers none of
+/// the scans, wheels without a mount.
 Result<Recording> read_scan_folder(const std::filesystem::path& folder, ScanSelection selection = {},
                                    const FolderReading& reading = {});
 

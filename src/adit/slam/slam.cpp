@@ -196,7 +196,7 @@ Result<MergeCheck> without_loop(MergeCheck check, const Ruling& ruling,
   check.accepted = !check.loops.empty();
   if (!check.accepted) {
     check.refused_kind = RefusalKind::unknown;
-    check.hypotheses.front().outcome = HypothesisOutcome::unsure;
+    if (!check.hypotheses.empty()) check.hypotheses.front().outcome = HypothesisOutcome::unsure;
   }
   check.reason = format("{}{}{}; {}", kLeftOut, name_of_loop(ruling), check.accepted ? "" : ", the last one",
                         check.reason);
