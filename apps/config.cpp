@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 #include <memory>
+#include <string>
 
 #include "adit/io/config_toml.hpp"
+#include "adit/slam/settings_to_watch.hpp"
 #include "command_line.hpp"
 
 namespace adit::app {
@@ -20,7 +22,10 @@ void add_config(Program& program) {
         Result<RunConfig> config = configured(common, options->simulation);
         if (!config) return tl::unexpected(config.error());
         const Fields fields = fields_of(*config);
-        std::printf("%s", (options->markdown ? to_markdown(fields) : to_toml(fields)).c_str());
+        const std::string text = options->markdown
+                                     ? markdown_of_settings_to_watch() + "\n" + to_markdown(fields)
+                                     : to_toml(fields);
+        std::printf("%s", text.c_str());
         return {};
       });
   command.add_flag("--markdown", options->markdown, "As the tables of docs/configuration.md");

@@ -11,6 +11,7 @@
 #include "adit/io/tum.hpp"
 #include "adit/report/text_tables.hpp"
 #include "adit/slam/session_evaluation.hpp"
+#include "adit/slam/session_log.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
 
@@ -22,6 +23,7 @@ struct EvaluateOptions {
   std::vector<std::string> truths;
   std::string mesh;
   std::vector<std::string> trajectories;
+  std::string log;  ///< A .jrl to write.
 };
 
 Result<std::vector<GivenTruth>> read_truths(const std::vector<std::string>& files) {
@@ -69,7 +71,8 @@ Result<> evaluate_session(const EvaluateOptions& options, const SightConfig& con
   }
   const Result<> saved = save_evaluation(options.input, *evaluation);
   if (!saved) print_notes("evaluate", {"the session itself is unchanged: " + saved.error().message});
-  return {};
+  if (options.log.empty()) return {};
+  return write_labelled_log(options.log, options.input, *session, *evaluation, *truths);
 }
 
 Result<std::vector<Trajectory>> read_trajectories(const std::vector<std::string>& files) {
@@ -130,6 +133,7 @@ Result<> evaluate_command(const EvaluateOptions& options, const Common& common) 
     if (!options.trajectories.empty()) usage_error("--trajectory goes with a cloud; a session has its own");
     return evaluate_session(options, config->sight, common);
   }
+  if (!options.log.empty()) usage_error("--jrl is the graph of a session, and a cloud has none");
   if (!options.trajectories.empty() && options.trajectories.size() != options.truths.size())
     usage_error(format("--trajectory names {} files and --truth {}; each needs its truth, in the same order",
                        options.trajectories.size(), options.truths.size()));
@@ -159,6 +163,9 @@ void add_evaluate(Program& program) {
       "--trajectory", options->trajectories,
       "With a cloud: the trajectories (TUM) in its frame, in the order of --truth, which align it; "
       "without them it is taken to be in the frame of the mesh");
+  command.add_option("--jrl", options->log,
+                     "Writes all loops of the session as a JSON Robot Log (.jrl) with the truth of each "
+                     "keyframe and wrong loops labelled, so that any solver can be judged");
   command.footer(
       "Writes the class of each loop into loops.csv of the session, and the errors into its metrics.json.");
 }

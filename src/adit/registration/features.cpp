@@ -15,16 +15,19 @@ namespace {
 /// memory.
 struct VoxelMeans {
   VoxelMeans(const PointCloud& cloud, double voxel_size, float cell_size) {
-    const std::vector<Eigen::Vector3f> centroids = voxel_centroids(cloud, voxel_size).points;
-    const std::vector<std::uint32_t> order = order_by_cell(centroids, cell_size);
+    const PointCloud centroids = voxel_centroids(cloud, voxel_size);
+    const std::vector<std::uint32_t> order = order_by_cell(centroids.points, cell_size);
     points.resize(order.size());
+    intensities.resize(centroids.intensities.size());
     positions.resize(order.size());
     for (std::uint32_t k = 0; k < order.size(); ++k) {
-      points[k] = centroids[order[k]];
+      points[k] = centroids.points[order[k]];
+      if (!intensities.empty()) intensities[k] = centroids.intensities[order[k]];
       positions[order[k]] = k;
     }
   }
   std::vector<Eigen::Vector3f> points;
+  std::vector<float> intensities;  ///< Of the points; empty where the cloud has none.
   std::vector<std::uint32_t>
       positions;  ///< In `points`, of the voxels in the order in which they first occur.
 };
@@ -62,6 +65,7 @@ OrientedPoints compute_surface(const PointCloud& cloud, const RegistrationConfig
     if (!surface[k].valid) continue;
     out.points.push_back(means.points[k]);
     out.normals.push_back(surface[k].normal);
+    if (!means.intensities.empty()) out.intensities.push_back(means.intensities[k]);
   }
   return out;
 }

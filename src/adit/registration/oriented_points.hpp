@@ -10,10 +10,11 @@
 
 namespace adit {
 
-/// Points with the normals of the surface that they lie on; both vectors are equally long.
+/// Points with the normals of the surface that they lie on; all vectors are equally long.
 struct OrientedPoints {
   std::vector<Eigen::Vector3f> points;   ///< Metres, in the frame of the cloud.
   std::vector<Eigen::Vector3f> normals;  ///< Unit length, pointing to the origin of that frame.
+  std::vector<float> intensities = {};   ///< In the unit of the sensor; empty: the cloud has none.
 
   /// Of the points, and so of the normals.
   ///@{

@@ -15,6 +15,7 @@ struct OnPatch {
   double metres = 0.0;
   SensorTerms by_sensors = SensorTerms::Zero();
   Vector6 by_fit = Vector6::Zero();
+  Eigen::Vector2d by_known = Eigen::Vector2d::Zero();
   int num_points = 0;
 };
 
@@ -60,6 +61,10 @@ double sigma_of_share(const std::vector<StretchSigns>& stretches, double share) 
   return std::max(std::sqrt(squares) / num, 0.5 / std::sqrt(num));
 }
 
+float intensity_of(const OrientedPoints& points, std::size_t i) {
+  return points.intensities.empty() ? 0.0F : points.intensities[i];
+}
+
 std::int32_t side_of(const Eigen::Vector3f& normal) {
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
@@ -93,7 +98,8 @@ std::vector<PatchOffset> patch_offsets(const SearchableSurface& a, const Searcha
     if (normal_a.dot(normal_b) < min_cosine) continue;
     // Of two points beside one another on a wall that curves, each is off the plane through the other; along
     // the mean of both normals neither is.
-    const WallPair pair{a.points().points[near->index], p, (normal_a + normal_b).normalized()};
+    const WallPair pair{a.points().points[near->index], p, (normal_a + normal_b).normalized(),
+                        intensity_of(a.points(), near->index), intensity_of(b.points(), i)};
     const float off = pair.normal.dot(p - pair.seen_by_a);
     if (std::abs(off) > max_offset) continue;
     const Eigen::Array3f cell = ((R_map * p + t_map) / patch).array().floor();
@@ -101,14 +107,14 @@ std::vector<PatchOffset> patch_offsets(const SearchableSurface& a, const Searcha
                             static_cast<std::int32_t>(cell.z()), side_of(R_map * pair.normal)}];
     sum.metres += static_cast<double>(off);
     sum.by_fit += motion_terms(pair);
-    terms_of.add(pair, 1.0, sum.by_sensors);
+    terms_of.add(pair, 1.0, sum.by_sensors, sum.by_known);
     ++sum.num_points;
   }
   std::vector<PatchOffset> out;
   for (const auto& [where, sum] : patches)
     if (sum.num_points >= config.min_points)
-      out.push_back(
-          {where, sum.metres / sum.num_points, sum.by_sensors / sum.num_points, sum.by_fit / sum.num_points});
+      out.push_back({where, sum.metres / sum.num_points, sum.by_sensors / sum.num_points,
+                     sum.by_fit / sum.num_points, sum.by_known / sum.num_points});
   return out;
 }
 
@@ -126,15 +132,18 @@ OffsetParts WallOffsets::parts() const {
                       first_of_pair_,
                       {},
                       stretches_of(offsets_, config_.patch_m)};
+  Eigen::Matrix<double, Eigen::Dynamic, 2> known(num, 2);
   std::map<WallPatch, Eigen::Index> last;
   for (Eigen::Index i = 0; i < num; ++i) {
     const PatchOffset& offset = offsets_[static_cast<std::size_t>(i)];
     system.metres[i] = offset.metres;
     system.by_sensors.row(i) = offset.by_sensors.transpose();
     system.by_fit.row(i) = offset.by_fit.transpose();
+    known.row(i) = offset.by_known.transpose();
     const auto [before, is_first] = last.emplace(offset.patch, i);
     if (!is_first) system.repeated.push_back({std::exchange(before->second, i), i});
   }
+  centre_intensities(system.by_sensors, known);
   return taken_apart(system, {});
 }
 

@@ -29,6 +29,8 @@ struct PatchOffset {
   double metres = 0.0;
   SensorTerms by_sensors = SensorTerms::Zero();  ///< By how much the errors of the sensors change that,
   Vector6 by_fit = Vector6::Zero();              ///< and an error of the fit (motion_terms).
+  /// And a constant error of the returns of a and of b whose intensity is known.
+  Eigen::Vector2d by_known = Eigen::Vector2d::Zero();
 };
 
 /// One offset per patch near a that both scans saw well. `T_a_b` is the fit of the points of b to a, in the

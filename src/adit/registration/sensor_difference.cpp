@@ -17,29 +17,40 @@ namespace {
 constexpr double kNodeSpacing = 4.0 * kDegree;
 constexpr double kLastNode = 2.0 * kElevationNodesToEachSide;
 
-/// A range that is too long by e moves the wall back by e times the cosine of incidence. `towards`: from the
-/// wall to the sensor, whose robot stands upright along `up`.
-void add_view(const Eigen::Vector3f& towards, const Eigen::Vector3f& up, const Eigen::Vector3f& normal,
-              double weight, Eigen::Ref<Eigen::Matrix<double, kErrorsOfSensor, 1>> sum) {
-  const Eigen::Vector3f direction = towards.normalized();
+/// What one sensor saw of a wall.
+struct View {
+  Eigen::Vector3f towards;  // from the wall to the sensor,
+  Eigen::Vector3f up;       // whose robot stands upright along this
+  float intensity;
+};
+
+/// A range that is too long by e moves the wall back by e times the cosine of incidence.
+void add_view(const View& view, const Eigen::Vector3f& normal, double weight,
+              Eigen::Ref<Eigen::Matrix<double, kErrorsOfSensor, 1>> sum, double& known) {
+  const Eigen::Vector3f direction = view.towards.normalized();
   const auto cosine = static_cast<double>(std::abs(normal.dot(direction)));
-  const auto elevation = static_cast<double>(std::asin(std::clamp(-direction.dot(up), -1.0F, 1.0F)));
+  const auto elevation = static_cast<double>(std::asin(std::clamp(-direction.dot(view.up), -1.0F, 1.0F)));
   const double place =
       std::clamp(elevation / kNodeSpacing + kElevationNodesToEachSide, 0.0, kLastNode - 1e-9);
   const auto node = static_cast<Eigen::Index>(place);
   const double beyond = place - static_cast<double>(node);
   const double moved = weight * cosine;
-  sum[0] += moved;
-  sum[1] += moved * (1.0 - cosine);
-  sum[2 + node] += moved * (1.0 - beyond);
-  sum[3 + node] += moved * beyond;
+  sum[kConstantError] += moved;
+  sum[kIncidenceError] += moved * (1.0 - cosine);
+  if (view.intensity > 0.0F && std::isfinite(view.intensity)) {
+    sum[kIntensityError] += moved * std::log10(static_cast<double>(view.intensity));
+    known += moved;
+  }
+  sum[kFirstElevationError + node] += moved * (1.0 - beyond);
+  sum[kFirstElevationError + node + 1] += moved * beyond;
 }
 
 Eigen::VectorXd prior_weights(const OffsetPrior& prior) {
   Eigen::VectorXd weights = Eigen::VectorXd::Constant(kSensorErrors, 1.0 / (prior.ring_m * prior.ring_m));
   for (const int first : {0, kErrorsOfSensor}) {
-    weights[first] = 1.0 / (prior.bias_m * prior.bias_m);
-    weights[first + 1] = 1.0 / (prior.walk_m * prior.walk_m);
+    weights[first + kConstantError] = 1.0 / (prior.bias_m * prior.bias_m);
+    weights[first + kIncidenceError] = 1.0 / (prior.walk_m * prior.walk_m);
+    weights[first + kIntensityError] = 1.0 / (prior.per_tenfold_m * prior.per_tenfold_m);
   }
   return weights;
 }
@@ -149,9 +160,20 @@ SensorTermsOf::SensorTermsOf(const SearchableSurface& a, const SearchableSurface
       up_a_(Eigen::Vector3f::UnitZ()),
       up_b_(T_a_b.rotation_matrix().col(2).cast<float>()) {}
 
-void SensorTermsOf::add(const WallPair& pair, double weight, SensorTerms& sum) const {
-  add_view(viewpoint_a_ - pair.seen_by_a, up_a_, pair.normal, weight, sum.head<kErrorsOfSensor>());
-  add_view(viewpoint_b_ - pair.seen_by_b, up_b_, pair.normal, -weight, sum.tail<kErrorsOfSensor>());
+void SensorTermsOf::add(const WallPair& pair, double weight, SensorTerms& sum, Eigen::Vector2d& known) const {
+  add_view({viewpoint_a_ - pair.seen_by_a, up_a_, pair.intensity_a}, pair.normal, weight,
+           sum.head<kErrorsOfSensor>(), known[0]);
+  add_view({viewpoint_b_ - pair.seen_by_b, up_b_, pair.intensity_b}, pair.normal, -weight,
+           sum.tail<kErrorsOfSensor>(), known[1]);
+}
+
+void centre_intensities(Eigen::Matrix<double, Eigen::Dynamic, kSensorErrors>& by_sensors,
+                        const Eigen::Matrix<double, Eigen::Dynamic, 2>& known) {
+  for (const Eigen::Index sensor : {0, 1}) {
+    auto logarithms = by_sensors.col(sensor * kErrorsOfSensor + kIntensityError);
+    const double num = known.col(sensor).sum();
+    if (num != 0.0) logarithms -= logarithms.sum() / num * known.col(sensor);
+  }
 }
 
 Vector6 motion_terms(const WallPair& pair) {

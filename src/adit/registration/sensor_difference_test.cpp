@@ -23,8 +23,17 @@ const Eigen::Array3f kHigh(9.0F, 3.0F, 4.0F);
 
 struct RangeErrors {
   double bias = 0.0;
-  double walk = 0.0;  ///< Squared in 1 - cosine, unlike the model.
+  double walk = 0.0;           ///< Squared in 1 - cosine, unlike the model.
+  double tenfold = 0.0;        ///< By intensity.
+  float unit = 1.0F;           ///< Of the intensities that are stated.
+  bool is_half_known = false;  ///< Whether every other return states none.
 };
+
+/// Of returns from the drift: rock and shotcrete by turns, every three metres.
+double intensity_at(const Eigen::Vector3f& place, double cosine) {
+  const int cells = static_cast<int>(std::floor(place.x() / 3.0F) + std::floor(place.z() / 3.0F));
+  return (cells % 2 == 0 ? 5.0 : 60.0) * cosine;
+}
 
 /// Ranges of a LiDAR at that place in the drift, in its own frame.
 SeenSurface seen_from(const Eigen::Vector3f& viewpoint, const RangeErrors& errors, std::uint64_t seed) {
@@ -39,7 +48,11 @@ SeenSurface seen_from(const Eigen::Vector3f& viewpoint, const RangeErrors& error
     Eigen::Index wall = 0;
     const float range = reach.minCoeff(&wall);
     const auto off_normal = static_cast<double>(1.0F - std::abs(direction[wall]));
-    const double error = errors.bias + errors.walk * off_normal * off_normal + 0.01 * rng.normal();
+    const double intensity = intensity_at(viewpoint + range * direction.matrix(), 1.0 - off_normal);
+    const double error = errors.bias + errors.walk * off_normal * off_normal +
+                         errors.tenfold * std::log10(intensity) + 0.01 * rng.normal();
+    const bool is_known = !errors.is_half_known || i % 2 == 0;
+    cloud.intensities.push_back(is_known ? errors.unit * static_cast<float>(intensity) : 0.0F);
     cloud.points.emplace_back((range + static_cast<float>(error)) * direction.matrix());
   }
   return {compute_surface(cloud, {}), Vector3::Zero(), RegistrationConfig().voxel_size};
@@ -62,12 +75,15 @@ OffsetSystem offsets_between(const RangeErrors& of_a, const RangeErrors& of_b) {
   const std::vector<PatchOffset> found = patch_offsets(a, b, fitted(a, b), Pose(), {});
   const Eigen::Index num = std::ssize(found);
   OffsetSystem out{Eigen::VectorXd(num), {num, kSensorErrors}, {num, 6}, {0}};
+  Eigen::Matrix<double, Eigen::Dynamic, 2> known(num, 2);
   for (Eigen::Index i = 0; i < num; ++i) {
     const PatchOffset& offset = found[static_cast<std::size_t>(i)];
     out.metres[i] = offset.metres;
     out.by_sensors.row(i) = offset.by_sensors.transpose();
     out.by_fit.row(i) = offset.by_fit.transpose();
+    known.row(i) = offset.by_known.transpose();
   }
+  centre_intensities(out.by_sensors, known);
   return out;
 }
 
@@ -108,7 +124,8 @@ TEST(SensorDifference, SolvesForEachFitAndBothSensorsTogether) {
   }
   const OffsetPrior prior;
   Eigen::VectorXd sigmas = Eigen::VectorXd::Constant(design.cols(), prior.ring_m);
-  for (const int sensor : {0, kErrorsOfSensor}) sigmas.segment<2>(sensor) << prior.bias_m, prior.walk_m;
+  for (const int sensor : {0, kErrorsOfSensor})
+    sigmas.segment<3>(sensor) << prior.bias_m, prior.walk_m, prior.per_tenfold_m;
   for (int pair = 0; pair < 3; ++pair)
     sigmas.segment<6>(kSensorErrors + 6 * pair) << Vector3::Constant(prior.fit_m),
         Vector3::Constant(prior.fit_rad);
@@ -130,11 +147,33 @@ TEST(SensorDifference, SolvesForEachFitAndBothSensorsTogether) {
 TEST(SensorDifference, ExplainsWhatUnitsDifferIn) {
   const double noise = rms(left_of(offsets_between({}, {})));
   ASSERT_LT(noise, 0.006);
-  for (const RangeErrors& of_b : {RangeErrors{0.03, 0.0}, {-0.02, 0.02}, {0.06, 0.0}, {0.0, 0.03}}) {
+  for (const RangeErrors& of_b :
+       {RangeErrors{0.03, 0.0}, {-0.02, 0.02}, {0.06, 0.0}, {0.0, 0.03}, {0.0, 0.0, 0.02}}) {
     const OffsetSystem offsets = offsets_between({-0.01, 0.0}, of_b);
     EXPECT_GT(rms(offsets.metres), 1.4 * noise) << of_b.bias;  // there is something to explain
     EXPECT_LT(rms(left_of(offsets)), 1.25 * noise) << of_b.bias;
   }
+}
+
+TEST(SensorDifference, DarkAndBrightWallsAreNoRelief) {
+  const OffsetSystem offsets = offsets_between({}, {0.0, 0.0, 0.02});
+  OffsetSystem without = offsets;
+  for (const int sensor : {0, kErrorsOfSensor}) without.by_sensors.col(sensor + kIntensityError).setZero();
+  EXPECT_GT(rms(left_of(without)), 1.25 * rms(left_of(offsets)));
+}
+
+TEST(SensorDifference, TheUnitOfIntensitiesDoesNotMatter) {
+  const OffsetSystem one = offsets_between({}, {0.0, 0.0, 0.02});
+  const OffsetSystem other = offsets_between({}, {0.0, 0.0, 0.02, 1000.0F});
+  EXPECT_LT(rms(left_of(one) - left_of(other)), 1e-5);
+}
+
+TEST(SensorDifference, ReturnsOfUnknownIntensitySayNothing) {
+  EXPECT_TRUE(
+      offsets_between({}, {0.0, 0.0, 0.0, 0.0F}).by_sensors.col(kErrorsOfSensor + kIntensityError).isZero());
+  // Patches whose returns are known in part are explained in part.
+  const double without = rms(left_of(offsets_between({}, {0.0, 0.0, 0.02, 0.0F})));
+  EXPECT_LT(rms(left_of(offsets_between({}, {0.0, 0.0, 0.02, 100.0F, true}))), 0.95 * without);
 }
 
 TEST(SensorDifference, ReliefIsNotOfTheSensors) {

@@ -11,6 +11,7 @@
 #include "adit/odometry/scan_to_map.hpp"
 #include "adit/place/scan_context.hpp"
 #include "adit/simulation/lidar_model.hpp"
+#include "adit/slam/settings_to_watch.hpp"
 
 namespace adit {
 namespace {
@@ -25,6 +26,17 @@ TEST(RunConfig, EveryKeyHasOneMeaning) {
                           "loops.registration.min_inliers", "loops.adaptive.registration.voxel_size",
                           "back_end.gnc.mu_step", "simulation.lidar.beams", "world.preset", "bus.loss"})
     EXPECT_TRUE(keys.contains(key)) << key;
+}
+
+TEST(RunConfig, SettingsToWatchAreFieldsInTheirOrder) {
+  RunConfig config;
+  const Fields fields = fields_of(config);
+  auto from = fields.begin();
+  for (const SettingToWatch& one : settings_to_watch()) {
+    from = std::ranges::find(from, fields.end(), one.key, &Field::key);
+    ASSERT_NE(from, fields.end()) << one.key;
+    EXPECT_NE(markdown_of_settings_to_watch().find("| `" + from->key + "` | "), std::string::npos);
+  }
 }
 
 TEST(RunConfig, WhatIsPrintedIsReadBackAndChangesNothing) {

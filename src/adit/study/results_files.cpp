@@ -234,6 +234,9 @@ std::string calibration_json(const std::vector<JudgedHypothesis>& hypotheses) {
                    {"changes", h.counts.num_changes},
                    {"things", h.counts.num_things},
                    {"wall_patches", h.counts.num_wall_patches},
+                   {"looked_for_again", h.counts.num_looked_for},
+                   {"found_again", h.counts.num_found_again},
+                   {"not_found_again", h.counts.num_not_found},
                    {"equal_signs", h.counts.equal_signs},
                    {"equal_signs_sigma", h.counts.equal_signs_sigma}});
   return Json{{"version", 1}, {"hypotheses", all}}.dump(1) + "\n";

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <optional>
 #include <string>
 
+#include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/rng.hpp"
 #include "adit/transport/wire_bytes.hpp"
@@ -17,6 +19,9 @@ namespace wire {
 
 constexpr float kPointStep = 0.005F;  // metres
 constexpr float kPointReach = kPointStep * 32767.0F;
+// Intensities from 0.0011 to 93,000 in a byte, whatever their unit.
+constexpr float kCodesPerTenfold = 32.0F;
+constexpr float kCodeOfOne = 96.0F;
 
 // One `put` and one `get` a type, side by side.
 
@@ -123,24 +128,47 @@ void get(Reader& in, Places::Place& place) {
   get(in, place.context);
 }
 
+bool is_within_reach(const Eigen::Vector3f& point) { return point.cwiseAbs().maxCoeff() <= kPointReach; }
 void put_within_reach(Writer& out, const std::vector<Eigen::Vector3f>& points) {
   std::vector<Eigen::Vector3f> near;
-  for (const Eigen::Vector3f& point : points) {
-    if (point.cwiseAbs().maxCoeff() <= kPointReach) near.push_back(point);
-  }
+  std::ranges::copy_if(points, std::back_inserter(near), is_within_reach);
   out.vector(near);
+}
+/// Of the points within reach: its logarithm; 0 where it is not positive.
+void put_intensities(Writer& out, const Clouds::Cloud& cloud) {
+  ADIT_CHECK(cloud.intensities.empty() || cloud.intensities.size() == cloud.points.size(),
+             "one intensity per point, or none at all");
+  std::vector<std::uint8_t> codes;
+  for (std::size_t i = 0; i < cloud.intensities.size(); ++i) {
+    if (!is_within_reach(cloud.points[i])) continue;
+    const float intensity = cloud.intensities[i];
+    const float code = kCodeOfOne + kCodesPerTenfold * std::log10(std::max(intensity, 1e-9F));
+    codes.push_back(intensity > 0.0F ? static_cast<std::uint8_t>(std::lround(std::clamp(code, 1.0F, 255.0F)))
+                                     : 0);
+  }
+  out.vector(codes);
+}
+void get_intensities(Reader& in, Clouds::Cloud& cloud) {
+  std::vector<std::uint8_t> codes;
+  in.vector(codes);
+  if (!codes.empty() && codes.size() != cloud.points.size()) return in.refuse();
+  for (const std::uint8_t code : codes)
+    cloud.intensities.push_back(
+        code == 0 ? 0.0F : std::pow(10.0F, (static_cast<float>(code) - kCodeOfOne) / kCodesPerTenfold));
 }
 void put(Writer& out, const Clouds::Cloud& cloud) {
   out.scalar(cloud.index);
   put(out, cloud.viewpoint);
   put_within_reach(out, cloud.points);
   put_within_reach(out, cloud.beside);
+  put_intensities(out, cloud);
 }
 void get(Reader& in, Clouds::Cloud& cloud) {
   cloud.index = in.scalar<std::uint32_t>();
   get(in, cloud.viewpoint);
   in.vector(cloud.points);
   in.vector(cloud.beside);
+  get_intensities(in, cloud);
 }
 
 void put(Writer& out, const LoopClosure& loop) {
@@ -259,14 +287,16 @@ void get(Reader& in, TestedPlace& place) {
 
 void put(Writer& out, const HypothesisCounts& counts) {
   for (const std::uint32_t value :
-       {counts.num_distinctive, counts.num_changes, counts.num_things, counts.num_wall_patches})
+       {counts.num_distinctive, counts.num_changes, counts.num_things, counts.num_wall_patches,
+        counts.num_looked_for, counts.num_found_again, counts.num_not_found})
     out.scalar(value);
   for (const double value : {counts.compared_m, counts.equal_signs, counts.equal_signs_sigma})
     out.scalar(value);
 }
 void get(Reader& in, HypothesisCounts& counts) {
   for (std::uint32_t* value :
-       {&counts.num_distinctive, &counts.num_changes, &counts.num_things, &counts.num_wall_patches})
+       {&counts.num_distinctive, &counts.num_changes, &counts.num_things, &counts.num_wall_patches,
+        &counts.num_looked_for, &counts.num_found_again, &counts.num_not_found})
     *value = in.scalar<std::uint32_t>();
   for (double* value : {&counts.compared_m, &counts.equal_signs, &counts.equal_signs_sigma}) {
     *value = in.scalar<double>();

@@ -37,7 +37,7 @@ MergeCheck a_check() {
                       {HypothesisOutcome::refuted, -3.5, 20, 13, 21.5, {{7, 9}}}};
   check.hypotheses[0].places = {{5, 70000, PlaceOutcome::distinctive}, {9, 70004, PlaceOutcome::differs}};
   check.hypotheses[0].walls = 2.5;
-  check.hypotheses[1].counts = {11, 3, 70001, 456, 123.5, 0.75, 0.0625};
+  check.hypotheses[1].counts = {11, 3, 70001, 456, 8, 5, 2, 123.5, 0.75, 0.0625};
   check.refused_kind = RefusalKind::changed_place;
   check.advice = MergeAdvice{143.5, 103.25, {51.25, -8.0, 0.5}, 5.125, 4.0};
   return check;
@@ -56,7 +56,8 @@ std::vector<Message> one_of_each() {
            Clouds{{{5,
                     {0.5F, 0.0F, 0.9F},
                     {Eigen::Vector3f(1.0F, -2.0F, 3.0F), Eigen::Vector3f(0.0025F, 160.0F, -160.0F)},
-                    {Eigen::Vector3f(-4.0F, 5.0F, 6.0F)}}},
+                    {Eigen::Vector3f(-4.0F, 5.0F, 6.0F)},
+                    {12.5F, 0.0F}}},
                   CloudKind::submap}},
           {{0}, {1}, Loops{{0}, 3, {a_loop()}}},
           {{0}, {2}, MergeChecks{{1}, 4, {a_check()}}}};
@@ -175,6 +176,30 @@ TEST(Wire, PointsKeepFiveMillimetresAndFarOnesStayBehind) {
   EXPECT_EQ(std::get<Clouds>(back->body).clouds.at(0).viewpoint, Eigen::Vector3f(0.25F, -0.125F, 0.875F));
   ASSERT_EQ(points.size(), 1U);
   EXPECT_LT((points[0] - Eigen::Vector3f(12.3456F, -7.7777F, 0.1F)).cwiseAbs().maxCoeff(), 0.0026F);
+}
+
+TEST(Wire, IntensitiesKeepFourPercentAndThoseOfFarPointsStayBehind) {
+  const std::vector<float> sent = {0.02F, 1.0F, 47.3F, 40000.0F, 0.0F, -1.0F, 1e9F, 5.0F};
+  Clouds::Cloud cloud{1, {}, std::vector<Eigen::Vector3f>(sent.size(), Eigen::Vector3f::Ones()), {}, sent};
+  cloud.points.back() = {170.0F, 0.0F, 0.0F};
+  const Result<Message> back = decode(encode({{0}, {1}, Clouds{{cloud}}}));
+  ASSERT_TRUE(back.has_value());
+  const std::vector<float>& got = std::get<Clouds>(back->body).clouds.at(0).intensities;
+  ASSERT_EQ(got.size(), sent.size() - 1);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(got[i], sent[i], 0.04F * sent[i]);
+  EXPECT_EQ(got[4], 0.0F);
+  EXPECT_EQ(got[5], 0.0F);
+  EXPECT_GT(got[6], 90000.0F);  // beyond what a byte says, still more
+}
+
+TEST(Wire, FewerIntensitiesThanPointsAreRefused) {
+  const Clouds::Cloud cloud{1, {}, {2, Eigen::Vector3f::Ones()}, {}, {2.0F, 3.0F}};
+  std::vector<std::byte> bytes = encode({{0}, {1}, Clouds{{cloud}}});
+  constexpr std::ptrdiff_t kChecksum = 8;  // bytes; before it the two intensities and how many
+  ASSERT_EQ(*(bytes.end() - kChecksum - 2 - 4), std::byte{2});
+  *(bytes.end() - kChecksum - 2 - 4) = std::byte{1};
+  bytes.erase(bytes.end() - kChecksum - 1);
+  EXPECT_FALSE(decode(test::resealed(bytes)).has_value());
 }
 
 TEST(Wire, EveryCutIsAnError) {

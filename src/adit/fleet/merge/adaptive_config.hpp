@@ -35,6 +35,7 @@ struct MergeCheckConfig {
   int max_checks = 200;
   double wall_spacing_m = 1.0;
   int max_wall_checks = 96;
+  int max_found_again = 8;
   int first_checks = 8;
   int max_hypotheses = 12;
   int min_loops = 1;

@@ -14,9 +14,10 @@ namespace adit {
 
 /// Two keyframes that stand side by side if the loops are true.
 struct PlannedComparison {
-  std::uint32_t own = 0;     ///< Index of a keyframe of the own map.
-  std::uint32_t theirs = 0;  ///< Of the other robot's map; within one map that of the later keyframe.
-  Pose T_own_theirs;         ///< By the nearest loop and the odometries; a guess for the fit.
+  std::uint32_t own = 0;       ///< Index of a keyframe of the own map.
+  std::uint32_t theirs = 0;    ///< Of the other robot's map; within one map that of the later keyframe.
+  Pose T_own_theirs;           ///< By the nearest loop and the odometries; a guess for the fit.
+  bool without_guess = false;  ///< Asks whether registration finds it where nothing is known of it.
 };
 
 /// Lengths along the path, metres.

@@ -125,6 +125,7 @@ void Hypothesis::add_second_look(std::size_t which, const ComparedPlace& place) 
     offsets.add(place.offsets);
     things.add(place.things);
     first = {place.difference, place.is_distinctive, {}, {}, {}, place.signs, false};
+    plan[which] = look;
     return;
   }
   std::vector<Vector3> seen_again;
@@ -151,6 +152,15 @@ std::vector<std::size_t> Hypothesis::to_look_at_again() const {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < compared.size(); ++i)
     if (waits_for_second_look(i)) out.push_back(i);
+  return out;
+}
+
+std::vector<PlannedComparison> Hypothesis::distinctive() const {
+  std::vector<PlannedComparison> out;
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    if (!compared[i].differs() && outcome(compared[i], true) == PlaceOutcome::distinctive)
+      out.push_back(plan[i]);
+  std::ranges::sort(out, {}, &PlannedComparison::theirs);
   return out;
 }
 

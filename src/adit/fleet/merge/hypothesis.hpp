@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,14 @@
 #include "adit/registration/relief.hpp"
 
 namespace adit {
+
+/// Where registration without a guess puts two scans.
+enum class FoundAgain : std::uint8_t {
+  not_asked,  ///< It was not tried.
+  there,      ///< Where their fit has them.
+  slides,     ///< The scans are free to slide along the tunnel, which tells nothing.
+  elsewhere,  ///< Or nowhere.
+};
 
 /// What comparing the scans of one place has shown.
 struct ComparedPlace {
@@ -29,6 +38,7 @@ struct ComparedPlace {
   ///@}
   DisplacementSigns signs = {};  ///< By what it is distinctive (Discernment).
   bool is_explained = false;  ///< What differs was counted before, at another place, or was not seen again.
+  FoundAgain found_again = FoundAgain::not_asked;  ///< Of a place that is compared without a guess.
   /// Whether the scans cannot be of one place; those with nothing in common differ.
   [[nodiscard]] bool differs() const { return !(difference <= 1.0); }
 };
@@ -63,8 +73,14 @@ struct Hypothesis {
   std::vector<std::size_t> loops;                              ///< Indices, ascending.
   std::vector<PlannedComparison> plan;                         ///< Places of the claimed overlap.
   std::vector<std::optional<PlannedComparison>> second_looks;  ///< Of each place of the plan, until taken.
-  std::vector<PlannedComparison> wall_plan;     ///< Pairs between the places, where walls have to decide.
-  std::size_t num_walls_compared = 0;           ///< Of the first pairs of that plan.
+  std::vector<PlannedComparison> wall_plan;  ///< Pairs between the places, where walls have to decide.
+  std::size_t num_walls_compared = 0;        ///< Of the first pairs of that plan.
+  /// Places that were registered without a guess, and what came of it.
+  ///@{
+  std::size_t num_looked_for = 0;
+  std::size_t num_found_again = 0;
+  std::size_t num_not_found = 0;
+  ///@}
   std::vector<ComparedPlace> compared;          ///< Of the first places of the plan, without their offsets.
   WallOffsets offsets;                          ///< Of all compared walls.
   Changes structures{model.structure_reach_m};  ///< Doors, blocked or worked tunnels.
@@ -77,6 +93,8 @@ struct Hypothesis {
   [[nodiscard]] bool is_finished() const;
   /// Places that differ and have a second look left, once all have been seen: one fit in many fails.
   [[nodiscard]] std::vector<std::size_t> to_look_at_again() const;
+  /// The pairs of scans that agreed at distinctive places, along the path of the other robot.
+  [[nodiscard]] std::vector<PlannedComparison> distinctive() const;
   /// What comparing a place has shown; the places of the plan in turn.
   void add(const ComparedPlace& place);
   /// What a second look at a place that differed has shown.

@@ -26,12 +26,13 @@ std::vector<PlannedComparison> part_of(const std::vector<PlannedComparison>& pla
 MergeChecker::MergeChecker(LoopsBetween between, OwnMeasurements own, const AdaptiveConfig& config)
     : hypotheses_(hypotheses_of(between, own.reach_m, config)),
       own_(std::move(own)),
-      config_(config.merge_check) {
+      config_(config.merge_check),
+      place_keyframes_(static_cast<std::size_t>(config.search.place_keyframes)) {
   loops_ = std::move(between.loops);
 }
 
 /// The first of these that holds of the best hypothesis; decision 0010 in this order.
-MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first) const {
+MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first, double forgiven) const {
   if (best_first.empty()) return MergeDecision::no_loops;
   const Hypothesis& best = hypotheses_[best_first.front()];
 
@@ -40,7 +41,7 @@ MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first) c
 
   // Against chance. Only places where a displacement along the tunnel would show are evidence, by how seldom
   // look-alikes of the own map agree for as long (Wald's test).
-  if (evidence(best) < needed()) {
+  if (evidence(best) + forgiven < needed()) {
     if (evidence(best) - evidence_of_walls(best) >= needed()) return MergeDecision::other_walls;
     return best.num_distinctive() == 0 ? MergeDecision::nothing_distinctive
                                        : MergeDecision::too_little_evidence;
@@ -96,11 +97,13 @@ double MergeChecker::prior_evidence(const Hypothesis& h) const {
   return h.known_before + std::log(num / static_cast<double>(loops_.size())) + evidence_of_few_loops(h);
 }
 
-/// Where robots shared a tunnel, search seldom finds it once or twice alone. That many loops agree is no
-/// evidence in turn: where tunnels are copies they do, too.
+/// Where robots shared a tunnel, search seldom finds it once or twice alone, unless much looks alike; then it
+/// finds it where it is looked for. That many loops agree is no evidence in turn: where tunnels are copies
+/// they do, too.
 double MergeChecker::evidence_of_few_loops(const Hypothesis& h) const {
   const EvidenceModel& model = config_.evidence;
-  return static_cast<double>(h.loops.size()) > model.few_loops
+  const std::size_t found_again = h.num_found_again > h.num_not_found ? h.num_found_again : 0;
+  return static_cast<double>(h.loops.size() + found_again) > model.few_loops
              ? 0.0
              : std::min(0.0, std::log(model.few_loops_if_true / model.few_loops_if_false));
 }
@@ -164,18 +167,57 @@ std::optional<std::size_t> MergeChecker::whose_walls_to_compare() const {
   const std::vector<std::size_t> order = best_first();
   if (!config_.relief || decide(order) != MergeDecision::too_little_evidence) return {};
   const Hypothesis& best = hypotheses_[order.front()];
-  const double possible = own_.measured().walls.most_evidence() - evidence_of_walls(best);
+  double possible = own_.measured().walls.most_evidence() - evidence_of_walls(best);
+  if (has_places_to_find_again(best)) possible -= evidence_of_few_loops(best);
   const bool is_left = best.num_walls_compared < best.wall_plan.size();
   if (!is_left || evidence(best) + possible < needed()) return {};
   return order.front();
 }
 
+std::vector<PlannedComparison> MergeChecker::to_find_again(const Hypothesis& h) const {
+  std::vector<PlannedComparison> places = h.distinctive();
+  // Scans beside those of a loop would find it a second time.
+  std::erase_if(places, [&](const PlannedComparison& place) {
+    return std::ranges::any_of(h.loops, [&](std::size_t l) {
+      const std::size_t b = loops_[l].b;
+      const std::size_t apart = b > place.theirs ? b - place.theirs : place.theirs - b;
+      return apart <= place_keyframes_;
+    });
+  });
+  const std::size_t num = std::min(static_cast<std::size_t>(config_.max_found_again), places.size());
+  if (static_cast<double>(h.loops.size() + num) <= config_.evidence.few_loops) return {};
+  std::vector<PlannedComparison> out;
+  for (std::size_t i = 0; i < num; ++i) {
+    out.push_back(places[(2 * i + 1) * places.size() / (2 * num)]);
+    out.back().without_guess = true;
+  }
+  return out;
+}
+
+bool MergeChecker::has_places_to_find_again(const Hypothesis& h) const {
+  return static_cast<double>(h.loops.size()) <= config_.evidence.few_loops &&
+         h.num_looked_for < to_find_again(h).size();
+}
+
+/// All places are looked for, also once enough have been found: to stop then would be to choose.
+std::optional<std::size_t> MergeChecker::whose_places_to_find_again() const {
+  const std::vector<std::size_t> order = best_first();
+  if (order.empty()) return {};
+  const Hypothesis& best = hypotheses_[order.front()];
+  if (!has_places_to_find_again(best)) return {};
+  const bool is_needed = best.num_looked_for > 0 || decide(order) != MergeDecision::accepted;
+  const bool would_do = decide(order, -evidence_of_few_loops(best)) == MergeDecision::accepted;
+  return is_needed && would_do ? std::optional(order.front()) : std::nullopt;
+}
+
 std::vector<PlannedComparison> MergeChecker::next(std::size_t num) const {
   const auto which = to_go_on_with();
   if (!which) {
-    const auto closer = whose_walls_to_compare();
-    if (!closer) return {};
-    return part_of(hypotheses_[*closer].wall_plan, hypotheses_[*closer].num_walls_compared, num);
+    if (const auto closer = whose_walls_to_compare())
+      return part_of(hypotheses_[*closer].wall_plan, hypotheses_[*closer].num_walls_compared, num);
+    if (const auto again = whose_places_to_find_again())
+      return part_of(to_find_again(hypotheses_[*again]), hypotheses_[*again].num_looked_for, num);
+    return {};
   }
   const Hypothesis& h = hypotheses_[*which];
   const std::size_t from = h.compared.size();
@@ -191,7 +233,7 @@ std::vector<PlannedComparison> MergeChecker::next(std::size_t num) const {
 
 void MergeChecker::add(const std::vector<ComparedPlace>& places) {
   const auto which = to_go_on_with();
-  if (!which) return add_walls(places);
+  if (!which) return whose_walls_to_compare() ? add_walls(places) : add_found_again(places);
   Hypothesis& h = hypotheses_[*which];
   if (h.compared.size() == h.plan.size()) return add_second_looks(h, places);
   ADIT_CHECK(h.compared.size() + places.size() <= h.plan.size(), "only what was asked for is added");
@@ -206,6 +248,19 @@ void MergeChecker::add_walls(const std::vector<ComparedPlace>& places) {
   ADIT_CHECK(h.num_walls_compared + places.size() <= h.wall_plan.size(), "only what was asked for is added");
   for (const ComparedPlace& place : places) h.offsets.add(place.offsets);
   h.num_walls_compared += places.size();
+}
+
+void MergeChecker::add_found_again(const std::vector<ComparedPlace>& places) {
+  const auto which = whose_places_to_find_again();
+  ADIT_CHECK(which, "only what was asked for is added");
+  Hypothesis& h = hypotheses_[*which];
+  h.num_looked_for += places.size();
+  ADIT_CHECK(h.num_looked_for <= to_find_again(h).size(), "only what was asked for is added");
+  const auto num_of = [&](FoundAgain outcome) {
+    return static_cast<std::size_t>(std::ranges::count(places, outcome, &ComparedPlace::found_again));
+  };
+  h.num_found_again += num_of(FoundAgain::there);
+  h.num_not_found += num_of(FoundAgain::elsewhere);
 }
 
 void MergeChecker::add_second_looks(Hypothesis& h, const std::vector<ComparedPlace>& places) {
@@ -236,6 +291,9 @@ HypothesisCounts MergeChecker::counts(const Hypothesis& h) const {
           static_cast<std::uint32_t>(h.num_changes_unless_explained()),
           static_cast<std::uint32_t>(h.things.num()),
           static_cast<std::uint32_t>(walls.num_patches),
+          static_cast<std::uint32_t>(h.num_looked_for),
+          static_cast<std::uint32_t>(h.num_found_again),
+          static_cast<std::uint32_t>(h.num_not_found),
           1000.0 * compared_km(h),
           walls.share,
           walls.sigma};

@@ -69,7 +69,8 @@ class MergeChecker {
   [[nodiscard]] std::optional<UndecidedStretch> undecided() const;
 
  private:
-  [[nodiscard]] MergeDecision decide(const std::vector<std::size_t>& best_first) const;
+  /// `forgiven`: evidence that the best hypothesis is spared.
+  [[nodiscard]] MergeDecision decide(const std::vector<std::size_t>& best_first, double forgiven = 0.0) const;
   [[nodiscard]] bool differs_too_often(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool differs_nearly_everywhere(const Hypothesis& hypothesis) const;
   [[nodiscard]] double compared_km(const Hypothesis& hypothesis) const;
@@ -95,7 +96,13 @@ class MergeChecker {
   [[nodiscard]] std::optional<std::size_t> to_go_on_with() const;
   /// The best hypothesis, where all have been compared and more pairs of its walls could decide.
   [[nodiscard]] std::optional<std::size_t> whose_walls_to_compare() const;
+  /// The best hypothesis, where it lacks only what having few loops takes away.
+  [[nodiscard]] std::optional<std::size_t> whose_places_to_find_again() const;
+  /// Distinctive places away from its loops, evenly spread; none where they could not make few loops many.
+  [[nodiscard]] std::vector<PlannedComparison> to_find_again(const Hypothesis& hypothesis) const;
+  [[nodiscard]] bool has_places_to_find_again(const Hypothesis& hypothesis) const;
   void add_walls(const std::vector<ComparedPlace>& places);
+  void add_found_again(const std::vector<ComparedPlace>& places);
   static void add_second_looks(Hypothesis& hypothesis, const std::vector<ComparedPlace>& places);
   [[nodiscard]] std::vector<std::size_t> best_first() const;
   [[nodiscard]] double apart_m(std::size_t one, std::size_t other) const;
@@ -118,6 +125,7 @@ class MergeChecker {
   std::vector<Hypothesis> hypotheses_;
   OwnMeasurements own_;
   MergeCheckConfig config_;
+  std::size_t place_keyframes_;  ///< No farther apart, keyframes are of one place (SearchConfig).
 };
 
 }  // namespace adit

@@ -347,6 +347,69 @@ TEST(MergeChecker, FewLoopsSpeakAgainstAnAlignmentAndManyForNone) {
   EXPECT_EQ(evidence_of(kTrueLoops, 2.0), evidence_of(kTrueLoops, 1.0));
 }
 
+// What came of looking again for an alignment of two loops, where `missing` more evidence is needed than it
+// has.
+struct LookedForAgain {
+  MergeCheck check;
+  std::vector<PlannedComparison> asked;
+};
+LookedForAgain looked_for_again(FoundAgain found, double missing, MergeCheckConfig config = by_places(),
+                                const std::vector<PcmLoop>& loops = {loop_at(80), loop_at(90)}) {
+  LookedForAgain out;
+  const auto compared = [&](const PlannedComparison& asked) {
+    ComparedPlace place = kAgrees;
+    if (!asked.without_guess) return place;
+    out.asked.push_back(asked);
+    place.found_again = found;
+    return place;
+  };
+  config.evidence.error_rate = 0.5;
+  MergeChecker easy = a_check(loops, 0.5, config);
+  config.evidence.error_rate = std::exp(-run(easy, compared).evidence - missing);
+  out.asked.clear();
+  MergeChecker checker = a_check(loops, 0.5, config);
+  out.check = run(checker, compared);
+  return out;
+}
+
+TEST(MergeChecker, FewLoopsAreForgivenWhereTheAlignmentIsFoundAgain) {
+  const auto [check, asked] = looked_for_again(FoundAgain::there, 1.0);
+  EXPECT_TRUE(check.accepted) << check.reason;
+  EXPECT_EQ(check.loops.size(), 2U) << "what was found again joins no maps itself";
+  const HypothesisCounts& counts = check.hypotheses.front().counts;
+  EXPECT_EQ(counts.num_looked_for, asked.size());
+  EXPECT_EQ(counts.num_found_again, asked.size());
+  ASSERT_EQ(asked.size(), static_cast<std::size_t>(MergeCheckConfig().max_found_again));
+  // Along all of it, and not where the loops are.
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const auto at = static_cast<int>(asked[i].theirs);
+    for (const std::size_t b : {loop_at(80).b, loop_at(90).b})
+      EXPECT_GT(std::abs(at - static_cast<int>(b)), 6);
+    EXPECT_TRUE(i == 0 || at >= static_cast<int>(asked[i - 1].theirs) + 6);
+  }
+}
+
+TEST(MergeChecker, FewLoopsAreNotForgivenWhereItIsNotFoundAgain) {
+  for (const FoundAgain found : {FoundAgain::elsewhere, FoundAgain::slides}) {
+    const MergeCheck check = looked_for_again(found, 1.0).check;
+    EXPECT_FALSE(check.accepted);
+    EXPECT_NEAR(check.needed - check.evidence, 1.0, 1e-9);
+    EXPECT_EQ(check.hypotheses.front().counts.num_found_again, 0U);
+  }
+}
+
+TEST(MergeChecker, NothingIsLookedForAgainWhereItWouldNotDecide) {
+  EXPECT_TRUE(looked_for_again(FoundAgain::there, 5.0).asked.empty()) << "too much is missing";
+  EXPECT_TRUE(looked_for_again(FoundAgain::there, -1.0).asked.empty()) << "nothing is missing";
+  EXPECT_TRUE(looked_for_again(FoundAgain::there, 1.0, by_places(), kTrueLoops).asked.empty());
+  MergeCheckConfig three_loops = by_places();
+  three_loops.min_loops = 3;
+  EXPECT_TRUE(looked_for_again(FoundAgain::there, 1.0, three_loops).asked.empty());
+  MergeCheckConfig none = by_places();
+  none.max_found_again = 0;
+  EXPECT_TRUE(looked_for_again(FoundAgain::there, 1.0, none).asked.empty());
+}
+
 TEST(MergeChecker, TellsOfABoundedNumberOfHypotheses) {
   std::vector<PcmLoop> loops;
   for (std::size_t h = 0; h < 20; ++h) loops.push_back(loop_at(190, 4.0 * static_cast<double>(h)));

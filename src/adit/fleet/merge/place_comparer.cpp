@@ -6,6 +6,8 @@
 #include <map>
 
 #include "adit/core/parallel.hpp"
+#include "adit/registration/features.hpp"
+#include "adit/registration/registration.hpp"
 
 namespace adit {
 namespace {
@@ -37,6 +39,23 @@ bool PlaceComparer::agrees_displaced(std::uint32_t own, const SeenPlace& theirs,
   });
 }
 
+FoundAgain PlaceComparer::found_again(const SeenPlace& own, const SeenPlace& theirs,
+                                      const Pose& T_own_theirs) const {
+  constexpr double kSamePlace = 0.5;  // metres
+  constexpr double kSameWay = 0.2;    // radians
+  const auto features = [&](const SeenPlace& place) {
+    PointCloud cloud;
+    cloud.points = place.view.points().points;
+    return compute_features(cloud, registration_);
+  };
+  const Registration found = register_features(features(own), features(theirs), registration_);
+  if (found.verdict != LoopVerdict::accepted) return FoundAgain::elsewhere;
+  if (found.weak_axis < kWeakAxis) return FoundAgain::slides;
+  const Vector6 off = (T_own_theirs.inverse() * *found.T_a_b).log();
+  const bool is_there = off.head<3>().norm() < kSamePlace && off.tail<3>().norm() < kSameWay;
+  return is_there ? FoundAgain::there : FoundAgain::elsewhere;
+}
+
 ComparedPlace PlaceComparer::compared(const PlannedComparison& place, const SeenPlace& theirs,
                                       const DisplacementSigns& signs) const {
   const double limit = discernment_.limit();
@@ -44,6 +63,10 @@ ComparedPlace PlaceComparer::compared(const PlannedComparison& place, const Seen
   const LocalFit fit = fit_near(own.view, theirs.view, place.T_own_theirs, limit, registration_);
   const Pose& T_odom_own = map_.keyframes[place.own].T_odom_base;
   ComparedPlace out{fit.agreement.largest_difference / limit};
+  if (place.without_guess) {  // all else was compared before
+    out.found_again = out.differs() ? FoundAgain::elsewhere : found_again(own, theirs, fit.T_a_b);
+    return out;
+  }
   if (!signs.empty() && !agrees_displaced(place.own, theirs, fit.T_a_b)) {
     out.is_distinctive = true;
     out.signs = signs;
@@ -73,6 +96,7 @@ std::vector<ComparedPlace> PlaceComparer::with_clouds(const std::vector<PlannedC
     PointCloud scan;
     scan.points = received.points;
     PointCloud view = scan;
+    scan.intensities = received.intensities;
     view.points.insert(view.points.end(), received.beside.begin(), received.beside.end());
     const SeenPlace theirs(view, scan, received.viewpoint.cast<double>(), registration_);
     places[i] = compared(asked[i], theirs, signs[i]);

@@ -39,6 +39,10 @@ class PlaceComparer {
   [[nodiscard]] bool agrees_displaced(std::uint32_t own, const SeenPlace& theirs,
                                       const Pose& T_own_theirs) const;
 
+  /// By the surfaces of both views; search registers longer submaps.
+  [[nodiscard]] FoundAgain found_again(const SeenPlace& own, const SeenPlace& theirs,
+                                       const Pose& T_own_theirs) const;
+
   const RobotMap& map_;
   Discernment& discernment_;
   const RegistrationConfig& registration_;

@@ -21,7 +21,8 @@ constexpr std::uint32_t kBesideTheBlock = 58;
 /// What robot 0 finds out about one of its places by what robot 1 sends of the same, of which those points
 /// are left out.
 ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
-                       const std::function<bool(const Eigen::Vector3f&)>& is_seen_by_peer) {
+                       const std::function<bool(const Eigen::Vector3f&)>& is_seen_by_peer,
+                       bool without_guess = false) {
   const auto own = in_a_tube(kBlock);
   const auto theirs = in_a_tube(boxes_of_peer, {1});
   const AdaptiveConfig config;
@@ -31,9 +32,10 @@ ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
   PlaceComparer comparer(*own, discernment, config.registration);
   Clouds clouds = clouds_of(*theirs, {{kBesideTheBlock}, CloudKind::view},
                             {config.registration.voxel_size, config.submap, config.view});
+  clouds.clouds[0].intensities.clear();
   for (std::vector<Eigen::Vector3f>* points : {&clouds.clouds[0].points, &clouds.clouds[0].beside})
     std::erase_if(*points, [&](const Eigen::Vector3f& p) { return !is_seen_by_peer(p); });
-  return comparer.with_clouds({{kBesideTheBlock, kBesideTheBlock, Pose()}}, clouds).front();
+  return comparer.with_clouds({{kBesideTheBlock, kBesideTheBlock, Pose(), without_guess}}, clouds).front();
 }
 
 bool everything(const Eigen::Vector3f& /*point*/) { return true; }
@@ -51,6 +53,13 @@ TEST(PlaceComparer, APlaceIsNotDistinctiveByWhatThePeersSensorCannotSee) {
   EXPECT_FALSE(place.differs());
   EXPECT_FALSE(place.is_distinctive) << "the smooth half of the tube looks alike five metres on";
   EXPECT_TRUE(place.signs.empty());
+}
+
+TEST(PlaceComparer, RegistrationFindsAPlaceAgainWhereItCannotSlide) {
+  EXPECT_EQ(compared(kBlock, everything).found_again, FoundAgain::not_asked);
+  EXPECT_EQ(compared(kBlock, everything, true).found_again, FoundAgain::there);
+  EXPECT_NE(compared(kBlock, away_from_the_block, true).found_again, FoundAgain::there);
+  EXPECT_EQ(compared({}, everything, true).found_again, FoundAgain::elsewhere);
 }
 
 TEST(PlaceComparer, ABlockThatOnlyOneTubeHasDiffers) { EXPECT_TRUE(compared({}, everything).differs()); }

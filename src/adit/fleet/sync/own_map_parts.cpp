@@ -66,7 +66,9 @@ Clouds clouds_of(const RobotMap& map, const CloudRequest& request, const SentClo
     if (request.kind == CloudKind::submap) {
       cloud.points = thinned(config.submap);
     } else {
-      cloud.points = thinned({.reach_m = 0.0});
+      PointCloud scan = voxel_centroids(*map.keyframes[index].cloud, config.voxel_m);
+      cloud.points = std::move(scan.points);
+      cloud.intensities = std::move(scan.intensities);
       cloud.beside = in_other_voxels(thinned(config.view), cloud.points, config.voxel_m);
     }
     clouds.clouds.push_back(std::move(cloud));

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <set>
 #include <tuple>
 
@@ -39,6 +41,23 @@ TEST(OwnMapParts, AViewIsTheScanAndWhatThoseBesideItSawAlone) {
   for (const auto& voxel : beside) EXPECT_FALSE(own.contains(voxel));
   for (const auto& voxel : voxels_of(submap(*map, 60, kSent.view).points))
     EXPECT_TRUE(own.contains(voxel) || beside.contains(voxel));
+}
+
+TEST(OwnMapParts, AViewHasTheIntensitiesOfTheScan) {
+  RobotMap map = *test::in_a_tube({});
+  PointCloud scan = *map.keyframes[60].cloud;
+  scan.intensities.clear();
+  for (const Eigen::Vector3f& point : scan.points)
+    scan.intensities.push_back(point.z() > 0.0F ? 30.0F : 3.0F);
+  map.keyframes[60].cloud = std::make_shared<const PointCloud>(scan);
+  const Clouds::Cloud view = clouds_of(map, {{60}, CloudKind::view}, kSent).clouds.at(0);
+  ASSERT_EQ(view.intensities.size(), view.points.size());
+  for (std::size_t i = 0; i < view.points.size(); ++i) {
+    const float z = view.points[i].z();
+    if (std::abs(z) < static_cast<float>(kSent.voxel_m)) continue;
+    EXPECT_EQ(view.intensities[i], z > 0.0F ? 30.0F : 3.0F);
+  }
+  EXPECT_TRUE(clouds_of(map, {{60}, CloudKind::submap}, kSent).clouds.at(0).intensities.empty());
 }
 
 TEST(OwnMapParts, ASubmapIsOneCloud) {
