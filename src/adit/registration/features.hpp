@@ -18,10 +18,10 @@ inline constexpr int kDescriptorSize = 33;
 /// The histograms of theta, of alpha and of phi, one after the other (fpfh.hpp).
 using Descriptor = std::array<std::uint8_t, kDescriptorSize>;
 
-/// What registration needs of a cloud; compute it once per keyframe and keep it (57 bytes per point). All
-/// three vectors are equally long. Points without a reliable descriptor are left out.
+/// What registration needs of a cloud; compute it once per keyframe and keep it (57 bytes per point). Points
+/// without a reliable descriptor are left out, and so are all intensities.
 struct Features : OrientedPoints {
-  std::vector<Descriptor> descriptors;  ///< Of the surface around each point (fpfh.hpp).
+  std::vector<Descriptor> descriptors;  ///< One each, of the surface around it (fpfh.hpp).
 };
 
 /// Thins the cloud to one point (the mean) per voxel and describes each. `cloud` is in the frame of the

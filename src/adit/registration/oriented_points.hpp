@@ -10,11 +10,12 @@
 
 namespace adit {
 
-/// Points with the normals of the surface that they lie on; all vectors are equally long.
+/// Points with the normals of the surface that they lie on.
 struct OrientedPoints {
   std::vector<Eigen::Vector3f> points;   ///< Metres, in the frame of the cloud.
-  std::vector<Eigen::Vector3f> normals;  ///< Unit length, pointing to the origin of that frame.
-  std::vector<float> intensities = {};   ///< In the unit of the sensor; empty: the cloud has none.
+  std::vector<Eigen::Vector3f> normals;  ///< One each: unit length, pointing to the origin of that frame.
+  /// One each, in the unit of the sensor, the mean of a voxel; or empty: not known, or not needed.
+  std::vector<float> intensities = {};
 
   /// Of the points, and so of the normals.
   ///@{

@@ -29,7 +29,8 @@ class SearchableSurface {
   [[nodiscard]] const Eigen::Vector3f& viewpoint() const { return viewpoint_; }
   /// About what this takes, grid included.
   [[nodiscard]] std::size_t num_bytes() const {
-    return points_.size() * (2 * sizeof(Eigen::Vector3f) + sizeof(float)) + grid_.num_bytes();
+    return 2 * points_.size() * sizeof(Eigen::Vector3f) + points_.intensities.size() * sizeof(float) +
+           grid_.num_bytes();
   }
 
  private:

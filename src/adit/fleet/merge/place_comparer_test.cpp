@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "adit/fleet/sync/fleet_graph.hpp"
@@ -17,6 +18,7 @@ using test::in_a_tube;
 
 const std::vector<test::Box> kBlock = {{{29.0, 1.5, -4.0}, {31.0, 4.0, 4.0}}};
 constexpr std::uint32_t kBesideTheBlock = 58;
+constexpr float kIntensityOfPeer = 100.0F;
 
 /// What robot 0 finds out about one of its places by what robot 1 sends of the same, of which those points
 /// are left out.
@@ -32,9 +34,16 @@ ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
   PlaceComparer comparer(*own, discernment, config.registration);
   Clouds clouds = clouds_of(*theirs, {{kBesideTheBlock}, CloudKind::view},
                             {config.registration.voxel_size, config.submap, config.view});
-  clouds.clouds[0].intensities.clear();
-  for (std::vector<Eigen::Vector3f>* points : {&clouds.clouds[0].points, &clouds.clouds[0].beside})
-    std::erase_if(*points, [&](const Eigen::Vector3f& p) { return !is_seen_by_peer(p); });
+  Clouds::Cloud& cloud = clouds.clouds[0];
+  PointCloud seen;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    if (!is_seen_by_peer(cloud.points[i])) continue;
+    seen.points.push_back(cloud.points[i]);
+    seen.intensities.push_back(kIntensityOfPeer);
+  }
+  cloud.points = seen.points;
+  cloud.intensities = seen.intensities;
+  std::erase_if(cloud.beside, [&](const Eigen::Vector3f& p) { return !is_seen_by_peer(p); });
   return comparer.with_clouds({{kBesideTheBlock, kBesideTheBlock, Pose(), without_guess}}, clouds).front();
 }
 
@@ -53,6 +62,16 @@ TEST(PlaceComparer, APlaceIsNotDistinctiveByWhatThePeersSensorCannotSee) {
   EXPECT_FALSE(place.differs());
   EXPECT_FALSE(place.is_distinctive) << "the smooth half of the tube looks alike five metres on";
   EXPECT_TRUE(place.signs.empty());
+}
+
+TEST(PlaceComparer, WallsKnowTheIntensitiesThatThePeerSent) {
+  const ComparedPlace place = compared(kBlock, everything);
+  ASSERT_FALSE(place.offsets.empty());
+  for (const PatchOffset& offset : place.offsets) {
+    ASSERT_NE(offset.by_known[1], 0.0);
+    EXPECT_NEAR(offset.by_sensors[kErrorsOfSensor + kIntensityError] / offset.by_known[1],
+                std::log10(static_cast<double>(kIntensityOfPeer)), 1e-6);
+  }
 }
 
 TEST(PlaceComparer, RegistrationFindsAPlaceAgainWhereItCannotSlide) {
