@@ -66,18 +66,23 @@ Result<JrlFile> labelled_log(std::string name, const PoseGraph& graph, const Sav
                              const std::vector<std::optional<Trajectory>>& truths) {
   const std::optional<NodesOfRobots> nodes = nodes_of_robots(graph, session);
   if (!nodes) return fail("the graph and the trajectories of the session do not belong together");
-  return jrl_of(std::move(name), graph).map([&](JrlFile file) {
+  const Labels labels = labels_of(session, evaluation, *nodes);
+  PoseGraph judged{graph.nodes, {}};
+  std::vector<JrlLabel> labels_of_edges;
+  for (const PoseGraph::Edge& edge : graph.edges) {
+    const auto label = labels.find({edge.from, edge.to});
+    if (edge.kind == EdgeKind::loop && label == labels.end()) continue;
+    judged.edges.push_back(edge);
+    labels_of_edges.push_back(edge.kind == EdgeKind::loop ? label->second : JrlLabel::unlabelled);
+  }
+  return jrl_of(std::move(name), judged).map([&](JrlFile file) {
     auto& log = std::get<JrlGraph<Pose>>(file.content);
+    log.labels = std::move(labels_of_edges);
     for (std::size_t robot = 0; robot < nodes->size(); ++robot) {
       if (!truths[robot]) continue;
       for (std::size_t k = 0; k < (*nodes)[robot].size(); ++k)
         if (const Result<Pose> truth = pose_at(*truths[robot], session.optimized[robot][k].stamp))
           log.truth[(*nodes)[robot][k]] = *truth;
-    }
-    const Labels labels = labels_of(session, evaluation, *nodes);
-    for (std::size_t e = 0; e < graph.edges.size(); ++e) {
-      const auto label = labels.find({graph.edges[e].from, graph.edges[e].to});
-      if (graph.edges[e].kind == EdgeKind::loop && label != labels.end()) log.labels[e] = label->second;
     }
     return file;
   });

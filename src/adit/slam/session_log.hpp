@@ -17,9 +17,9 @@
 namespace adit {
 
 /// `graph`, of all keyframes and registered loops of `session` (graph_initial.g2o), with the truth at the
-/// stamp of each keyframe and the label of each loop: an inlier if `evaluation` calls it correct, an outlier
-/// if not, none where it could not be judged. The letters of robots are those of the graph. Fails where the
-/// graph is not of that session.
+/// stamp of each keyframe and the label of each loop: an inlier if `evaluation` calls it correct, else an
+/// outlier. Loops that could not be judged are left out, as readers take what is not listed as an outlier for
+/// true. The letters of robots are those of the graph. Fails where the graph is not of that session.
 [[nodiscard]] Result<JrlFile> labelled_log(std::string name, const PoseGraph& graph,
                                            const SavedSession& session, const SessionEvaluation& evaluation,
                                            const std::vector<std::optional<Trajectory>>& truths);
