@@ -163,9 +163,10 @@ void add_evaluate(Program& program) {
       "--trajectory", options->trajectories,
       "With a cloud: the trajectories (TUM) in its frame, in the order of --truth, which align it; "
       "without them it is taken to be in the frame of the mesh");
-  command.add_option("--jrl", options->log,
-                     "Writes all loops of the session as a JSON Robot Log (.jrl) with the truth of each "
-                     "keyframe and wrong loops labelled, so that any solver can be judged");
+  command.add_option(
+      "--jrl", options->log,
+      "Writes the loops that the truth can judge as a JSON Robot Log (.jrl) with the truth of each "
+      "keyframe and wrong loops labelled, so that any solver can be judged");
   command.footer(
       "Writes the class of each loop into loops.csv of the session, and the errors into its metrics.json.");
 }

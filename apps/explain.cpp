@@ -55,8 +55,8 @@ Table hypotheses_of(const SavedMerge& merge) {
                         "a likelihood ratio: of loops and places, where only distinctive places that "
                         "agree speak for it and changes against it, and of the relief of walls "
                         "(share of patches on the same side: half for one wall). Things may come and "
-                        "go. Two loops or fewer speak against an alignment, unless some of its places "
-                        "are found again, where registration is not told of it.",
+                        "go. Few loops speak against an alignment, unless registration without a guess finds "
+                        "more of its places again than it misses.",
                         kHypothesesPerCheck, merge.check.needed),
       .groups = {},
       .header = {"alignment", "loops", "evidence", "of walls", "compared m", "places", "agree", "distinctive",
@@ -73,7 +73,7 @@ Table hypotheses_of(const SavedMerge& merge) {
          format("{}", h.counts.num_distinctive), format("{}", h.counts.num_changes),
          format("{}", h.counts.num_things), format("{}", h.counts.num_wall_patches),
          has_walls ? format("{:.0f} %", 100.0 * h.counts.equal_signs) : "-",
-         was_looked_for ? format("{} of {}", h.counts.num_found_again, h.counts.num_looked_for) : "-",
+         was_looked_for ? format("{}, {} missed", h.counts.num_found_again, h.counts.num_not_found) : "-",
          format("{:.1f}", h.from_best_m)});
   }
   return table;

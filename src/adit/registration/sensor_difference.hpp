@@ -76,7 +76,8 @@ struct OffsetSystem {
 };
 
 /// Takes the mean logarithm of the intensities of each sensor off all of them, so that their unit does not
-/// matter and a return of unknown intensity counts as one of that mean. `known`: a row for each of
+/// matter and a return of unknown intensity counts as one of that mean. Each row weighs as a constant error
+/// moves it. `known`: a row for each of
 /// `by_sensors`, as SensorTermsOf adds them up.
 void centre_intensities(Eigen::Matrix<double, Eigen::Dynamic, kSensorErrors>& by_sensors,
                         const Eigen::Matrix<double, Eigen::Dynamic, 2>& known);

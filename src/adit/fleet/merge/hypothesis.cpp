@@ -158,8 +158,7 @@ std::vector<std::size_t> Hypothesis::to_look_at_again() const {
 std::vector<PlannedComparison> Hypothesis::distinctive() const {
   std::vector<PlannedComparison> out;
   for (std::size_t i = 0; i < compared.size(); ++i)
-    if (!compared[i].differs() && outcome(compared[i], true) == PlaceOutcome::distinctive)
-      out.push_back(plan[i]);
+    if (!compared[i].differs() && compared[i].is_distinctive) out.push_back(plan[i]);
   std::ranges::sort(out, {}, &PlannedComparison::theirs);
   return out;
 }

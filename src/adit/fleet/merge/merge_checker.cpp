@@ -11,6 +11,7 @@
 
 #include "adit/core/check.hpp"
 #include "adit/fleet/merge/merge_evidence.hpp"
+#include "adit/fleet/search/path.hpp"
 
 namespace adit {
 namespace {
@@ -165,33 +166,43 @@ std::optional<std::size_t> MergeChecker::to_go_on_with() const {
 
 std::optional<std::size_t> MergeChecker::whose_walls_to_compare() const {
   const std::vector<std::size_t> order = best_first();
-  if (!config_.relief || decide(order) != MergeDecision::too_little_evidence) return {};
+  if (!config_.relief || order.empty()) return {};
   const Hypothesis& best = hypotheses_[order.front()];
-  double possible = own_.measured().walls.most_evidence() - evidence_of_walls(best);
-  if (has_places_to_find_again(best)) possible -= evidence_of_few_loops(best);
-  const bool is_left = best.num_walls_compared < best.wall_plan.size();
-  if (!is_left || evidence(best) + possible < needed()) return {};
-  return order.front();
+  if (best.num_walls_compared == best.wall_plan.size()) return {};
+  const MergeDecision decision = decide(order);
+  // Copies agree at all places: none is accepted whose walls were hardly seen, if more can be.
+  const bool are_seen =
+      static_cast<double>(best.offsets.counted().num_patches) >= config_.evidence.walls.min_patches;
+  if (decision == MergeDecision::accepted && !are_seen) return order.front();
+  const double forgivable = has_places_to_find_again(best) ? -evidence_of_few_loops(best) : 0.0;
+  // Walls that speak against it are looked at more closely, too, before anything is forgiven.
+  const bool may_decide = decision == MergeDecision::too_little_evidence ||
+                          (decision == MergeDecision::other_walls && forgivable > 0.0);
+  const double possible = own_.measured().walls.most_evidence() - evidence_of_walls(best) + forgivable;
+  return may_decide && evidence(best) + possible >= needed() ? std::optional(order.front()) : std::nullopt;
 }
 
 std::vector<PlannedComparison> MergeChecker::to_find_again(const Hypothesis& h) const {
-  std::vector<PlannedComparison> places = h.distinctive();
-  // Scans beside those of a loop would find it a second time.
-  std::erase_if(places, [&](const PlannedComparison& place) {
-    return std::ranges::any_of(h.loops, [&](std::size_t l) {
-      const std::size_t b = loops_[l].b;
-      const std::size_t apart = b > place.theirs ? b - place.theirs : place.theirs - b;
-      return apart <= place_keyframes_;
+  const auto is_one_place = [&](std::size_t a, std::size_t b) {
+    return (a > b ? a - b : b - a) < place_keyframes_;
+  };
+  std::vector<PlannedComparison> places;
+  for (const PlannedComparison& place : h.distinctive()) {
+    // Scans beside those of a loop, or of one another, would be the same finding a second time.
+    const bool is_beside_a_loop = std::ranges::any_of(h.loops, [&](std::size_t l) {
+      return is_one_place(place.own, loops_[l].a) || is_one_place(place.theirs, loops_[l].b);
     });
-  });
-  const std::size_t num = std::min(static_cast<std::size_t>(config_.max_found_again), places.size());
-  if (static_cast<double>(h.loops.size() + num) <= config_.evidence.few_loops) return {};
+    if (!is_beside_a_loop && (places.empty() || !is_one_place(place.theirs, places.back().theirs)))
+      places.push_back(place);
+  }
   std::vector<PlannedComparison> out;
-  for (std::size_t i = 0; i < num; ++i) {
-    out.push_back(places[(2 * i + 1) * places.size() / (2 * num)]);
+  for (const std::uint32_t i :
+       evenly_spread(places.size(), static_cast<std::size_t>(config_.max_found_again))) {
+    out.push_back(places[i]);
     out.back().without_guess = true;
   }
-  return out;
+  const bool may_be_many = static_cast<double>(h.loops.size() + out.size()) > config_.evidence.few_loops;
+  return may_be_many ? out : std::vector<PlannedComparison>();
 }
 
 bool MergeChecker::has_places_to_find_again(const Hypothesis& h) const {

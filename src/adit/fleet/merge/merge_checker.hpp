@@ -125,7 +125,7 @@ class MergeChecker {
   std::vector<Hypothesis> hypotheses_;
   OwnMeasurements own_;
   MergeCheckConfig config_;
-  std::size_t place_keyframes_;  ///< No farther apart, keyframes are of one place (SearchConfig).
+  std::size_t place_keyframes_;  ///< Nearer than this, keyframes are of one place (SearchConfig).
 };
 
 }  // namespace adit

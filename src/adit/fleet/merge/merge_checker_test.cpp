@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "adit/core/check.hpp"
 #include "adit/core/rng.hpp"
@@ -102,6 +103,27 @@ TEST(MergeChecker, WallsOnOneSideInAllScansAreOfOtherTunnels) {
   EXPECT_EQ(built_alike.hypotheses.front().outcome, HypothesisOutcome::unsure);
   EXPECT_NE(built_alike.reason.find("patches, 62 %"), std::string::npos) << built_alike.reason;
   EXPECT_TRUE(check(62, without).accepted);
+}
+
+// Copies agree at all places. The walls show between the places of the plan alone.
+TEST(MergeChecker, NoneIsAcceptedBeforeItsWallsWereSeen) {
+  MergeCheckConfig without;
+  without.max_wall_checks = 0;
+  std::set<std::uint32_t> places;
+  MergeChecker first = a_check(kTrueLoops, 0.5, without);
+  const MergeCheck unseen = run(first, [&](const PlannedComparison& asked) {
+    places.insert(asked.theirs);
+    return kAgrees;
+  });
+  ASSERT_TRUE(unseen.accepted) << "there are no more pairs of walls: " << unseen.reason;
+  for (const int num_equal : {50, 80}) {
+    MergeChecker checker = a_check(kTrueLoops, 0.5, {});
+    const MergeCheck check = run(checker, [&](const PlannedComparison& asked) {
+      return places.contains(asked.theirs) ? kAgrees : with_offsets(asked.theirs, num_equal);
+    });
+    EXPECT_GT(check.hypotheses.front().counts.num_wall_patches, 0U);
+    EXPECT_EQ(check.accepted, num_equal == 50) << check.reason;
+  }
 }
 
 TEST(MergeChecker, WallsCountWhereOwnLookAlikesHaveOthers) {
@@ -381,10 +403,12 @@ TEST(MergeChecker, FewLoopsAreForgivenWhereTheAlignmentIsFoundAgain) {
   EXPECT_EQ(counts.num_found_again, asked.size());
   ASSERT_EQ(asked.size(), static_cast<std::size_t>(MergeCheckConfig().max_found_again));
   // Along all of it, and not where the loops are.
+  EXPECT_LT(asked.front().theirs, 40U);
+  EXPECT_GT(asked.back().theirs, kNum - 40U);
   for (std::size_t i = 0; i < asked.size(); ++i) {
     const auto at = static_cast<int>(asked[i].theirs);
     for (const std::size_t b : {loop_at(80).b, loop_at(90).b})
-      EXPECT_GT(std::abs(at - static_cast<int>(b)), 6);
+      EXPECT_GE(std::abs(at - static_cast<int>(b)), 6);
     EXPECT_TRUE(i == 0 || at >= static_cast<int>(asked[i - 1].theirs) + 6);
   }
 }
@@ -395,6 +419,26 @@ TEST(MergeChecker, FewLoopsAreNotForgivenWhereItIsNotFoundAgain) {
     EXPECT_FALSE(check.accepted);
     EXPECT_NEAR(check.needed - check.evidence, 1.0, 1e-9);
     EXPECT_EQ(check.hypotheses.front().counts.num_found_again, 0U);
+  }
+}
+
+TEST(MergeChecker, FewLoopsAreForgivenOnlyIfMoreIsFoundThanNot) {
+  for (const int of_three : {1, 2}) {
+    int num = 0;
+    const std::vector<PcmLoop> two = {loop_at(80), loop_at(90)};
+    const auto compared = [&](const PlannedComparison& asked) {
+      ComparedPlace place = kAgrees;
+      if (asked.without_guess)
+        place.found_again = num++ % 3 < of_three ? FoundAgain::there : FoundAgain::elsewhere;
+      return place;
+    };
+    MergeCheckConfig config = by_places();
+    MergeChecker easy = a_check(two, 0.5, config);
+    config.evidence.error_rate = std::exp(-run(easy, compared).evidence - 1.0);
+    MergeChecker checker = a_check(two, 0.5, config);
+    num = 0;
+    EXPECT_EQ(run(checker, compared).accepted, of_three == 2);
+    EXPECT_EQ(num, MergeCheckConfig().max_found_again) << "all are looked for";
   }
 }
 
