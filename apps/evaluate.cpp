@@ -72,6 +72,9 @@ Result<> evaluate_session(const EvaluateOptions& options, const SightConfig& con
   const Result<> saved = save_evaluation(options.input, *evaluation);
   if (!saved) print_notes("evaluate", {"the session itself is unchanged: " + saved.error().message});
   if (options.log.empty()) return {};
+  if (evaluation->num_unjudged > 0)
+    print_notes("evaluate", {format("{} loops that the truth cannot judge are left out of {}",
+                                    evaluation->num_unjudged, options.log)});
   return write_labelled_log(options.log, options.input, *session, *evaluation, *truths);
 }
 
