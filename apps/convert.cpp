@@ -23,6 +23,7 @@
 #include "adit/io/trajectory_files.hpp"
 #include "adit/io/tum.hpp"
 #include "adit/robot/full_rate.hpp"
+#include "adit/slam/georeference.hpp"
 #include "adit/slam/joint_map.hpp"
 #include "adit/slam/map_covariance.hpp"
 #include "adit/slam/session_mcap.hpp"
@@ -149,7 +150,7 @@ fs::path path_of(const fs::path& out, const std::string& robot, const std::strin
   return path.replace_filename(out.stem().string() + "_" + robot + more + out.extension().string());
 }
 
-/// A line for each pose: its stamp and the upper triangle of the covariance of T_map_base, right
+/// A line for each pose: its stamp and the upper triangle of its covariance, right
 /// perturbation, [translation; rotation]; between keyframes that of the nearest in time.
 std::string covariance_csv(const Trajectory& poses, const std::vector<Keyframe>& keyframes,
                            const std::vector<Matrix6>& covariances) {
@@ -170,12 +171,18 @@ std::string covariance_csv(const Trajectory& poses, const std::vector<Keyframe>&
   return text;
 }
 
-Result<> write_covariances(const fs::path& out, const RobotMap& map, std::size_t robot,
-                           const Trajectory& poses, const MapCovariance& covariance) {
-  std::vector<Matrix6> covariances;
-  for (std::size_t k = 0; k < map.keyframes.size(); ++k) covariances.push_back(covariance.at({robot, k}));
-  fs::path path = path_of(out, map.name, "_covariance");
-  return write_bytes(path.replace_extension(".csv"), covariance_csv(poses, map.keyframes, covariances));
+/// Of T_frame_base at a robot's keyframes, in the target frame where `frame` is that.
+Result<std::vector<Matrix6>> covariances_in(const OutputFrame& frame, const PlacedSession& session,
+                                            std::size_t robot, const MapCovariance& covariance) {
+  const RobotMap& map = *session.robots[robot].map;
+  std::vector<Place> places;
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k) places.push_back({robot, k});
+  if (!frame.name.empty())
+    return target_covariances(session, covariance, *georeference_of(session.saved.georeferences, map.name),
+                              places);
+  std::vector<Matrix6> in_map;
+  for (const Place& place : places) in_map.push_back(covariance.at(place));
+  return in_map;
 }
 
 /// Every robot's poses at every scan, in OUT with the robot's name before the extension.
@@ -195,7 +202,11 @@ Result<> convert_poses(const PlacedSession& session, const ConvertOptions& optio
                                      frame->name.empty() ? "the frame of that one" : frame->name)});
     const Trajectory poses = seen_from(frame->T_frame_map, at_every_scan(*robot.map, robot.T_world_keyframe));
     Result<> done = write_trajectory(path_of(options.out, robot.map->name), poses);
-    if (done && covariance) done = write_covariances(options.out, *robot.map, r, poses, *covariance);
+    if (done && covariance)
+      done = covariances_in(*frame, session, r, *covariance).and_then([&](const auto& covariances) {
+        fs::path path = path_of(options.out, robot.map->name, "_covariance").replace_extension(".csv");
+        return write_bytes(path, covariance_csv(poses, robot.map->keyframes, covariances));
+      });
     if (!done) return done;
   }
   return {};

@@ -74,13 +74,13 @@ std::vector<std::string> option_names(const CommandHelp& command) {
   return names;
 }
 
-/// Lines "COMMAND --OPTION) values ;;" of options that take few values.
+/// Lines "COMMAND WORD) values ;;" of what takes few values: after options, or the command itself.
 std::string choice_cases(const CommandHelp& command) {
   std::string cases;
   for (const OptionHelp& option : command.options) {
-    if (option.name.empty() || option.choices.empty()) continue;
+    if (option.choices.empty()) continue;
     cases += format("    {} {}') words='{}' ;;\n", command.name.empty() ? "*'" : "'" + command.name,
-                    option.name, joined(option.choices));
+                    option.name.empty() ? command.name : option.name, joined(option.choices));
   }
   return cases;
 }
@@ -124,11 +124,20 @@ std::string zsh_text(const std::string& text) {
   return replaced(text, {{'\'', "'\\''"}, {'[', "\\["}, {']', "\\]"}, {':', "\\:"}});
 }
 
-/// Arguments of _arguments, one a line.
+/// What _arguments is to offer for the command's arguments that are no options.
+std::string zsh_arguments(const CommandHelp& command) {
+  const auto chosen = std::ranges::find_if(command.options, [](const OptionHelp& option) {
+    return option.name.empty() && !option.choices.empty();
+  });
+  return chosen == command.options.end() ? "'*:file:_files'"
+                                         : "'*:" + chosen->value + ":(" + joined(chosen->choices) + ")'";
+}
+
+/// Arguments of _arguments, one a line; but --help, which the program itself has.
 std::string zsh_options(const CommandHelp& command) {
   std::string text;
   for (const OptionHelp& option : command.options) {
-    if (option.name.empty()) continue;
+    if (option.name.empty() || (option.name == "--help" && !command.name.empty())) continue;
     text += format(" \\\n      '*{}[{}]", option.name, zsh_text(option.help));
     if (!option.choices.empty())
       text += ":value:(" + joined(option.choices) + ")";
@@ -144,8 +153,8 @@ std::string zsh_completion(const std::vector<CommandHelp>& all) {
   for (const CommandHelp& command : all) {
     if (command.name.empty()) continue;
     commands += format("    '{}:{}'\n", command.name, zsh_text(command.description));
-    cases += format("    {}) _arguments{}{} \\\n      '*:file:_files' ;;\n", command.name,
-                    zsh_options(command), zsh_options(all.front()));
+    cases += format("    {}) _arguments{}{} \\\n      {} ;;\n", command.name, zsh_options(command),
+                    zsh_options(all.front()), zsh_arguments(command));
   }
   return format(R"(#compdef adit
 # zsh completion for adit, made by 'adit describe zsh'

@@ -83,6 +83,7 @@ void add_merge_study(Program& program) {
       .add_option("--keyframes", options->keyframes,
                   "Keyframe policies, separated by commas; all but adaptive run on `paper_odometry`")
       .separated_by_commas()
+      .one_of(policy_names())
       .default_shown();
   command.add_option("--variant", options->variant,
                      "Added to the policies' names, so that a run with other settings (--set) stands beside "

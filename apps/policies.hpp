@@ -9,15 +9,18 @@
 
 namespace adit::app {
 
-/// The keyframe policies of those names; an unknown one, or none, is wrong usage.
+/// What --keyframes takes.
+inline std::vector<std::string> policy_names() {
+  std::vector<std::string> names;
+  for (const KeyframeSelection policy : kKeyframeSelections) names.emplace_back(to_string(policy));
+  return names;
+}
+
+/// The keyframe policies of those names, which the option has checked; none is wrong usage.
 inline std::vector<KeyframeSelection> policies_of(const std::vector<std::string>& names) {
   if (names.empty()) usage_error("--keyframes: name at least one policy");
   std::vector<KeyframeSelection> policies;
-  for (const std::string& name : names) {
-    const Result<KeyframeSelection> policy = keyframe_selection(name);
-    if (!policy) usage_error(policy.error().message);
-    policies.push_back(*policy);
-  }
+  for (const std::string& name : names) policies.push_back(*keyframe_selection(name));
   return policies;
 }
 

@@ -13,6 +13,7 @@
 #include "adit/io/session_toml.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
+#include "policies.hpp"
 #include "sessions.hpp"
 
 namespace adit::app {
@@ -35,11 +36,7 @@ Result<Job> job_of(const SlamOptions& options, const Common& common) {
     usage_error("give recordings, folders of scans, one routes.yaml, --session or --rerun");
   Result<RunConfig> config = configured(common, options.simulation);
   if (!config) return tl::unexpected(config.error());
-  if (!options.keyframes.empty()) {
-    const Result<KeyframeSelection> keyframes = keyframe_selection(options.keyframes);
-    if (!keyframes) usage_error(keyframes.error().message);
-    config->slam.keyframes = *keyframes;
-  }
+  if (!options.keyframes.empty()) config->slam.keyframes = *keyframe_selection(options.keyframes);
   config->recording = recording_config(config->recording, options.recording);
   Provenance provenance;
   provenance.command = common.command;
@@ -153,8 +150,8 @@ void add_slam(Program& program) {
       "Session to go on from: its robots stay, the inputs are added as further robots or visits, "
       "and nothing is computed again that is known");
   add_simulation_options(command, options->simulation);
-  command.add_option("--keyframes", options->keyframes,
-                     "Keyframe policy: adaptive (default), all, tunnel_filter or tunnel_filter_keep");
+  command.add_option("--keyframes", options->keyframes, "Keyframe policy (default: adaptive)")
+      .one_of(policy_names());
   command.add_option("--rerun", options->rerun,
                      "session.toml of a session to reproduce byte for byte from the same inputs");
   add_ruling_options(command, options->rulings);

@@ -107,6 +107,7 @@ void add_study(Program& program) {
       .add_option("--keyframes", options->keyframes,
                   "Keyframe policies, separated by commas; all but adaptive run on `paper_odometry`")
       .separated_by_commas()
+      .one_of(policy_names())
       .default_shown();
 }
 

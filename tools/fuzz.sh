@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 seconds=$1
 shift
 kinds=("$@")
-[ ${#kinds[@]} -gt 0 ] || kinds=(mcap bag db3 pcd ply bin tum csv g2o jrl cbor yaml adit loops)
+[ ${#kinds[@]} -gt 0 ] || kinds=(mcap bag db3 pcd ply bin tum csv g2o jrl cbor yaml adit loops control config session)
 tools/build.sh fuzz adit_fuzz_readers
 export TMPDIR=${TMPDIR:-/dev/shm} # each input is a file
 faults=build/fuzz/faults

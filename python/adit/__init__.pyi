@@ -8,11 +8,11 @@ from numpy.typing import ArrayLike, NDArray
 
 __version__: str
 
-Floats = NDArray[np.float64]
-Points = NDArray[np.float32]
-Stamps = NDArray[np.int64]
-StrPath = str | os.PathLike[str]
-Config = Mapping[str, bool | int | float | str] | str | None
+_Floats = NDArray[np.float64]
+_Points = NDArray[np.float32]
+_Stamps = NDArray[np.int64]
+_StrPath = str | os.PathLike[str]
+_Config = Mapping[str, bool | int | float | str] | str | None
 """Settings: a dict of dotted keys ("robot.cloud_voxel": 0.2) or a text in TOML, as 'adit config' prints them."""
 
 class Error(RuntimeError):
@@ -21,15 +21,15 @@ class Error(RuntimeError):
 def set_num_threads(num_threads: int) -> None:
     """How many threads the process may use. Results never depend on it."""
 
-def configuration(config: Config = None, profile: str = "default") -> dict[str, bool | int | float | str]:
+def configuration(config: _Config = None, profile: str = "default") -> dict[str, bool | int | float | str]:
     """Every field of the configuration with its value. Profiles: default, paper, lidar-only."""
 
 # ---- clouds and trajectories ----------------------------------------------------------------------------------
 
-def read_cloud(path: StrPath) -> Points:
+def read_cloud(path: _StrPath) -> _Points:
     """The points of a .pcd, .ply or .bin file, (n, 3). Points that are not finite are left out."""
 
-def write_cloud(path: StrPath, points: ArrayLike) -> None:
+def write_cloud(path: _StrPath, points: ArrayLike) -> None:
     """Writes points (n, 3) as .pcd, .ply or .bin."""
 
 class Trajectory:
@@ -37,21 +37,21 @@ class Trajectory:
     def __init__(self, stamps: ArrayLike, poses: ArrayLike) -> None: ...
     def __len__(self) -> int: ...
     @property
-    def stamps(self) -> Stamps:
+    def stamps(self) -> _Stamps:
         """(n), nanoseconds."""
     @property
-    def poses(self) -> Floats:
+    def poses(self) -> _Floats:
         """(n, 4, 4), T_world_body."""
     @property
-    def positions(self) -> Floats:
+    def positions(self) -> _Floats:
         """(n, 3), metres."""
     @property
     def length(self) -> float:
         """Of the line through the positions, metres."""
-    def write(self, path: StrPath) -> None:
+    def write(self, path: _StrPath) -> None:
         """As TUM, or by ending as .csv or .kitti."""
 
-def read_trajectory(path: StrPath) -> Trajectory:
+def read_trajectory(path: _StrPath) -> Trajectory:
     """A trajectory of a TUM or .csv file."""
 
 # ---- recordings -----------------------------------------------------------------------------------------------
@@ -65,7 +65,7 @@ class Scan:
     @property
     def stamp(self) -> int: ...
     @property
-    def points(self) -> Points: ...
+    def points(self) -> _Points: ...
     @property
     def intensities(self) -> NDArray[np.float32] | None: ...
     @property
@@ -104,7 +104,7 @@ class Recording:
     def lidar(self) -> str:
         """The name of the sensor, "" when unknown."""
     @property
-    def T_base_lidar(self) -> Floats:
+    def T_base_lidar(self) -> _Floats:
         """The mount (4, 4): where the LiDAR sits on the robot."""
     @property
     def mount_source(self) -> str:
@@ -116,7 +116,7 @@ class Recording:
     def warnings(self) -> list[str]:
         """What could not be read, a sentence each."""
     @property
-    def stamps(self) -> Stamps:
+    def stamps(self) -> _Stamps:
         """Of the scans, nanoseconds."""
     @property
     def wheel(self) -> Trajectory | None:
@@ -125,21 +125,21 @@ class Recording:
     def truth(self) -> Trajectory | None:
         """T_world_base where the recording knows it; nothing but evaluation reads it."""
     @property
-    def imu(self) -> tuple[Stamps, Floats, Floats] | None:
+    def imu(self) -> tuple[_Stamps, _Floats, _Floats] | None:
         """Stamps (n), angular velocities (n, 3) in rad/s, specific forces (n, 3) in m/s^2, in the IMU's frame."""
     @property
-    def T_base_imu(self) -> Floats:
+    def T_base_imu(self) -> _Floats:
         """The mount of the IMU (4, 4)."""
     def motion_before(self, index: int) -> Motion:
         """What wheels and IMU measured since the scan before."""
 
-def open_recording(path: StrPath, config: Config = None) -> Recording:
+def open_recording(path: _StrPath, config: _Config = None) -> Recording:
     """Opens a bag (.mcap, .db3, .bag, or a folder of them) or a folder of clouds.
 
     recording.* of the configuration says how: {"recording.points": "/husky1/points"}.
     """
 
-def simulate(config: Config = None) -> list[Recording]:
+def simulate(config: _Config = None) -> list[Recording]:
     """Drives robots through a generated world (world.*, simulation.*); scans are cast when asked for."""
 
 # ---- odometry -------------------------------------------------------------------------------------------------
@@ -149,9 +149,9 @@ class OdometryStep:
     @property
     def stamp(self) -> int: ...
     @property
-    def T_odom_base(self) -> Floats: ...
+    def T_odom_base(self) -> _Floats: ...
     @property
-    def information(self) -> Floats:
+    def information(self) -> _Floats:
         """Of T_odom_base (6, 6), right perturbation, translation first; zero along open directions."""
     @property
     def status(self) -> str:
@@ -163,11 +163,11 @@ class OdometryStep:
 
 class Odometry:
     """Follows one robot, scan by scan, by the method that robot.odometry.method names."""
-    def __init__(self, T_base_lidar: ArrayLike = ..., config: Config = None, profile: str = "default") -> None: ...
+    def __init__(self, T_base_lidar: ArrayLike = ..., config: _Config = None, profile: str = "default") -> None: ...
     def register_scan(self, scan: Scan, motion: Motion | None = None) -> OdometryStep:
         """Stamps ascend strictly. motion is that since the scan before."""
     @property
-    def points_of_last_scan(self) -> Points:
+    def points_of_last_scan(self) -> _Points:
         """Deskewed, at full density, in the frame of the base."""
 
 class OdometryRun:
@@ -181,7 +181,7 @@ class OdometryRun:
     def notes(self) -> list[str]:
         """What was found of wheels and IMU, a sentence each."""
 
-def odometry(recording: Recording, config: Config = None, profile: str = "default") -> OdometryRun:
+def odometry(recording: Recording, config: _Config = None, profile: str = "default") -> OdometryRun:
     """The odometry of a recording, as 'adit odometry' computes it. Wheels and IMU are checked first."""
 
 # ---- registration ---------------------------------------------------------------------------------------------
@@ -194,10 +194,10 @@ class Registration:
     def reason(self) -> str:
         """Why it is accepted or not."""
     @property
-    def T_a_b(self) -> Floats | None:
+    def T_a_b(self) -> _Floats | None:
         """p_a = T_a_b p_b. Where it is not accepted, the best guess, for display only."""
     @property
-    def information(self) -> Floats:
+    def information(self) -> _Floats:
         """Of T_a_b (6, 6), right perturbation, translation first; zero along open directions."""
     @property
     def num_inliers(self) -> int: ...
@@ -210,9 +210,9 @@ class Registration:
     def weak_axis(self) -> float:
         """0 where the clouds can slide along an axis, 1/3 where all directions are held alike."""
     @property
-    def weak_direction(self) -> Floats: ...
+    def weak_direction(self) -> _Floats: ...
 
-def register(a: ArrayLike, b: ArrayLike, config: Config = None) -> Registration:
+def register(a: ArrayLike, b: ArrayLike, config: _Config = None) -> Registration:
     """The relative pose of two clouds (n, 3) without a guess (fields loops.adaptive.registration.*)."""
 
 # ---- maps of several robots -----------------------------------------------------------------------------------
@@ -242,9 +242,9 @@ class Loop:
     @property
     def to_stamp(self) -> int: ...
     @property
-    def T_from_to(self) -> Floats: ...
+    def T_from_to(self) -> _Floats: ...
     @property
-    def information(self) -> Floats: ...
+    def information(self) -> _Floats: ...
     @property
     def in_use(self) -> bool:
         """Whether the joint solution holds it."""
@@ -272,9 +272,9 @@ class Session:
         """Its keyframes in the frame of its component."""
     def odometry(self, robot: str) -> Trajectory:
         """T_odom_base of every scan."""
-    def points(self, robot: str, voxel: float = 0.1) -> Points:
+    def points(self, robot: str, voxel: float = 0.1) -> _Points:
         """Its map in the frame of its component, one point a voxel (metres)."""
-    def save(self, path: StrPath) -> None:
+    def save(self, path: _StrPath) -> None:
         """Writes the session directory, as 'adit slam --out' does."""
 
 class SavedSession:
@@ -285,15 +285,15 @@ class SavedSession:
     def components(self) -> list[list[str]]: ...
     def trajectory(self, robot: str) -> Trajectory: ...
     def odometry(self, robot: str) -> Trajectory: ...
-    def points(self, robot: str, voxel: float = 0.1) -> Points: ...
+    def points(self, robot: str, voxel: float = 0.1) -> _Points: ...
     def evaluate(self, truths: Mapping[str, Trajectory]) -> dict[str, Any]:
         """Errors of trajectories and classes of loops, as 'adit evaluate --json' prints them."""
 
-def slam(recordings: Sequence[Recording], config: Config = None, profile: str = "default") -> Session:
+def slam(recordings: Sequence[Recording], config: _Config = None, profile: str = "default") -> Session:
     """Maps every robot, lets each meet every other, and merges what tested evidence joins."""
 
 def merge(
-    sessions: Sequence[StrPath],
+    sessions: Sequence[_StrPath],
     recordings: Sequence[Recording] = ...,
     *,
     veto: Sequence[tuple[str, str]] = ...,
@@ -301,7 +301,7 @@ def merge(
 ) -> Session:
     """Goes on from saved sessions: joins them, and adds robots or later visits. veto and confirm overrule the test."""
 
-def read_session(path: StrPath) -> SavedSession: ...
+def read_session(path: _StrPath) -> SavedSession: ...
 
 # ---- pose graphs ----------------------------------------------------------------------------------------------
 
@@ -319,19 +319,19 @@ class PoseGraph:
     @property
     def keys(self) -> NDArray[np.uint64]: ...
     @property
-    def poses(self) -> Floats: ...
+    def poses(self) -> _Floats: ...
     @property
     def edges(self) -> NDArray[np.int64]: ...
     @property
-    def measurements(self) -> Floats:
+    def measurements(self) -> _Floats:
         """T_from_to."""
     @property
-    def information(self) -> Floats:
+    def information(self) -> _Floats:
         """(m, 6, 6), translation first."""
     @property
     def is_loop(self) -> NDArray[np.bool_]:
         """False: odometry, which is trusted."""
-    def write(self, path: StrPath) -> None:
+    def write(self, path: _StrPath) -> None:
         """As g2o."""
 
 class PoseGraph2:
@@ -348,20 +348,20 @@ class PoseGraph2:
     @property
     def keys(self) -> NDArray[np.uint64]: ...
     @property
-    def poses(self) -> Floats: ...
+    def poses(self) -> _Floats: ...
     @property
     def edges(self) -> NDArray[np.int64]: ...
     @property
-    def measurements(self) -> Floats: ...
+    def measurements(self) -> _Floats: ...
     @property
-    def information(self) -> Floats: ...
+    def information(self) -> _Floats: ...
     @property
     def is_loop(self) -> NDArray[np.bool_]: ...
-    def write(self, path: StrPath) -> None: ...
+    def write(self, path: _StrPath) -> None: ...
 
 class Solution:
     @property
-    def poses(self) -> Floats:
+    def poses(self) -> _Floats:
         """One for each of the graph's, in its order and shape."""
     @property
     def cost_initial(self) -> float:
@@ -377,12 +377,12 @@ class Solution:
     @property
     def notes(self) -> list[str]: ...
     @property
-    def edge_weights(self) -> Floats:
+    def edge_weights(self) -> _Floats:
         """One for each edge; 0: rejected."""
 
 class Solution2:
     @property
-    def poses(self) -> Floats: ...
+    def poses(self) -> _Floats: ...
     @property
     def cost_initial(self) -> float: ...
     @property
@@ -396,15 +396,15 @@ class Solution2:
     @property
     def notes(self) -> list[str]: ...
     @property
-    def edge_weights(self) -> Floats: ...
+    def edge_weights(self) -> _Floats: ...
 
-def read_graph(path: StrPath) -> PoseGraph | PoseGraph2:
+def read_graph(path: _StrPath) -> PoseGraph | PoseGraph2:
     """The pose graph of a g2o file."""
 
 @overload
-def solve(graph: PoseGraph, *, gnc: bool = False, config: Config = None) -> Solution: ...
+def solve(graph: PoseGraph, *, gnc: bool = False, config: _Config = None) -> Solution: ...
 @overload
-def solve(graph: PoseGraph2, *, gnc: bool = False, config: Config = None) -> Solution2:
+def solve(graph: PoseGraph2, *, gnc: bool = False, config: _Config = None) -> Solution2:
     """Minimises chi2 over all poses (fields back_end.gnc.*); with gnc it finds and rejects false loops."""
 
 # ---- errors of trajectories -----------------------------------------------------------------------------------
@@ -412,15 +412,15 @@ def solve(graph: PoseGraph2, *, gnc: bool = False, config: Config = None) -> Sol
 class Ate:
     """Absolute trajectory error after a rigid alignment, metres."""
     @property
-    def stamps(self) -> Stamps: ...
+    def stamps(self) -> _Stamps: ...
     @property
-    def errors(self) -> Floats:
+    def errors(self) -> _Floats:
         """One for each stamp."""
     @property
-    def positions(self) -> Floats:
+    def positions(self) -> _Floats:
         """The aligned estimate, (n, 3)."""
     @property
-    def T_world_estimate(self) -> Floats: ...
+    def T_world_estimate(self) -> _Floats: ...
     @property
     def max(self) -> float: ...
     @property
@@ -436,9 +436,9 @@ class Ate:
 class Rpe:
     """Relative pose error over segments of one length, metres and radians."""
     @property
-    def translation_errors(self) -> Floats: ...
+    def translation_errors(self) -> _Floats: ...
     @property
-    def rotation_errors(self) -> Floats: ...
+    def rotation_errors(self) -> _Floats: ...
     @property
     def segment(self) -> float: ...
     @property

@@ -2,13 +2,18 @@
 # SPDX-License-Identifier: MIT
 """The stubs describe the module as it is: every name, member and argument, and none that does not exist."""
 import ast
+import os
 import re
+import subprocess
+import sys
 import unittest
 from pathlib import Path
 
 import adit
 
-STUB = ast.parse((Path(adit.__file__).parent / "__init__.pyi").read_text())
+STUB_FILE = Path(adit.__file__).parent / "__init__.pyi"
+STUB = ast.parse(STUB_FILE.read_text())
+EXAMPLE = Path(__file__).parents[2] / "examples" / "maps_in_python.py"
 
 
 def public(names):
@@ -41,6 +46,14 @@ class Stubs(unittest.TestCase):
             self.assertEqual(public(described), public(there), node.name)
             for special in ("__len__", "__getitem__"):
                 self.assertEqual(special in described, special in there, f"{node.name}.{special}")
+
+    def test_types_fit_together_and_the_example(self):
+        # matplotlib has no types.
+        mypy = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--cache-dir", os.devnull]
+        paths = {**os.environ, "MYPYPATH": str(STUB_FILE.parents[1])}
+        for file in (STUB_FILE, EXAMPLE):
+            run = subprocess.run([*mypy, file], env=paths, capture_output=True, text=True, check=False)
+            self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
 
     def test_arguments_have_the_same_names(self):
         for node in STUB.body:

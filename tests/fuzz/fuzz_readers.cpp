@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 // Gives bytes to the readers of one kind of file: tools/fuzz.sh. ADIT_FUZZ_AS is the extension ("mcap"),
-// which says which. Readers take any bytes without a fault of memory, without undefined behaviour and without
+// which says which; texts whose names end in .csv or .toml like others' have extensions of their own here. Readers take any bytes without a fault of memory, without undefined behaviour and without
 // a contract violation, and take no more memory than the bytes warrant; what they make of them is for other
 // tests.
 #include <algorithm>
@@ -10,11 +10,15 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 
+#include "adit/io/config_toml.hpp"
 #include "adit/io/file_info.hpp"
+#include "adit/io/georeference.hpp"
 #include "adit/io/loops_csv.hpp"
 #include "adit/io/recording_files.hpp"
+#include "adit/io/session_toml.hpp"
 #include "adit/io/trajectory_files.hpp"
 
 namespace {
@@ -59,13 +63,29 @@ void read_as_recording(const fs::path& path, const adit::RecordingConfig& config
     static_cast<void>(recording->read_scan(i));
 }
 
+/// Readers that take a text.
+const std::map<std::string, void (*)(std::string_view)> kTexts = {
+    {"loops", [](std::string_view text) { static_cast<void>(adit::parse_loops_csv(text)); }},
+    {"control", [](std::string_view text) { static_cast<void>(adit::parse_control_points(text)); }},
+    {"config",
+     [](std::string_view text) {
+       adit::RecordingConfig config;
+       static_cast<void>(adit::parse_config(fields_of(config), text));
+     }},
+    {"session",
+     [](std::string_view text) {
+       static_cast<void>(adit::parse_session_toml(text));
+       static_cast<void>(adit::parse_session_merges(text));
+     }},
+};
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   static const Folder folder;
   const std::string_view text(reinterpret_cast<const char*>(bytes), size);
-  if (extension() == "loops") {
-    static_cast<void>(adit::parse_loops_csv(text));
+  if (const auto reader = kTexts.find(extension()); reader != kTexts.end()) {
+    reader->second(text);
     return 0;
   }
   const fs::path path = folder.file();

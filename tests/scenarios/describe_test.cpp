@@ -45,6 +45,8 @@ TEST(Describe, BashOffersOptionsAndTheirValues) {
   EXPECT_EQ(completed("solve --thr"), std::set<std::string>{"--threads"});
   EXPECT_EQ(completed("odometry --method k"), (std::set<std::string>{"kiss-icp", "kinematic-icp"}));
   EXPECT_EQ(completed("slam --profile p"), std::set<std::string>{"paper"});
+  EXPECT_EQ(completed("slam --keyframes ad"), std::set<std::string>{"adaptive"});
+  EXPECT_EQ(completed("describe ''"), (std::set<std::string>{"man", "bash", "zsh"}));
   EXPECT_TRUE(completed("config --gn").contains(""));
 }
 
@@ -59,11 +61,14 @@ TEST(Describe, TheManualPageHasEveryCommandAndOption) {
   EXPECT_FALSE(std::regex_search(page, std::regex("\n['.](?!TH|SH|SS|TP|PP|B )")));
 }
 
-TEST(Describe, ZshGetsEveryCommand) {
+TEST(Describe, ZshGetsEveryCommandAndItsChoices) {
   const std::string text = run_adit("describe zsh").out;
   EXPECT_TRUE(text.starts_with("#compdef adit\n"));
   for (const std::string& command : commands_of_help())
     EXPECT_NE(text.find("\n    " + command + ") _arguments"), std::string::npos) << command;
+  EXPECT_NE(text.find("*--keyframes[Keyframe policy (default\\: adaptive)]:value:(adaptive all "),
+            std::string::npos);
+  EXPECT_NE(text.find("'*:form:(man bash zsh)'"), std::string::npos);
 }
 
 TEST(Describe, AnotherFormIsWrongUsage) { expect_refused("describe fish", 2, "fish"); }

@@ -5,6 +5,7 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "adit/core/format.hpp"
 #include "adit/io/cloud_files.hpp"
@@ -78,6 +79,47 @@ class Georeferenced : public ::testing::Test {
 void expect_uses(const nlohmann::json& points, const std::vector<std::string>& uses) {
   ASSERT_EQ(points.size(), uses.size());
   for (std::size_t i = 0; i < uses.size(); ++i) EXPECT_EQ(points[i]["use"], uses[i]) << points[i].dump();
+}
+
+/// The variances of x, y and z at each pose, in the axes of the robot, of a file that convert --covariance
+/// wrote.
+std::vector<Vector3> variances_in(const std::string& csv) {
+  std::istringstream text(get_file(csv));
+  std::string line;
+  std::getline(text, line);
+  std::vector<Vector3> variances;
+  while (std::getline(text, line)) {
+    std::vector<double> numbers;
+    std::istringstream row(line);
+    for (std::string word; std::getline(row, word, ',');) numbers.push_back(std::stod(word));
+    variances.emplace_back(numbers.at(1), numbers.at(7), numbers.at(12));
+  }
+  return variances;
+}
+
+TEST_F(Georeferenced, CovariancesHoldTheErrorOfTheTransform) {
+  put_control();
+  expect_done("georeference " + in("s") + " --control " + in("points.csv"));
+  expect_done("convert " + in("s") + " " + in("own.tum") + " --covariance --frame map");
+  expect_done("convert " + in("s") + " " + in("grid.tum") + " --covariance");
+  double largest = 0.0;
+  for (const std::string robot : {"ahead", "behind"}) {
+    const Trajectory poses = read_tum(in("grid_" + robot + ".tum")).value();
+    const std::vector<Vector3> in_grid = variances_in(in("grid_" + robot + "_covariance.csv"));
+    ASSERT_EQ(in_grid.size(), poses.size());
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const Vector3 true_position =
+          kT_grid_world * pose_at(truth(robot), poses[i].stamp).value().translation();
+      const Vector3 error = poses[i].T_world_body.rotation().conjugate() *
+                            (poses[i].T_world_body.translation() - true_position);
+      EXPECT_LT(error.squaredNorm(), 25.0 * in_grid[i].sum()) << robot << ", pose " << i;
+      largest = std::max(largest, in_grid[i].sum());
+    }
+  }
+  // The map is fixed where it begins; in the grid no place is.
+  EXPECT_LT(variances_in(in("own_ahead_covariance.csv")).front().sum(),
+            variances_in(in("grid_ahead_covariance.csv")).front().sum());
+  EXPECT_LT(std::sqrt(largest), 0.3);
 }
 
 TEST_F(Georeferenced, MapsAndPosesLeaveInTheTargetFrame) {

@@ -10,6 +10,8 @@
 #include "adit/evaluation/ate.hpp"
 #include "adit/io/session_dir.hpp"
 #include "adit/io/tum.hpp"
+#include "adit/slam/saved_fleet.hpp"
+#include "adit/slam/slam.hpp"
 #include "support/files.hpp"
 #include "support/program.hpp"
 #include "support/two_drives.hpp"
@@ -131,6 +133,44 @@ TEST_F(Growing, APersonOverrulesTheTest) {
   expect_refused("slam " + drive("ahead") + " --veto ahead,far --out " + in("x"), 2,
                  "give it with --session");
   expect_refused("slam --session " + in("s"), 2, "give recordings to add");
+}
+
+/// The latest check of two robots among findings.
+MergeCheck* check_between_robots(std::vector<MessageBody>& findings) {
+  MergeCheck* latest = nullptr;
+  for (MessageBody& finding : findings)
+    if (auto* checks = std::get_if<MergeChecks>(&finding))
+      for (MergeCheck& check : checks->checks)
+        if (check.a != check.b) latest = &check;
+  return latest;
+}
+
+TEST_F(Growing, APersonConfirmsAnotherAlignmentThanTheBest) {
+  expect_done("slam " + drive("ahead") + " " + drive("behind") + " --out " + in("s"));
+  SavedFleet saved = read_fleet(in("s")).value();
+  MergeCheck* check = check_between_robots(saved.findings);
+  ASSERT_NE(check, nullptr);
+  ASSERT_GE(check->loops.size(), 2U);
+  // As if the last loop had been of a hypothesis of its own.
+  MergeHypothesis other = check->hypotheses.front();
+  other.outcome = HypothesisOutcome::behind;
+  other.evidence = 1.5;
+  other.loops = {check->loops.back()};
+  check->loops.pop_back();
+  check->hypotheses.front().loops = check->loops;
+  check->hypotheses.insert(check->hypotheses.begin() + 1, other);
+  const Ruling ruling{Ruling::Kind::confirm, "ahead", "behind",
+                      Ruling::Loop{other.loops[0].first, other.loops[0].second}};
+  Result<SlamRun> run = slam_on({saved}, {}, {}, {ruling});
+  ASSERT_TRUE(run) << run.error().message;
+  const MergeCheck* ruled = check_between_robots(run->findings);
+  ASSERT_NE(ruled, nullptr);
+  EXPECT_TRUE(ruled->accepted);
+  EXPECT_EQ(ruled->loops, other.loops);
+  EXPECT_EQ(ruled->evidence, 1.5);
+  EXPECT_EQ(ruled->hypotheses[0].outcome, HypothesisOutcome::accepted);
+  EXPECT_EQ(ruled->hypotheses[1].outcome, HypothesisOutcome::behind) << "the one that was the best";
+  EXPECT_NE(ruled->reason.find("by the loop of "), std::string::npos) << ruled->reason;
 }
 
 /// The keyframes of the first loop that joins two robots in that session, as options name them.

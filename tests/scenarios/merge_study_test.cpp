@@ -82,7 +82,7 @@ TEST(MergeStudy, WrongUsageAndDamageAreRefused) {
   expect_refused(study_of(folder, ""), 1, "no name");
   put_file(folder / "list.toml", "[[world]]\nname = 'a'\n");
   expect_refused(study_of(folder, "--only b"), 1, "no world 'b'");
-  expect_refused(study_of(folder, "--keyframes best"), 2, "unknown keyframe policy");
+  expect_refused(study_of(folder, "--keyframes best"), 2, "tunnel_filter_keep");
   expect_refused(study_of(folder, "--groups most"), 2, "most");
   std::filesystem::create_directories(folder / "out");
   put_file(folder / "out/results.json", "{}");

@@ -8,6 +8,7 @@
 
 #include "adit/core/format.hpp"
 #include "adit/io/ascending.hpp"
+#include "adit/io/bag_mounts.hpp"
 #include "adit/io/bag_pass.hpp"
 #include "adit/io/bag_topics.hpp"
 #include "adit/io/frame_tracks.hpp"
@@ -47,13 +48,6 @@ Result<std::string> body_frame(const Bag& bag, const TopicIndices& topics) {
   return body;
 }
 
-/// How the robot's frame and the LiDAR's are called in the file.
-struct FrameNames {
-  std::string base;  ///< As the wheel odometry has it; "" without one.
-  std::string lidar;
-  std::string imu;
-};
-
 /// What is read of all messages, in one pass.
 struct Tracks {
   std::vector<BagMessage> scans;
@@ -65,14 +59,9 @@ struct Tracks {
   FrameTracks frames{"", {}};
 };
 
-/// "/tf_static: base_link -> os_lidar"
-std::string source_of(const FrameTracks& frames, const FrameTree::Chain& chain) {
-  return format("{}: {}", frames.are_static(chain.frames) ? "/tf_static" : "/tf",
-                fmt::join(chain.frames, " -> "));
-}
-
-/// Leaves the scans at whose time the pose of the LiDAR is known.
-void leave_scans_with_pose(Recording& recording, Tracks& tracks, const MovingPose& T_base_lidar) {
+/// Leaves the scans at whose time the pose of a LiDAR that moves on the robot is known; the place of the
+/// first is the mount.
+Result<> leave_scans_with_pose(Recording& recording, Tracks& tracks, const MovingPose& T_base_lidar) {
   std::vector<BagMessage> scans;
   std::vector<Stamp> stamps;
   for (std::size_t i = 0; i < tracks.stamps.size(); ++i) {
@@ -80,6 +69,11 @@ void leave_scans_with_pose(Recording& recording, Tracks& tracks, const MovingPos
     scans.push_back(tracks.scans[i]);
     stamps.push_back(tracks.stamps[i]);
   }
+  if (stamps.empty())
+    return fail(
+        format("the LiDAR moves on the robot ({}), and /tf never says where it was at a scan's time: "
+               "look at the clocks with adit info, or {}",
+               recording.mount_source, kMountRemedy));
   const std::size_t num_lost = tracks.stamps.size() - stamps.size();
   if (num_lost > 0)
     recording.warnings.push_back(format(
@@ -88,89 +82,9 @@ void leave_scans_with_pose(Recording& recording, Tracks& tracks, const MovingPos
         num_lost, tracks.stamps.size(), recording.mount_source));
   tracks.scans = std::move(scans);
   tracks.stamps = std::move(stamps);
-}
-
-/// The mount as the links have it, or how it moves; unknown is an error, never the identity.
-Result<std::optional<MovingPose>> take_linked_mount(Recording& recording, Tracks& tracks, FrameNames names) {
-  const FrameTree& tree = tracks.frames.tree();
-  if (names.base.empty()) names.base = tree.body_of(names.lidar);
-  if (names.base.empty()) {
-    return fail(
-        format("nothing says where the LiDAR sits on the robot: no /tf_static links its frame '{}'; {}",
-               names.lidar, kMountRemedy));
-  }
-  const Result<FrameTree::Chain> chain = tree.between(names.base, names.lidar);
-  if (!chain) {
-    return fail(
-        format("/tf_static does not say where the LiDAR sits on the robot: {} (frames that it links: {}); {}",
-               chain.error().message, fmt::join(tree.frames(), ", "), kMountRemedy));
-  }
-  recording.T_base_lidar = chain->T_a_b;
-  recording.mount_source = chain->frames.size() == 1
-                               ? "the wheel odometry is of the LiDAR's own frame " + chain->frames.front()
-                               : source_of(tracks.frames, *chain);
-  MovingPose T_base_lidar = tracks.frames.along(chain->frames);
-  if (!T_base_lidar.moves()) return std::optional<MovingPose>();
-  leave_scans_with_pose(recording, tracks, T_base_lidar);
-  if (tracks.stamps.empty())
-    return fail(
-        format("the LiDAR moves on the robot ({}), and /tf never says where it was at a scan's time: "
-               "look at the clocks with adit info, or {}",
-               recording.mount_source, kMountRemedy));
   recording.T_base_lidar = *T_base_lidar.at(tracks.stamps.front());
   recording.mount_source += ", which moves; scans are given as from the place of the first";
-  return std::optional(std::move(T_base_lidar));
-}
-
-/// The IMU's mount as the links have it, from the robot or, where the user gave the LiDAR's mount, from the
-/// LiDAR. Unknown, it is taken for the LiDAR's.
-void take_linked_imu_mount(Recording& recording, const FrameTracks& frames, const FrameNames& names) {
-  const FrameTree& tree = frames.tree();
-  const std::string base = names.base.empty() ? tree.body_of(names.lidar) : names.base;
-  const bool is_linked = recording.mount_source != kMountGiven && !base.empty();
-  const std::string& from = is_linked || FrameTree::bare(names.imu) == base ? base : names.lidar;
-  const Result<FrameTree::Chain> chain = tree.between(from, names.imu);
-  recording.T_base_imu = recording.T_base_lidar;
-  if (chain && frames.along(chain->frames).moves()) {
-    recording.imu.clear();
-    recording.assumptions.push_back(
-        format("imu: it is left out, as it moves on the robot ({}); if it does not, give --imu-mount",
-               source_of(frames, *chain)));
-    return;
-  }
-  if (chain) {
-    recording.T_base_imu = from == base ? chain->T_a_b : recording.T_base_lidar * chain->T_a_b;
-    recording.imu_mount_source = chain->frames.size() == 1
-                                     ? "the IMU is in the frame " + chain->frames.front()
-                                     : source_of(frames, *chain);
-    return;
-  }
-  recording.imu_mount_source = "assumed";
-  recording.assumptions.push_back(
-      format("{}the LiDAR's, as no /tf_static links '{}' and '{}'; if the IMU's axes are others, {}",
-             kImuMountAssumption, from, FrameTree::bare(names.imu), kImuMountRemedy));
-}
-
-/// The mounts of the LiDAR and of the IMU, if there is one. Returns how the LiDAR moves, if it does.
-Result<std::optional<MovingPose>> take_mounts(Recording& recording, Tracks& tracks, const FrameNames& names,
-                                              const RecordingConfig& config) {
-  const Result<std::optional<Pose>> lidar = mount_of(config);
-  if (!lidar) return tl::unexpected(lidar.error());
-  const Result<std::optional<Pose>> imu = imu_mount_of(config);
-  if (!imu) return tl::unexpected(imu.error());
-  Result<std::optional<MovingPose>> moving = std::optional<MovingPose>();
-  if (*lidar) {
-    set_mount(recording, **lidar);
-  } else {
-    moving = take_linked_mount(recording, tracks, names);
-  }
-  if (!moving || recording.imu.empty()) return moving;
-  if (*imu) {
-    set_imu_mount(recording, **imu);
-  } else {
-    take_linked_imu_mount(recording, tracks.frames, names);
-  }
-  return moving;
+  return {};
 }
 
 Result<ros::CloudMessage> read_cloud_message(const Bag& bag, const BagMessage& message,
@@ -422,8 +336,15 @@ Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, RecordingC
   if (!tracks) return tl::unexpected(tracks.error());
   Recording recording = recording_of(*tracks, *bag, *topics, config);
   if (!bag->own) note_point_times(recording, *first);
-  const Result<std::optional<MovingPose>> moving = take_mounts(recording, *tracks, *names, config);
+  const Result<std::optional<MovingPose>> moving =
+      take_lidar_mount(recording, tracks->frames, *names, config);
   if (!moving) return tl::unexpected(moving.error());
+  if (*moving) {
+    if (Result<> left = leave_scans_with_pose(recording, *tracks, **moving); !left)
+      return tl::unexpected(left.error());
+  }
+  if (Result<> taken = take_imu_mount(recording, tracks->frames, *names, config); !taken)
+    return tl::unexpected(taken.error());
   recording.scan_stamps = tracks->stamps;
   if (Result<> checked = check_fits_mcap(recording); !checked) return tl::unexpected(checked.error());
   // What the first scan has shown of the times holds for all.

@@ -326,64 +326,98 @@ Result<ScansSeen> look_at_scans(const Recording& recording, std::size_t num) {
 
 namespace {
 
-/// By how much more the LiDAR moved to the side than the wheels did: where the mount has to be turned by
-/// `yaw` and shifted ahead by `lever`, -yaw * ahead + lever * turn.
-struct SideMotion {
-  double ahead, turn, side;
+/// By how much more the LiDAR moved ahead and to the left than the wheels did. Where its mount has to be
+/// turned by `yaw` and shifted by `shift`, and wheels take a way for `scale` times as far, that is along =
+/// -scale * ahead - shift.y * turn and left = -yaw * ahead + shift.x * turn.
+struct StepBeyondWheels {
+  double ahead, turn, left;
+  std::optional<double> along;  ///< Where scans say how far.
 };
 
-std::vector<SideMotion> side_motions(const Recording& recording, std::span<const std::size_t> scans) {
+std::vector<StepBeyondWheels> steps_beyond_wheels(const Recording& recording,
+                                                  std::span<const std::size_t> scans) {
   constexpr double kUnknown = 10.0;      // metres and radians, along directions that the scan leaves open
-  constexpr double kSideSigma = 0.005;   // metres
+  constexpr double kMoveSigma = 0.005;   // metres
+  constexpr double kAlongSigma = 0.02;   // metres; few scans of a tunnel say it better
   constexpr double kTurnSigma = 0.0005;  // radians
   const ScanMotion motion = motion_of_scans(recording, scans);
-  std::vector<SideMotion> out;
+  std::vector<StepBeyondWheels> out;
   for (std::size_t k = kSettlingScans; k < motion.steps.size(); ++k) {
     const OdometryStep& before = motion.steps[k - 1];
     const OdometryStep& after = motion.steps[k];
     if (after.status != StepStatus::ok && after.status != StepStatus::degenerate) continue;
     const Matrix6 covariance =
         inverse(Matrix6(after.information + Matrix6::Identity() / (kUnknown * kUnknown)));
-    if (std::sqrt(covariance(1, 1)) > kSideSigma || std::sqrt(covariance(5, 5)) > kTurnSigma) continue;
+    if (std::sqrt(covariance(1, 1)) > kMoveSigma || std::sqrt(covariance(5, 5)) > kTurnSigma) continue;
     const Result<Pose> begin = pose_at(recording.wheel, before.stamp);
     const Result<Pose> end = pose_at(recording.wheel, after.stamp);
     if (!begin || !end) continue;
     const Pose by_scans = before.T_odom_base.inverse() * after.T_odom_base;
     const Vector3 by_wheels = (begin->inverse() * *end).translation();  // how far, scans in a tube do not say
-    out.push_back({by_wheels.x(), by_scans.yaw(), by_scans.translation().y() - by_wheels.y()});
+    const Vector3 beyond = by_scans.translation() - by_wheels;
+    out.push_back({by_wheels.x(), by_scans.yaw(), beyond.y(), {}});
+    if (std::sqrt(covariance(0, 0)) < kAlongSigma) out.back().along = beyond.x();
   }
   return out;
 }
 
-/// Least squares, with the standard deviation of each from the residuals.
-std::optional<MountByMotion> mount_from(const std::vector<SideMotion>& motions) {
+/// A shift by its share of turns, and what goes with the way instead, with their standard deviations.
+struct ShiftByTurns {
+  double by_way, by_way_sigma;
+  double shift, shift_sigma;  ///< Metres; the latter infinite where there are too few turns.
+};
+
+/// Least squares of beyond = by_way * way + shift * turn, rows of [way, turn, beyond].
+std::optional<ShiftByTurns> shift_by_turns(const std::vector<Vector3>& rows) {
   constexpr std::size_t kFew = 40;
-  if (motions.size() < kFew) return {};
+  if (rows.size() < kFew) return {};
   Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
   Eigen::Vector2d g = Eigen::Vector2d::Zero();
-  for (const SideMotion& m : motions) {
-    const Eigen::Vector2d j(-m.ahead, m.turn);
-    H += j * j.transpose();
-    g += j * m.side;
+  for (const Vector3& row : rows) {
+    H += row.head<2>() * row.head<2>().transpose();
+    g += row.head<2>() * row.z();
   }
-  constexpr double kFarthest = 1.0;  // metres of lever arm that are possible
-  constexpr double kNoise = 0.01;    // metres to the side, a step; only to weigh the prior of the lever arm
+  constexpr double kFarthest = 1.0;  // metres of shift that are possible
+  constexpr double kNoise = 0.01;    // metres beyond, a step; only to weigh the prior of the shift
+  const double squared_turns = H(1, 1);
   H(1, 1) += kNoise * kNoise / (kFarthest * kFarthest);
   if (!(H(0, 0) > 1.0)) return {};  // hardly moved: some 10 steps of 0.3 m
   const Eigen::Vector2d x = H.inverse() * g;
   double squares = 0.0;
-  for (const SideMotion& m : motions) squares += std::pow(m.side + x[0] * m.ahead - x[1] * m.turn, 2);
-  const Eigen::Matrix2d covariance = squares / static_cast<double>(motions.size() - 2) * H.inverse();
-  MountByMotion out;
-  out.num_steps = motions.size();
-  out.yaw_deg = kPerRadian * x[0];
-  out.yaw_sigma_deg = kPerRadian * std::sqrt(covariance(0, 0));
-  out.ahead_m = x[1];
-  double squared_turns = 0.0;
-  for (const SideMotion& m : motions) squared_turns += m.turn * m.turn;
+  for (const Vector3& row : rows) squares += std::pow(row.z() - row.head<2>().dot(x), 2);
+  const Eigen::Matrix2d covariance = squares / static_cast<double>(rows.size() - 2) * H.inverse();
   constexpr double kEnoughTurns = 0.01;  // rad^2: some 10 steps of 2 degrees
-  out.ahead_sigma_m =
-      squared_turns > kEnoughTurns ? std::sqrt(covariance(1, 1)) : std::numeric_limits<double>::infinity();
+  return ShiftByTurns{
+      x[0], std::sqrt(covariance(0, 0)), x[1],
+      squared_turns > kEnoughTurns ? std::sqrt(covariance(1, 1)) : std::numeric_limits<double>::infinity()};
+}
+
+std::optional<MountByMotion> mount_from(const std::vector<StepBeyondWheels>& steps) {
+  std::vector<Vector3> to_the_left, along;
+  double squared_left = 0.0;
+  double squared_right = 0.0;
+  for (const StepBeyondWheels& step : steps) {
+    to_the_left.emplace_back(-step.ahead, step.turn, step.left);
+    if (!step.along) continue;
+    along.emplace_back(-step.ahead, -step.turn, *step.along);
+    (step.turn > 0.0 ? squared_left : squared_right) += step.turn * step.turn;
+  }
+  const std::optional<ShiftByTurns> ahead = shift_by_turns(to_the_left);
+  if (!ahead) return {};
+  MountByMotion out;
+  out.num_steps = steps.size();
+  out.yaw_deg = kPerRadian * ahead->by_way;
+  out.yaw_sigma_deg = kPerRadian * ahead->by_way_sigma;
+  out.ahead_m = ahead->shift;
+  out.ahead_sigma_m = ahead->shift_sigma;
+  // Wheels that slip in turns fall short on either side, as a shift does not.
+  constexpr double kEnoughTurns = 0.005;  // rad^2, to either side
+  const std::optional<ShiftByTurns> left = shift_by_turns(along);
+  std::fprintf(stderr, "DBG along %zu of %zu left2 %.4f right2 %.4f shift %.3f +- %.3f\n", along.size(), steps.size(), squared_left, squared_right, left ? left->shift : -99, left ? left->shift_sigma : -99);
+  if (left && std::min(squared_left, squared_right) > kEnoughTurns) {
+    out.left_m = left->shift;
+    out.left_sigma_m = left->shift_sigma;
+  }
   return out;
 }
 
@@ -418,12 +452,12 @@ std::optional<MountByMotion> mount_by_motion(const Recording& recording) {
       spread_over(scans.size() > kLength ? scans.size() - kLength : 0, kStretches);
   for (const std::size_t start : where_it_turns(recording, scans, kLength, kStretches))
     if (std::ranges::find(starts, start) == starts.end()) starts.push_back(start);
-  std::vector<std::vector<SideMotion>> of_stretches(starts.size());
+  std::vector<std::vector<StepBeyondWheels>> of_stretches(starts.size());
   parallel_for_each(starts.size(), [&](std::size_t i) {
-    of_stretches[i] = side_motions(recording, std::span(scans).subspan(starts[i], kLength));
+    of_stretches[i] = steps_beyond_wheels(recording, std::span(scans).subspan(starts[i], kLength));
   });
-  std::vector<SideMotion> all;
-  for (const std::vector<SideMotion>& one : of_stretches) all.insert(all.end(), one.begin(), one.end());
+  std::vector<StepBeyondWheels> all;
+  for (const std::vector<StepBeyondWheels>& one : of_stretches) all.insert(all.end(), one.begin(), one.end());
   return mount_from(all);
 }
 

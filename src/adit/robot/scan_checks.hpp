@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -67,7 +68,10 @@ struct MountByMotion {
   double ahead_m =
       0.0;  ///< To be added to x, where the robot turned enough: by the side to which it is carried.
   double ahead_sigma_m = 0.0;  ///< Infinite on a drive without curves.
-  std::size_t num_steps = 0;   ///< From scan to scan, where the motion was well measured; 40 or more.
+  double left_m = 0.0;         ///< To be added to y: by how much shorter the way is in turns to the left.
+  /// Infinite on a drive without curves to both sides in which scans say how far the robot went.
+  double left_sigma_m = std::numeric_limits<double>::infinity();
+  std::size_t num_steps = 0;  ///< From scan to scan, where the motion was well measured; 40 or more.
 };
 /// Registers some 300 scans, half of them where the robot turns most. None without wheels, or where the scans
 /// leave too much of the motion open. A vehicle whose middle of turning is not the base's origin shows as

@@ -161,21 +161,26 @@ Diagnosis mount_turn(const Recording& recording, const Pose& mount) {
   if (!found)
     return {check, Health::unknown,
             "the robot moves too little, or its scans leave too much of the motion open"};
-  const bool has_lever = found->ahead_sigma_m < 0.1;
   std::string sentence = format(
       "by the motion between {} pairs of scans the mount is off by {:+.2f} degrees of yaw "
       "(+-{:.2f})",
       found->num_steps, found->yaw_deg, found->yaw_sigma_deg);
-  if (has_lever) sentence += format(" and {:+.2f} m ahead (+-{:.2f})", found->ahead_m, found->ahead_sigma_m);
   constexpr double kSigmas = 3.0;
-  constexpr double kYaw = 1.0;     // degrees
-  constexpr double kLever = 0.15;  // metres
+  constexpr double kYaw = 1.0;           // degrees
+  constexpr double kLever = 0.15;        // metres
+  constexpr double kLeverUnknown = 0.1;  // metres, one standard deviation
+  Vector3 shift = Vector3::Zero();
+  const auto add_lever = [&](const char* way, double metres, double sigma, double& shifted) {
+    if (!(sigma < kLeverUnknown)) return;
+    sentence += format(" and {:+.2f} m {} (+-{:.2f})", metres, way, sigma);
+    if (std::abs(metres) > std::max(kLever, kSigmas * sigma)) shifted = metres;
+  };
+  add_lever("ahead", found->ahead_m, found->ahead_sigma_m, shift.x());
+  add_lever("to the left", found->left_m, found->left_sigma_m, shift.y());
   const bool is_turned = std::abs(found->yaw_deg) > std::max(kYaw, kSigmas * found->yaw_sigma_deg);
-  const bool is_shifted =
-      has_lever && std::abs(found->ahead_m) > std::max(kLever, kSigmas * found->ahead_sigma_m);
-  if (!is_turned && !is_shifted) return {check, Health::good, sentence};
+  if (!is_turned && shift.isZero()) return {check, Health::good, sentence};
   const Pose by_yaw = Pose::planar(0.0, 0.0, is_turned ? found->yaw_deg * kDegree : 0.0);
-  const Vector3 at = mount.translation() + (is_shifted ? found->ahead_m : 0.0) * Vector3::UnitX();
+  const Vector3 at = mount.translation() + shift;
   const Pose better((by_yaw * Pose(mount.rotation(), Vector3::Zero())).rotation(), at);
   constexpr double kMuch = 5.0;  // degrees
   return {check, std::abs(found->yaw_deg) > kMuch ? Health::spoils : Health::noted, sentence,

@@ -13,8 +13,6 @@
 #include "adit/io/tum.hpp"
 #include "adit/registration/control_fit.hpp"
 #include "adit/robot/full_rate.hpp"
-#include "adit/slam/joint_map.hpp"
-#include "adit/slam/map_covariance.hpp"
 
 namespace adit {
 namespace {
@@ -160,29 +158,37 @@ std::vector<Place> sample_of(const PlacedSession& session, std::size_t shared_ma
   return places;
 }
 
-/// Where the place is known worst once the map is in the target frame: errors of the map there, and those of
-/// the transform, which depend on them.
-FarEnd far_end_of(const PlacedSession& session, const std::vector<BoundControl>& points,
-                  const MapCovariance& covariance, const ControlFit& fit) {
-  const std::vector<Place> sample = sample_of(session, points.front().shared_map(session));
-  const Matrix3 R = fit.T_target_source.rotation_matrix();
+/// Of T_target_base at those places: the errors of the map there, those of the transform, and what they
+/// share, as marks lie in the map.
+std::vector<Matrix6> in_target(const PlacedSession& session, const std::vector<BoundControl>& points,
+                               const MapCovariance& covariance, const ControlFit& fit,
+                               const std::vector<Place>& places) {
   // The transform's error by that of the marks: a mark that is too far is target - T * mark that is too
   // short.
   Eigen::MatrixXd by_marks = fit.gain;
   for (Index i = 0; i < by_marks.cols(); i += 3)
-    by_marks.middleCols<3>(i) = (-by_marks.middleCols<3>(i) * R).eval();
-  const Eigen::MatrixXd with_marks =
-      covariance.cross(sample, places_of(points)) * mark_jacobian(session, points).transpose();
+    by_marks.middleCols<3>(i) = (-by_marks.middleCols<3>(i) * fit.T_target_source.rotation_matrix()).eval();
+  const Eigen::MatrixXd with_transform = covariance.cross(places, places_of(points)) *
+                                         mark_jacobian(session, points).transpose() * by_marks.transpose();
+  std::vector<Matrix6> out;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Matrix6 by_transform = places[i].T_map_keyframe(session).inverse().adjoint();
+    const Matrix6 both = with_transform.middleRows<6>(6 * static_cast<Index>(i)) * by_transform.transpose();
+    out.emplace_back(covariance.at(places[i]) + carry_covariance(by_transform, fit.covariance) + both +
+                     both.transpose());
+  }
+  return out;
+}
+
+/// Where the place is known worst once the map is in the target frame.
+FarEnd far_end_of(const PlacedSession& session, const std::vector<BoundControl>& points,
+                  const MapCovariance& covariance, const ControlFit& fit) {
+  const std::vector<Place> sample = sample_of(session, points.front().shared_map(session));
+  const std::vector<Matrix6> in_base = in_target(session, points, covariance, fit, sample);
   FarEnd worst;
   for (std::size_t s = 0; s < sample.size(); ++s) {
-    const Pose& T_map_keyframe = sample[s].T_map_keyframe(session);
-    const Matrix36 by_keyframe = R * point_jacobian(T_map_keyframe, Vector3::Zero());
-    Matrix36 by_transform;
-    by_transform << R, -R * so3::hat(T_map_keyframe.translation());
-    const Matrix3 both = by_keyframe * with_marks.middleRows<6>(6 * static_cast<Index>(s)) *
-                         by_marks.transpose() * by_transform.transpose();
-    const Matrix3 all = by_keyframe * covariance.cross({sample[s]}, {sample[s]}) * by_keyframe.transpose() +
-                        by_transform * fit.covariance * by_transform.transpose() + both + both.transpose();
+    const Matrix3 R = (fit.T_target_source * sample[s].T_map_keyframe(session)).rotation_matrix();
+    const Matrix3 all = R * in_base[s].topLeftCorner<3, 3>() * R.transpose();
     const double xy = 0.5 * (all(0, 0) + all(1, 1)) + std::hypot(0.5 * (all(0, 0) - all(1, 1)), all(0, 1));
     const FarEnd here{session.robots[sample[s].robot].map->name,
                       session.robots[sample[s].robot].map->keyframes[sample[s].keyframe].stamp,
@@ -263,6 +269,19 @@ Result<Georeferencing> georeference(const std::filesystem::path& session_path,
     if (!by_map.contains(robot.shared_map))
       out.notes.push_back(robot.map->name + " is in a map without control points, which stays where it is");
   return out;
+}
+
+Result<std::vector<Matrix6>> target_covariances(const PlacedSession& session, const MapCovariance& covariance,
+                                                const Georeference& map, const std::vector<Place>& places) {
+  std::vector<BoundControl> points;
+  for (const JudgedControl& judged : map.points) {
+    Result<BoundControl> bound = bind(session, judged.point);
+    if (!bound) return fail(format("control point '{}'", judged.point.name), bound.error());
+    points.push_back(std::move(*bound));
+  }
+  return fit_control(pairs_of(session, points, covariance)).map([&](const ControlFit& fit) {
+    return in_target(session, points, covariance, fit, places);
+  });
 }
 
 }  // namespace adit

@@ -9,6 +9,8 @@
 
 #include "adit/core/result.hpp"
 #include "adit/io/georeference.hpp"
+#include "adit/slam/joint_map.hpp"
+#include "adit/slam/map_covariance.hpp"
 
 namespace adit {
 
@@ -27,5 +29,13 @@ struct Georeferencing {
 [[nodiscard]] Result<Georeferencing> georeference(const std::filesystem::path& session,
                                                   const std::vector<ControlPoint>& points,
                                                   const std::string& crs);
+
+/// The covariances of T_target_base at `places` of the map that was georeferenced: of the place in the map,
+/// of T_target_map, and of what they share, as the marks lie in that map. Right perturbation, [translation;
+/// rotation], metres and radians. Fails as `georeference` does.
+[[nodiscard]] Result<std::vector<Matrix6>> target_covariances(const PlacedSession& session,
+                                                              const MapCovariance& covariance,
+                                                              const Georeference& map,
+                                                              const std::vector<Place>& places);
 
 }  // namespace adit

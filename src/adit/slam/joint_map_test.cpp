@@ -7,6 +7,7 @@
 #include <array>
 #include <cstring>
 
+#include "adit/io/cloud_files.hpp"
 #include "adit/io/mesh_files.hpp"
 #include "support/files.hpp"
 
@@ -64,6 +65,31 @@ TEST(JointMap, FacesOfThinWallsLookToWhereTheyWereSeenFrom) {
     const auto corner = [&](Eigen::Index i) { return mesh->vertices[static_cast<std::size_t>(triangle[i])]; };
     const Eigen::Vector3f normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
     EXPECT_GT(normal.x() * (corner(0).x() < 0.4F ? -1.0F : 1.0F), 0.5F);
+  }
+}
+
+TEST(JointMap, IntensitiesStayWithTheRobotThatHasThem) {
+  const auto with_wall = [](std::uint8_t robot, double wall_x, const std::vector<float>& intensities) {
+    auto map = std::make_shared<RobotMap>();
+    map->id = {robot};
+    map->keyframes = {wall_seen_from(0, wall_x, Vector3::Zero())};
+    auto cloud = std::make_shared<PointCloud>(*map->keyframes[0].cloud);
+    for (std::size_t i = 0; i < cloud->size() && !intensities.empty(); ++i)
+      cloud->intensities.push_back(intensities[cloud->points[i].y() < 0.0F ? 0 : 1]);
+    map->keyframes[0].cloud = cloud;
+    return map;
+  };
+  const JointMap both{{with_wall(0, 5.0, {10.0F, 200.0F}), with_wall(1, 9.0, {})}, {{Pose()}, {Pose()}}, {}};
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_joint_map(folder / "map.ply", both, {}));
+  const Result<PointCloud> read = read_cloud(folder / "map.ply");
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_EQ(read->intensities.size(), read->size());
+  for (std::size_t i = 0; i < read->size(); ++i) {
+    const Eigen::Vector3f& point = read->points[i];
+    if (std::abs(point.y()) < 0.2F) continue;  // a voxel may have both
+    const float expected = point.x() > 7.0F ? 0.0F : point.y() < 0.0F ? 10.0F : 200.0F;
+    EXPECT_EQ(read->intensities[i], expected) << point.transpose();
   }
 }
 

@@ -56,20 +56,23 @@ MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first, d
 
 bool MergeChecker::differs_too_often(const Hypothesis& h) const {
   // One change is seen from many places: the places themselves are no independent trials.
-  return differs_nearly_everywhere(h) ||
-         poisson_tail(h.num_changes(), config_.evidence.changes_at_worst_per_km * compared_km(h)) <
-             config_.evidence.refusal_rate;
+  const std::size_t num_changes =
+      differs_nearly_everywhere(h) ? h.num_changes_unless_explained() : h.num_changes();
+  return are_too_many(num_changes, compared_km(h));
 }
 
-/// By one place more than a true alignment does at worst, and not for a few large changes. Second looks are
-/// not waited for: there are as many as places that differ, and most hypotheses are false.
+bool MergeChecker::are_too_many(std::size_t num_changes, double km) const {
+  return poisson_tail(num_changes, config_.evidence.changes_at_worst_per_km * km) <
+         config_.evidence.refusal_rate;
+}
+
+/// By one place more than a true alignment does at worst. Second looks are not waited for then: there are as
+/// many as places that differ, and most hypotheses are false.
 bool MergeChecker::differs_nearly_everywhere(const Hypothesis& h) const {
   const auto num = static_cast<double>(h.compared.size());
   const std::size_t first = std::min(static_cast<std::size_t>(config_.first_checks), h.plan.size());
   return h.compared.size() >= first &&
-         static_cast<double>(h.num_differing()) >= config_.evidence.differing_at_worst * num + 1.0 &&
-         static_cast<double>(h.num_changes_unless_explained()) >
-             config_.evidence.changes_at_worst_per_km * compared_km(h);
+         static_cast<double>(h.num_differing()) >= config_.evidence.differing_at_worst * num + 1.0;
 }
 
 double MergeChecker::compared_km(const Hypothesis& h) const {
@@ -221,63 +224,65 @@ std::optional<std::size_t> MergeChecker::whose_places_to_find_again() const {
   return is_needed && would_do ? std::optional(order.front()) : std::nullopt;
 }
 
+std::optional<MergeChecker::Step> MergeChecker::next_step() const {
+  if (const auto which = to_go_on_with()) {
+    const Hypothesis& h = hypotheses_[*which];
+    return Step{h.compared.size() < h.plan.size() ? Stage::places : Stage::second_looks, *which};
+  }
+  if (const auto which = whose_walls_to_compare()) return Step{Stage::walls, *which};
+  if (const auto which = whose_places_to_find_again()) return Step{Stage::find_again, *which};
+  return std::nullopt;
+}
+
 std::vector<PlannedComparison> MergeChecker::next(std::size_t num) const {
-  const auto which = to_go_on_with();
-  if (!which) {
-    if (const auto closer = whose_walls_to_compare())
-      return part_of(hypotheses_[*closer].wall_plan, hypotheses_[*closer].num_walls_compared, num);
-    if (const auto again = whose_places_to_find_again())
-      return part_of(to_find_again(hypotheses_[*again]), hypotheses_[*again].num_looked_for, num);
-    return {};
+  const auto step = next_step();
+  if (!step) return {};
+  const Hypothesis& h = hypotheses_[step->hypothesis];
+  switch (step->stage) {
+    case Stage::places: {
+      const auto first = static_cast<std::size_t>(config_.first_checks);
+      return part_of(h.plan, h.compared.size(), h.compared.empty() ? std::min(num, first) : num);
+    }
+    case Stage::second_looks: {
+      std::vector<PlannedComparison> again;
+      for (const std::size_t i : h.to_look_at_again()) again.push_back(*h.second_looks[i]);
+      return part_of(again, 0, num);
+    }
+    case Stage::walls:
+      return part_of(h.wall_plan, h.num_walls_compared, num);
+    case Stage::find_again:
+      return part_of(to_find_again(h), h.num_looked_for, num);
   }
-  const Hypothesis& h = hypotheses_[*which];
-  const std::size_t from = h.compared.size();
-  if (from == h.plan.size()) {
-    std::vector<PlannedComparison> again;
-    for (const std::size_t i : h.to_look_at_again())
-      if (again.size() < num) again.push_back(*h.second_looks[i]);
-    return again;
-  }
-  const std::size_t at_once = from == 0 ? std::min(num, static_cast<std::size_t>(config_.first_checks)) : num;
-  return part_of(h.plan, from, at_once);
+  return {};
 }
 
 void MergeChecker::add(const std::vector<ComparedPlace>& places) {
-  const auto which = to_go_on_with();
-  if (!which) return whose_walls_to_compare() ? add_walls(places) : add_found_again(places);
-  Hypothesis& h = hypotheses_[*which];
-  if (h.compared.size() == h.plan.size()) return add_second_looks(h, places);
-  ADIT_CHECK(h.compared.size() + places.size() <= h.plan.size(), "only what was asked for is added");
-  for (const ComparedPlace& place : places) h.add(place);
-}
-
-/// Their places have been seen from beside: of these pairs only the walls count.
-void MergeChecker::add_walls(const std::vector<ComparedPlace>& places) {
-  const auto which = whose_walls_to_compare();
-  ADIT_CHECK(which, "only what was asked for is added");
-  Hypothesis& h = hypotheses_[*which];
-  ADIT_CHECK(h.num_walls_compared + places.size() <= h.wall_plan.size(), "only what was asked for is added");
-  for (const ComparedPlace& place : places) h.offsets.add(place.offsets);
-  h.num_walls_compared += places.size();
-}
-
-void MergeChecker::add_found_again(const std::vector<ComparedPlace>& places) {
-  const auto which = whose_places_to_find_again();
-  ADIT_CHECK(which, "only what was asked for is added");
-  Hypothesis& h = hypotheses_[*which];
-  h.num_looked_for += places.size();
-  ADIT_CHECK(h.num_looked_for <= to_find_again(h).size(), "only what was asked for is added");
-  const auto num_of = [&](FoundAgain outcome) {
-    return static_cast<std::size_t>(std::ranges::count(places, outcome, &ComparedPlace::found_again));
-  };
-  h.num_found_again += num_of(FoundAgain::there);
-  h.num_not_found += num_of(FoundAgain::elsewhere);
-}
-
-void MergeChecker::add_second_looks(Hypothesis& h, const std::vector<ComparedPlace>& places) {
-  const std::vector<std::size_t> again = h.to_look_at_again();
-  ADIT_CHECK(places.size() <= again.size(), "only what was asked for is added");
-  for (std::size_t i = 0; i < places.size(); ++i) h.add_second_look(again[i], places[i]);
+  ADIT_CHECK(places.size() <= next(places.size()).size(), "only what was asked for is added");
+  const auto step = next_step();
+  if (!step) return;
+  Hypothesis& h = hypotheses_[step->hypothesis];
+  switch (step->stage) {
+    case Stage::places:
+      for (const ComparedPlace& place : places) h.add(place);
+      break;
+    case Stage::second_looks: {
+      const std::vector<std::size_t> again = h.to_look_at_again();
+      for (std::size_t i = 0; i < places.size(); ++i) h.add_second_look(again[i], places[i]);
+      break;
+    }
+    case Stage::walls:
+      // Their places have been seen from beside: of these pairs only the walls count.
+      for (const ComparedPlace& place : places) h.offsets.add(place.offsets);
+      h.num_walls_compared += places.size();
+      break;
+    case Stage::find_again:
+      for (const ComparedPlace& place : places) {
+        ++h.num_looked_for;
+        h.num_found_again += place.found_again == FoundAgain::there;
+        h.num_not_found += place.found_again == FoundAgain::elsewhere;
+      }
+      break;
+  }
 }
 
 double MergeChecker::apart_m(std::size_t one, std::size_t other) const {

@@ -69,10 +69,19 @@ class MergeChecker {
   [[nodiscard]] std::optional<UndecidedStretch> undecided() const;
 
  private:
+  /// What is compared of a hypothesis, in this order.
+  enum class Stage : std::uint8_t { places, second_looks, walls, find_again };
+  struct Step {
+    Stage stage = Stage::places;
+    std::size_t hypothesis = 0;
+  };
+
   /// `forgiven`: evidence that the best hypothesis is spared.
   [[nodiscard]] MergeDecision decide(const std::vector<std::size_t>& best_first, double forgiven = 0.0) const;
   [[nodiscard]] bool differs_too_often(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool differs_nearly_everywhere(const Hypothesis& hypothesis) const;
+  /// More changes than a true alignment would leave on such a stretch but once in 1 / refusal_rate.
+  [[nodiscard]] bool are_too_many(std::size_t num_changes, double km) const;
   [[nodiscard]] double compared_km(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool are_rivals(const Hypothesis& best, const Hypothesis& other) const;
 
@@ -101,9 +110,8 @@ class MergeChecker {
   /// Distinctive places away from its loops, evenly spread; none where they could not make few loops many.
   [[nodiscard]] std::vector<PlannedComparison> to_find_again(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool has_places_to_find_again(const Hypothesis& hypothesis) const;
-  void add_walls(const std::vector<ComparedPlace>& places);
-  void add_found_again(const std::vector<ComparedPlace>& places);
-  static void add_second_looks(Hypothesis& hypothesis, const std::vector<ComparedPlace>& places);
+  /// None when the check is over.
+  [[nodiscard]] std::optional<Step> next_step() const;
   [[nodiscard]] std::vector<std::size_t> best_first() const;
   [[nodiscard]] double apart_m(std::size_t one, std::size_t other) const;
   [[nodiscard]] HypothesisCounts counts(const Hypothesis& hypothesis) const;

@@ -87,9 +87,7 @@ RefusalKind MergeChecker::kind_where_walls_differ(const Hypothesis& h) const {
 double MergeChecker::metres_for_changes(const Hypothesis& h) const {
   constexpr double kFarthestPath = 10'000.0;  // metres: so many changes are none
   double metres = 0.0;
-  while (metres < kFarthestPath && poisson_tail(h.num_changes(), config_.evidence.changes_at_worst_per_km *
-                                                                     (compared_km(h) + metres / 1000.0)) <
-                                       config_.evidence.refusal_rate)
+  while (metres < kFarthestPath && are_too_many(h.num_changes(), compared_km(h) + metres / 1000.0))
     metres += config_.spacing_m;
   return metres;
 }
