@@ -99,7 +99,7 @@ _adit() {{
   for ((i = 1; i < COMP_CWORD; i++)); do
     case " {0} " in *" ${{COMP_WORDS[i]}} "*) command=${{COMP_WORDS[i]}}; break ;; esac
   done
-  case "$command $previous" in
+  [[ $current == -* ]] || case "$command $previous" in
 {2}  esac
   if [[ -z $words && $current == -* ]]; then
     case $command in
@@ -133,7 +133,7 @@ std::string zsh_arguments(const CommandHelp& command) {
                                          : "'*:" + chosen->value + ":(" + joined(chosen->choices) + ")'";
 }
 
-/// Arguments of _arguments, one a line; but --help, which the program itself has.
+/// Arguments of _arguments, one a line, without a command's own --help: the program has one.
 std::string zsh_options(const CommandHelp& command) {
   std::string text;
   for (const OptionHelp& option : command.options) {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 // Gives bytes to the readers of one kind of file: tools/fuzz.sh. ADIT_FUZZ_AS is the extension ("mcap"),
-// which says which; texts whose names end in .csv or .toml like others' have extensions of their own here. Readers take any bytes without a fault of memory, without undefined behaviour and without
-// a contract violation, and take no more memory than the bytes warrant; what they make of them is for other
-// tests.
+// which says which; texts whose names end in .csv or .toml like others' have extensions of their own here.
+// Readers take any bytes without a fault of memory, without undefined behaviour and without a contract
+// violation, and take no more memory than the bytes warrant; what they make of them is for other tests.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>

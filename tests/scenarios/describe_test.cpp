@@ -47,6 +47,7 @@ TEST(Describe, BashOffersOptionsAndTheirValues) {
   EXPECT_EQ(completed("slam --profile p"), std::set<std::string>{"paper"});
   EXPECT_EQ(completed("slam --keyframes ad"), std::set<std::string>{"adaptive"});
   EXPECT_EQ(completed("describe ''"), (std::set<std::string>{"man", "bash", "zsh"}));
+  EXPECT_EQ(completed("describe --thr"), std::set<std::string>{"--threads"});
   EXPECT_TRUE(completed("config --gn").contains(""));
 }
 

@@ -110,9 +110,8 @@ TEST_F(Georeferenced, CovariancesHoldTheErrorOfTheTransform) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const Vector3 true_position =
           kT_grid_world * pose_at(truth(robot), poses[i].stamp).value().translation();
-      const Vector3 error = poses[i].T_world_body.rotation().conjugate() *
-                            (poses[i].T_world_body.translation() - true_position);
-      EXPECT_LT(error.squaredNorm(), 25.0 * in_grid[i].sum()) << robot << ", pose " << i;
+      const double error_m = (poses[i].T_world_body.translation() - true_position).norm();
+      EXPECT_LT(error_m, 5.0 * std::sqrt(in_grid[i].sum())) << robot << ", pose " << i;
       largest = std::max(largest, in_grid[i].sum());
     }
   }
@@ -120,6 +119,9 @@ TEST_F(Georeferenced, CovariancesHoldTheErrorOfTheTransform) {
   EXPECT_LT(variances_in(in("own_ahead_covariance.csv")).front().sum(),
             variances_in(in("grid_ahead_covariance.csv")).front().sum());
   EXPECT_LT(std::sqrt(largest), 0.3);
+  // T3 is where `ahead` stood at its end, by a survey of 0.01 m and a mark of 0.05 m: better is its place
+  // known there, whatever the map may have drifted.
+  EXPECT_LT(variances_in(in("grid_ahead_covariance.csv")).back().sum(), 3.0 * (0.05 * 0.05 + 0.01 * 0.01));
 }
 
 TEST_F(Georeferenced, MapsAndPosesLeaveInTheTargetFrame) {

@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "adit/core/result.hpp"
-#include "adit/io/frame_tracks.hpp"
 #include "adit/core/recording_config.hpp"
 #include "adit/core/records.hpp"
+#include "adit/core/result.hpp"
+#include "adit/io/frame_tracks.hpp"
 
 namespace adit {
 

@@ -326,18 +326,19 @@ Result<ScansSeen> look_at_scans(const Recording& recording, std::size_t num) {
 
 namespace {
 
-/// By how much more the LiDAR moved ahead and to the left than the wheels did. Where its mount has to be
-/// turned by `yaw` and shifted by `shift`, and wheels take a way for `scale` times as far, that is along =
-/// -scale * ahead - shift.y * turn and left = -yaw * ahead + shift.x * turn.
+/// By how much more the scans have the robot move, ahead and to the left, than the wheels do, which say how
+/// far it went `ahead`; the scans say how much it has `turned`. Where the mount has to be turned by `yaw` and
+/// shifted by `shift`, and wheels count (1 + scale) of the way and `slip` of a turn to either side too much:
+/// along = -scale * ahead - shift.y * turned - slip * |turned| and left = -yaw * ahead + shift.x * turned.
 struct StepBeyondWheels {
-  double ahead, turn, left;
+  double ahead, turned, left;
   std::optional<double> along;  ///< Where scans say how far.
 };
 
 std::vector<StepBeyondWheels> steps_beyond_wheels(const Recording& recording,
                                                   std::span<const std::size_t> scans) {
   constexpr double kUnknown = 10.0;      // metres and radians, along directions that the scan leaves open
-  constexpr double kMoveSigma = 0.005;   // metres
+  constexpr double kSideSigma = 0.005;   // metres
   constexpr double kAlongSigma = 0.02;   // metres; few scans of a tunnel say it better
   constexpr double kTurnSigma = 0.0005;  // radians
   const ScanMotion motion = motion_of_scans(recording, scans);
@@ -348,12 +349,12 @@ std::vector<StepBeyondWheels> steps_beyond_wheels(const Recording& recording,
     if (after.status != StepStatus::ok && after.status != StepStatus::degenerate) continue;
     const Matrix6 covariance =
         inverse(Matrix6(after.information + Matrix6::Identity() / (kUnknown * kUnknown)));
-    if (std::sqrt(covariance(1, 1)) > kMoveSigma || std::sqrt(covariance(5, 5)) > kTurnSigma) continue;
+    if (std::sqrt(covariance(1, 1)) > kSideSigma || std::sqrt(covariance(5, 5)) > kTurnSigma) continue;
     const Result<Pose> begin = pose_at(recording.wheel, before.stamp);
     const Result<Pose> end = pose_at(recording.wheel, after.stamp);
     if (!begin || !end) continue;
     const Pose by_scans = before.T_odom_base.inverse() * after.T_odom_base;
-    const Vector3 by_wheels = (begin->inverse() * *end).translation();  // how far, scans in a tube do not say
+    const Vector3 by_wheels = (begin->inverse() * *end).translation();
     const Vector3 beyond = by_scans.translation() - by_wheels;
     out.push_back({by_wheels.x(), by_scans.yaw(), beyond.y(), {}});
     if (std::sqrt(covariance(0, 0)) < kAlongSigma) out.back().along = beyond.x();
@@ -367,42 +368,51 @@ struct ShiftByTurns {
   double shift, shift_sigma;  ///< Metres; the latter infinite where there are too few turns.
 };
 
-/// Least squares of beyond = by_way * way + shift * turn, rows of [way, turn, beyond].
-std::optional<ShiftByTurns> shift_by_turns(const std::vector<Vector3>& rows) {
-  constexpr std::size_t kFew = 40;
-  if (rows.size() < kFew) return {};
-  Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d g = Eigen::Vector2d::Zero();
-  for (const Vector3& row : rows) {
-    H += row.head<2>() * row.head<2>().transpose();
-    g += row.head<2>() * row.z();
-  }
-  constexpr double kFarthest = 1.0;  // metres of shift that are possible
-  constexpr double kNoise = 0.01;    // metres beyond, a step; only to weigh the prior of the shift
+/// Least squares of beyond = J [by_way, shift, ...], the standard deviations from the residuals.
+std::optional<ShiftByTurns> shift_by_turns(const Eigen::MatrixXd& J, const Eigen::VectorXd& beyond) {
+  constexpr Eigen::Index kFew = 40;
+  if (J.rows() < kFew) return {};
+  Eigen::MatrixXd H = J.transpose() * J;
   const double squared_turns = H(1, 1);
-  H(1, 1) += kNoise * kNoise / (kFarthest * kFarthest);
-  if (!(H(0, 0) > 1.0)) return {};  // hardly moved: some 10 steps of 0.3 m
-  const Eigen::Vector2d x = H.inverse() * g;
-  double squares = 0.0;
-  for (const Vector3& row : rows) squares += std::pow(row.z() - row.head<2>().dot(x), 2);
-  const Eigen::Matrix2d covariance = squares / static_cast<double>(rows.size() - 2) * H.inverse();
+  if (!(H(0, 0) > 1.0)) return {};   // hardly moved: some 10 steps of 0.3 m
+  constexpr double kFarthest = 1.0;  // metres of shift, or a radian, that are possible
+  constexpr double kNoise = 0.01;    // metres beyond, a step; only to weigh the prior of what goes with turns
+  H.diagonal().tail(H.rows() - 1).array() += kNoise * kNoise / (kFarthest * kFarthest);
+  const Eigen::MatrixXd inverse_H = H.inverse();
+  const Eigen::VectorXd x = inverse_H * (J.transpose() * beyond);
+  const double variance = (beyond - J * x).squaredNorm() / static_cast<double>(J.rows() - J.cols());
   constexpr double kEnoughTurns = 0.01;  // rad^2: some 10 steps of 2 degrees
-  return ShiftByTurns{
-      x[0], std::sqrt(covariance(0, 0)), x[1],
-      squared_turns > kEnoughTurns ? std::sqrt(covariance(1, 1)) : std::numeric_limits<double>::infinity()};
+  return ShiftByTurns{x[0], std::sqrt(variance * inverse_H(0, 0)), x[1],
+                      squared_turns > kEnoughTurns ? std::sqrt(variance * inverse_H(1, 1))
+                                                   : std::numeric_limits<double>::infinity()};
+}
+
+std::optional<ShiftByTurns> shift_ahead(const std::vector<StepBeyondWheels>& steps) {
+  Eigen::MatrixXd J(steps.size(), 2);
+  Eigen::VectorXd beyond(steps.size());
+  for (Eigen::Index i = 0; i < J.rows(); ++i) {
+    const StepBeyondWheels& step = steps[static_cast<std::size_t>(i)];
+    J.row(i) << -step.ahead, step.turned;
+    beyond[i] = step.left;
+  }
+  return shift_by_turns(J, beyond);
+}
+
+/// Apart from slip only where the robot turned to both sides; its standard deviation says so.
+std::optional<ShiftByTurns> shift_to_the_left(std::vector<StepBeyondWheels> steps) {
+  std::erase_if(steps, [](const StepBeyondWheels& step) { return !step.along; });
+  Eigen::MatrixXd J(steps.size(), 3);
+  Eigen::VectorXd beyond(steps.size());
+  for (Eigen::Index i = 0; i < J.rows(); ++i) {
+    const StepBeyondWheels& step = steps[static_cast<std::size_t>(i)];
+    J.row(i) << -step.ahead, -step.turned, -std::abs(step.turned);
+    beyond[i] = *step.along;
+  }
+  return shift_by_turns(J, beyond);
 }
 
 std::optional<MountByMotion> mount_from(const std::vector<StepBeyondWheels>& steps) {
-  std::vector<Vector3> to_the_left, along;
-  double squared_left = 0.0;
-  double squared_right = 0.0;
-  for (const StepBeyondWheels& step : steps) {
-    to_the_left.emplace_back(-step.ahead, step.turn, step.left);
-    if (!step.along) continue;
-    along.emplace_back(-step.ahead, -step.turn, *step.along);
-    (step.turn > 0.0 ? squared_left : squared_right) += step.turn * step.turn;
-  }
-  const std::optional<ShiftByTurns> ahead = shift_by_turns(to_the_left);
+  const std::optional<ShiftByTurns> ahead = shift_ahead(steps);
   if (!ahead) return {};
   MountByMotion out;
   out.num_steps = steps.size();
@@ -410,11 +420,7 @@ std::optional<MountByMotion> mount_from(const std::vector<StepBeyondWheels>& ste
   out.yaw_sigma_deg = kPerRadian * ahead->by_way_sigma;
   out.ahead_m = ahead->shift;
   out.ahead_sigma_m = ahead->shift_sigma;
-  // Wheels that slip in turns fall short on either side, as a shift does not.
-  constexpr double kEnoughTurns = 0.005;  // rad^2, to either side
-  const std::optional<ShiftByTurns> left = shift_by_turns(along);
-  std::fprintf(stderr, "DBG along %zu of %zu left2 %.4f right2 %.4f shift %.3f +- %.3f\n", along.size(), steps.size(), squared_left, squared_right, left ? left->shift : -99, left ? left->shift_sigma : -99);
-  if (left && std::min(squared_left, squared_right) > kEnoughTurns) {
+  if (const std::optional<ShiftByTurns> left = shift_to_the_left(steps)) {
     out.left_m = left->shift;
     out.left_sigma_m = left->shift_sigma;
   }

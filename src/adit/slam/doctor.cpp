@@ -169,17 +169,19 @@ Diagnosis mount_turn(const Recording& recording, const Pose& mount) {
   constexpr double kYaw = 1.0;           // degrees
   constexpr double kLever = 0.15;        // metres
   constexpr double kLeverUnknown = 0.1;  // metres, one standard deviation
+  const bool is_turned = std::abs(found->yaw_deg) > std::max(kYaw, kSigmas * found->yaw_sigma_deg);
+  const Pose by_yaw = Pose::planar(0.0, 0.0, is_turned ? found->yaw_deg * kDegree : 0.0);
+  // The motion is of the robot's origin, about which the yaw turns the mount, too.
+  const Vector3 turned = by_yaw * mount.translation() - mount.translation();
   Vector3 shift = Vector3::Zero();
   const auto add_lever = [&](const char* way, double metres, double sigma, double& shifted) {
     if (!(sigma < kLeverUnknown)) return;
     sentence += format(" and {:+.2f} m {} (+-{:.2f})", metres, way, sigma);
     if (std::abs(metres) > std::max(kLever, kSigmas * sigma)) shifted = metres;
   };
-  add_lever("ahead", found->ahead_m, found->ahead_sigma_m, shift.x());
-  add_lever("to the left", found->left_m, found->left_sigma_m, shift.y());
-  const bool is_turned = std::abs(found->yaw_deg) > std::max(kYaw, kSigmas * found->yaw_sigma_deg);
+  add_lever("ahead", found->ahead_m + turned.x(), found->ahead_sigma_m, shift.x());
+  add_lever("to the left", found->left_m + turned.y(), found->left_sigma_m, shift.y());
   if (!is_turned && shift.isZero()) return {check, Health::good, sentence};
-  const Pose by_yaw = Pose::planar(0.0, 0.0, is_turned ? found->yaw_deg * kDegree : 0.0);
   const Vector3 at = mount.translation() + shift;
   const Pose better((by_yaw * Pose(mount.rotation(), Vector3::Zero())).rotation(), at);
   constexpr double kMuch = 5.0;  // degrees

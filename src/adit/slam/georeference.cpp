@@ -279,9 +279,14 @@ Result<std::vector<Matrix6>> target_covariances(const PlacedSession& session, co
     if (!bound) return fail(format("control point '{}'", judged.point.name), bound.error());
     points.push_back(std::move(*bound));
   }
-  return fit_control(pairs_of(session, points, covariance)).map([&](const ControlFit& fit) {
-    return in_target(session, points, covariance, fit, places);
-  });
+  const Result<ControlFit> fit = fit_control(pairs_of(session, points, covariance));
+  if (!fit) return tl::unexpected(fit.error());
+  constexpr double kSame = 1e-4;  // metres, radians
+  if ((map.T_target_map.inverse() * fit->T_target_source).log().norm() > kSame)
+    return fail(
+        "the control points no longer place this map where georeference.toml has it; run adit georeference "
+        "again");
+  return in_target(session, points, covariance, *fit, places);
 }
 
 }  // namespace adit

@@ -32,7 +32,7 @@ struct Georeferencing {
 
 /// The covariances of T_target_base at `places` of the map that was georeferenced: of the place in the map,
 /// of T_target_map, and of what they share, as the marks lie in that map. Right perturbation, [translation;
-/// rotation], metres and radians. Fails as `georeference` does.
+/// rotation], metres and radians. Fails as `georeference` does, and where the map has moved since.
 [[nodiscard]] Result<std::vector<Matrix6>> target_covariances(const PlacedSession& session,
                                                               const MapCovariance& covariance,
                                                               const Georeference& map,

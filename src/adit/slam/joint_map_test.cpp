@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstring>
+#include <set>
 
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/mesh_files.hpp"
@@ -85,12 +86,15 @@ TEST(JointMap, IntensitiesStayWithTheRobotThatHasThem) {
   const Result<PointCloud> read = read_cloud(folder / "map.ply");
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->intensities.size(), read->size());
+  std::set<float> found;
   for (std::size_t i = 0; i < read->size(); ++i) {
     const Eigen::Vector3f& point = read->points[i];
     if (std::abs(point.y()) < 0.2F) continue;  // a voxel may have both
     const float expected = point.x() > 7.0F ? 0.0F : point.y() < 0.0F ? 10.0F : 200.0F;
     EXPECT_EQ(read->intensities[i], expected) << point.transpose();
+    found.insert(expected);
   }
+  EXPECT_EQ(found.size(), 3U);
 }
 
 }  // namespace

@@ -129,8 +129,7 @@ Fields fields_of(EvidenceModel& c) {
        "the same for what may come and go: the length of a vehicle"},
       {"differing_at_worst", &c.differing_at_worst, "", 0.5, 1.0,
        "share of the places of one tunnel that differ at the first look, at worst; where one place more "
-       "does, "
-       "changes count before a second look confirms them"},
+       "does, changes count before a second look confirms them"},
       {"changes_at_worst_per_km", &c.changes_at_worst_per_km, "1/km", 0.1, 1000.0,
        "changes of structure between two visits of one stretch, at worst: doors, blocked, lined or widened "
        "tunnels"},

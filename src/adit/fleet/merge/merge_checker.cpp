@@ -55,7 +55,8 @@ MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first, d
 }
 
 bool MergeChecker::differs_too_often(const Hypothesis& h) const {
-  // One change is seen from many places: the places themselves are no independent trials.
+  // One change is seen from many places: the places themselves are no independent trials. Where nearly all
+  // differ, second looks are not waited for: there are as many, and most hypotheses are false.
   const std::size_t num_changes =
       differs_nearly_everywhere(h) ? h.num_changes_unless_explained() : h.num_changes();
   return are_too_many(num_changes, compared_km(h));
@@ -66,8 +67,7 @@ bool MergeChecker::are_too_many(std::size_t num_changes, double km) const {
          config_.evidence.refusal_rate;
 }
 
-/// By one place more than a true alignment does at worst. Second looks are not waited for then: there are as
-/// many as places that differ, and most hypotheses are false.
+/// By one place more than a true alignment does at worst.
 bool MergeChecker::differs_nearly_everywhere(const Hypothesis& h) const {
   const auto num = static_cast<double>(h.compared.size());
   const std::size_t first = std::min(static_cast<std::size_t>(config_.first_checks), h.plan.size());
@@ -236,9 +236,12 @@ std::optional<MergeChecker::Step> MergeChecker::next_step() const {
 
 std::vector<PlannedComparison> MergeChecker::next(std::size_t num) const {
   const auto step = next_step();
-  if (!step) return {};
-  const Hypothesis& h = hypotheses_[step->hypothesis];
-  switch (step->stage) {
+  return step ? planned(*step, num) : std::vector<PlannedComparison>();
+}
+
+std::vector<PlannedComparison> MergeChecker::planned(const Step& step, std::size_t num) const {
+  const Hypothesis& h = hypotheses_[step.hypothesis];
+  switch (step.stage) {
     case Stage::places: {
       const auto first = static_cast<std::size_t>(config_.first_checks);
       return part_of(h.plan, h.compared.size(), h.compared.empty() ? std::min(num, first) : num);
@@ -257,9 +260,10 @@ std::vector<PlannedComparison> MergeChecker::next(std::size_t num) const {
 }
 
 void MergeChecker::add(const std::vector<ComparedPlace>& places) {
-  ADIT_CHECK(places.size() <= next(places.size()).size(), "only what was asked for is added");
+  if (places.empty()) return;
   const auto step = next_step();
-  if (!step) return;
+  ADIT_CHECK(step && places.size() <= planned(*step, places.size()).size(),
+             "only what was asked for is added");
   Hypothesis& h = hypotheses_[step->hypothesis];
   switch (step->stage) {
     case Stage::places:

@@ -112,6 +112,7 @@ class MergeChecker {
   [[nodiscard]] bool has_places_to_find_again(const Hypothesis& hypothesis) const;
   /// None when the check is over.
   [[nodiscard]] std::optional<Step> next_step() const;
+  [[nodiscard]] std::vector<PlannedComparison> planned(const Step& step, std::size_t num) const;
   [[nodiscard]] std::vector<std::size_t> best_first() const;
   [[nodiscard]] double apart_m(std::size_t one, std::size_t other) const;
   [[nodiscard]] HypothesisCounts counts(const Hypothesis& hypothesis) const;
