@@ -65,10 +65,11 @@ struct ScansSeen {
 struct MountByMotion {
   double yaw_deg = 0.0;        ///< To be added to that of the mount.
   double yaw_sigma_deg = 0.0;  ///< By the residuals, as `ahead_sigma_m`.
-  double ahead_m =
-      0.0;  ///< To be added to x, where the robot turned enough: by the side to which it is carried.
+  /// To be added to x, before the yaw turns the mount about the robot's origin: by the side to which the
+  /// LiDAR is carried in turns.
+  double ahead_m = 0.0;
   double ahead_sigma_m = 0.0;  ///< Infinite on a drive without curves.
-  double left_m = 0.0;         ///< To be added to y: by how much shorter the way is in turns to the left.
+  double left_m = 0.0;         ///< The same of y: by how much shorter its way is in turns to the left.
   /// Infinite on a drive without curves to both sides in which scans say how far the robot went.
   double left_sigma_m = std::numeric_limits<double>::infinity();
   std::size_t num_steps = 0;  ///< From scan to scan, where the motion was well measured; 40 or more.

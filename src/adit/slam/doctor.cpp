@@ -171,16 +171,20 @@ Diagnosis mount_turn(const Recording& recording, const Pose& mount) {
   constexpr double kLeverUnknown = 0.1;  // metres, one standard deviation
   const bool is_turned = std::abs(found->yaw_deg) > std::max(kYaw, kSigmas * found->yaw_sigma_deg);
   const Pose by_yaw = Pose::planar(0.0, 0.0, is_turned ? found->yaw_deg * kDegree : 0.0);
-  // The motion is of the robot's origin, about which the yaw turns the mount, too.
-  const Vector3 turned = by_yaw * mount.translation() - mount.translation();
+  const bool knows_ahead = found->ahead_sigma_m < kLeverUnknown;
+  const bool knows_left = found->left_sigma_m < kLeverUnknown;
+  // Motion is of the robot's origin and as the mount in use has its axes: a yaw alone looks like a shift,
+  // too.
+  const Vector3 by_yaw_alone = by_yaw.inverse() * mount.translation() - mount.translation();
+  const Vector3 found_shift = by_yaw * Vector3(knows_ahead ? found->ahead_m - by_yaw_alone.x() : 0.0,
+                                               knows_left ? found->left_m - by_yaw_alone.y() : 0.0, 0.0);
   Vector3 shift = Vector3::Zero();
-  const auto add_lever = [&](const char* way, double metres, double sigma, double& shifted) {
-    if (!(sigma < kLeverUnknown)) return;
-    sentence += format(" and {:+.2f} m {} (+-{:.2f})", metres, way, sigma);
-    if (std::abs(metres) > std::max(kLever, kSigmas * sigma)) shifted = metres;
+  const auto add_lever = [&](const char* way, double sigma, Eigen::Index axis) {
+    sentence += format(" and {:+.2f} m {} (+-{:.2f})", found_shift[axis], way, sigma);
+    if (std::abs(found_shift[axis]) > std::max(kLever, kSigmas * sigma)) shift[axis] = found_shift[axis];
   };
-  add_lever("ahead", found->ahead_m + turned.x(), found->ahead_sigma_m, shift.x());
-  add_lever("to the left", found->left_m + turned.y(), found->left_sigma_m, shift.y());
+  if (knows_ahead) add_lever("ahead", found->ahead_sigma_m, 0);
+  if (knows_left) add_lever("to the left", found->left_sigma_m, 1);
   if (!is_turned && shift.isZero()) return {check, Health::good, sentence};
   const Vector3 at = mount.translation() + shift;
   const Pose better((by_yaw * Pose(mount.rotation(), Vector3::Zero())).rotation(), at);
