@@ -375,7 +375,7 @@ std::optional<ShiftByTurns> shift_by_turns(const Eigen::MatrixXd& J, const Eigen
   Eigen::MatrixXd H = J.transpose() * J;
   const double squared_turns = H(1, 1);
   if (!(H(0, 0) > 1.0)) return {};   // hardly moved: some 10 steps of 0.3 m
-  constexpr double kFarthest = 1.0;  // metres of shift, or a radian, that are possible
+  constexpr double kFarthest = 1.0;  // metres, or metres a radian, that are possible
   constexpr double kNoise = 0.01;    // metres beyond, a step; only to weigh the prior of what goes with turns
   H.diagonal().tail(H.rows() - 1).array() += kNoise * kNoise / (kFarthest * kFarthest);
   const Eigen::MatrixXd inverse_H = H.inverse();
