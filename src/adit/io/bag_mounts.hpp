@@ -16,9 +16,9 @@ namespace adit {
 
 /// How the robot's frame and the LiDAR's are called in the file.
 struct FrameNames {
-  std::string base;  ///< As the wheel odometry has it; "" without one.
-  std::string lidar;
-  std::string imu;
+  std::string base;   ///< As the wheel odometry has it; "" without one.
+  std::string lidar;  ///< As its clouds have it.
+  std::string imu;    ///< As its samples have it; "" without one.
 };
 
 /// Sets the mount of the recording's LiDAR and its source. Returns how the LiDAR moves on the robot, if it

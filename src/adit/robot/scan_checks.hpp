@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -59,24 +58,5 @@ struct ScansSeen {
 };
 /// Reads up to `num` scans. Fails where one cannot be read and where all are empty.
 [[nodiscard]] Result<ScansSeen> look_at_scans(const Recording& recording, std::size_t num = 40);
-
-/// How far the LiDAR's mount is from where the motion between scans puts it, if the wheels are right. One
-/// standard deviation each.
-struct MountByMotion {
-  double yaw_deg = 0.0;        ///< To be added to that of the mount.
-  double yaw_sigma_deg = 0.0;  ///< By the residuals, as `ahead_sigma_m`.
-  /// To be added to x, before the yaw turns the mount about the robot's origin: by the side to which the
-  /// LiDAR is carried in turns.
-  double ahead_m = 0.0;
-  double ahead_sigma_m = 0.0;  ///< Infinite on a drive without curves.
-  double left_m = 0.0;         ///< The same of y: by how much shorter its way is in turns to the left.
-  /// Infinite on a drive without curves to both sides in which scans say how far the robot went.
-  double left_sigma_m = std::numeric_limits<double>::infinity();
-  std::size_t num_steps = 0;  ///< From scan to scan, where the motion was well measured; 40 or more.
-};
-/// Registers some 300 scans, half of them where the robot turns most. None without wheels, or where the scans
-/// leave too much of the motion open. A vehicle whose middle of turning is not the base's origin shows as
-/// `ahead_m`, too.
-[[nodiscard]] std::optional<MountByMotion> mount_by_motion(const Recording& recording);
 
 }  // namespace adit

@@ -85,4 +85,11 @@ ScanMotion motion_of_scans(const Recording& recording, std::span<const std::size
   return motion;
 }
 
+std::vector<std::size_t> spread_over(std::size_t num_all, std::size_t num) {
+  std::vector<std::size_t> chosen;
+  const std::size_t n = std::min(num_all, num);
+  for (std::size_t i = 0; i < n; ++i) chosen.push_back(i * num_all / n);
+  return chosen;
+}
+
 }  // namespace adit

@@ -27,4 +27,7 @@ struct ScanMotion {
 /// stretch: whoever makes the map says so.
 [[nodiscard]] ScanMotion motion_of_scans(const Recording& recording, std::span<const std::size_t> scans);
 
+/// `num` of the numbers 0 to num_all - 1, or all, spread evenly and ascending.
+[[nodiscard]] std::vector<std::size_t> spread_over(std::size_t num_all, std::size_t num);
+
 }  // namespace adit

@@ -9,6 +9,7 @@
 #include "adit/core/angles.hpp"
 #include "adit/core/format.hpp"
 #include "adit/io/mount.hpp"
+#include "adit/robot/mount_by_motion.hpp"
 #include "adit/robot/scan_checks.hpp"
 #include "adit/robot/sensor_checks.hpp"
 
