@@ -301,12 +301,12 @@ void Agent::find_revisits() {
 }
 
 std::size_t Agent::num_cached_bytes() const {
-  return features_->num_bytes() + (discernment_ ? discernment_->surfaces().num_bytes() : 0);
+  return features_->num_bytes() + (discernment_ ? discernment_->num_cached_bytes() : 0);
 }
 
 void Agent::forget_cached() {
   features_->forget_all();
-  if (discernment_) discernment_->surfaces().forget_all();
+  if (discernment_) discernment_->forget_cached();
 }
 
 // ---- what the steps share --------------------------------------------------------------------------------

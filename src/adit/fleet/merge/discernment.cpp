@@ -21,7 +21,8 @@ Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryCha
       path_m_(path_lengths(chain_)),
       find_look_alikes_(std::move(find_look_alikes)),
       features_(std::move(features)),
-      surfaces_(map, config.registration, config.view) {
+      views_(map, config.registration, config.view),
+      scans_(map, config.registration) {
   const double usual = config_.merge_check.evidence.allowance * usual_difference();
   const double voxel = config_.registration.voxel_size;
   if (usual > 0.0)
@@ -54,12 +55,11 @@ std::vector<LocalFit> Discernment::compare(const std::vector<OwnComparison>& ask
                                            double good_enough) {
   std::vector<std::uint32_t> used;
   for (const OwnComparison& one : asked) used.insert(used.end(), {one.a, one.b});
-  surfaces_.prepare(used);
+  views_.prepare(used);
   std::vector<LocalFit> out(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
     const auto& [a, b, T_a_b] = asked[i];
-    out[i] =
-        fit_near(surfaces_.at(a).view, surfaces_.at(b).view, T_a_b, good_enough, config_.registration, from);
+    out[i] = fit_near(views_.at(a), views_.at(b), T_a_b, good_enough, config_.registration, from);
   });
   return out;
 }
@@ -117,13 +117,30 @@ WallOffsets Discernment::compare_displaced_walls() {
 }
 
 WallOffsets Discernment::offsets_between(const std::vector<OwnComparison>& pairs) {
-  const std::vector<LocalFit> found = compare(pairs, FitFrom::guess);
   WallOffsets offsets(config_.registration.relief);
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    if (!differ(found[i].agreement))
-      offsets.add(patch_offsets(surfaces_.at(pairs[i].a).scan, surfaces_.at(pairs[i].b).scan, found[i].T_a_b,
-                                chain_.pose(pairs[i].a), config_.registration));
+  for (const std::vector<PatchOffset>& of_pair : walls_of(pairs, compare(pairs, FitFrom::guess)))
+    offsets.add(of_pair);
   return offsets;
+}
+
+std::vector<std::vector<PatchOffset>> Discernment::walls_of(const std::vector<OwnComparison>& asked,
+                                                            const std::vector<LocalFit>& found) {
+  std::vector<std::size_t> agreeing;
+  std::vector<std::uint32_t> used;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    if (differ(found[i].agreement)) continue;
+    agreeing.push_back(i);
+    used.insert(used.end(), {asked[i].a, asked[i].b});
+  }
+  scans_.prepare(used);
+  std::vector<std::vector<PatchOffset>> out(asked.size());
+  parallel_for_each(agreeing.size(), [&](std::size_t k) {
+    const std::size_t i = agreeing[k];
+    const auto& [a, b, T_a_b] = asked[i];
+    out[i] =
+        patch_offsets(scans_.at(a), scans_.at(b), found[i].T_a_b, chain_.pose(a), config_.registration);
+  });
+  return out;
 }
 
 double Discernment::measure_reach() {

@@ -66,8 +66,21 @@ class Discernment {
 
   /// Compares keyframes of the own map with one another.
   [[nodiscard]] std::vector<LocalFit> compare(const std::vector<OwnComparison>& asked, FitFrom from);
+  /// The walls of such pairs that agree, by `found`, their fits.
+  [[nodiscard]] std::vector<std::vector<PatchOffset>> walls_of(const std::vector<OwnComparison>& asked,
+                                                               const std::vector<LocalFit>& found);
   /// Of the own keyframes; filled as comparisons need them.
-  [[nodiscard]] SurfaceStore& surfaces() { return surfaces_; }
+  ///@{
+  [[nodiscard]] ViewStore& views() { return views_; }
+  [[nodiscard]] ScanStore& scans() { return scans_; }
+  ///@}
+  /// Of views and scans.
+  [[nodiscard]] std::size_t num_cached_bytes() const { return views_.num_bytes() + scans_.num_bytes(); }
+  /// What is needed later is computed again.
+  void forget_cached() {
+    views_.forget_all();
+    scans_.forget_all();
+  }
 
  private:
   [[nodiscard]] std::vector<LocalFit> compare(const std::vector<OwnComparison>& asked, FitFrom from,
@@ -85,7 +98,8 @@ class Discernment {
   std::vector<double> path_m_;
   FindLookAlikes find_look_alikes_;
   std::shared_ptr<FeatureStore> features_;
-  SurfaceStore surfaces_;
+  ViewStore views_;
+  ScanStore scans_;
   double limit_ = 0.0;
   std::optional<Measured> measured_;
   std::optional<double> reach_m_;

@@ -47,11 +47,10 @@ TEST(Discernment, ScansOfOnePlaceDoNotDifferAndThoseOfAnotherDo) {
   OnAMap measured(map);
   EXPECT_GT(measured.discernment.limit(), 0.0);
   EXPECT_LT(measured.discernment.limit(), 30.0);
-  SurfaceStore& surfaces = measured.discernment.surfaces();
-  surfaces.prepare({20, 56, 58});
+  ViewStore& views = measured.discernment.views();
+  views.prepare({20, 56, 58});
   const auto fit = [&](std::uint32_t a, std::uint32_t b, const Pose& T_a_b) {
-    return fit_near(surfaces.at(a).view, surfaces.at(b).view, T_a_b, measured.discernment.limit(), {})
-        .agreement;
+    return fit_near(views.at(a), views.at(b), T_a_b, measured.discernment.limit(), {}).agreement;
   };
   EXPECT_FALSE(measured.discernment.differ(fit(56, 58, Pose::translation_of(1.0, 0, 0))));
   EXPECT_TRUE(measured.discernment.differ(fit(20, 56, Pose())));

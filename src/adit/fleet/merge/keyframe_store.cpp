@@ -22,18 +22,32 @@ FeatureStore::FeatureStore(std::shared_ptr<const RobotMap> map, const Registrati
           },
           bytes_of, max_bytes) {}
 
-SeenPlace::SeenPlace(const PointCloud& of_view, const PointCloud& of_scan, const Vector3& viewpoint,
-                     const RegistrationConfig& config)
-    : view(compute_surface(of_view, config), viewpoint, config.voxel_size),
-      scan(compute_surface(of_scan, config), viewpoint, config.voxel_size) {}
+SeenSurface view_of(const PointCloud& scan_and_beside, const Vector3& viewpoint,
+                    const RegistrationConfig& config) {
+  return {compute_surface(scan_and_beside, config), viewpoint, config.voxel_size};
+}
 
-SurfaceStore::SurfaceStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
-                           const SubmapConfig& view_config, std::size_t max_bytes)
+SearchableSurface scan_of(const PointCloud& scan, const Vector3& viewpoint,
+                          const RegistrationConfig& config) {
+  return {compute_surface(scan, config), viewpoint, config.voxel_size};
+}
+
+ViewStore::ViewStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
+                     const SubmapConfig& view_config, std::size_t max_bytes)
     : KeyframeStore(
           std::move(map),
           [config, view_config](const RobotMap& of, std::uint32_t k) {
-            return SeenPlace(submap(of, k, view_config), *of.keyframes[k].cloud, of.viewpoint, config);
+            return view_of(submap(of, k, view_config), of.viewpoint, config);
           },
-          [](const SeenPlace& place) { return place.num_bytes(); }, max_bytes) {}
+          [](const SeenSurface& view) { return view.num_bytes(); }, max_bytes) {}
+
+ScanStore::ScanStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
+                     std::size_t max_bytes)
+    : KeyframeStore(
+          std::move(map),
+          [config](const RobotMap& of, std::uint32_t k) {
+            return scan_of(*of.keyframes[k].cloud, of.viewpoint, config);
+          },
+          [](const SearchableSurface& scan) { return scan.num_bytes(); }, max_bytes) {}
 
 }  // namespace adit

@@ -102,26 +102,32 @@ class FeatureStore : public KeyframeStore<Features> {
                const SubmapConfig& submap_config, std::size_t max_bytes = kMaxBytes);
 };
 
-/// A keyframe made ready for comparing it.
-struct SeenPlace {
-  SeenSurface view;        ///< Of its scan and those beside it, as if all had been seen from where it stood.
-  SearchableSurface scan;  ///< Of its scan alone: what no other keyframe's scan has part in.
+/// What was seen around a keyframe, ready to be fitted: its scan and those beside it, as if all had been seen
+/// from `viewpoint`, that of its LiDAR. All in the base frame of the keyframe.
+[[nodiscard]] SeenSurface view_of(const PointCloud& scan_and_beside, const Vector3& viewpoint,
+                                  const RegistrationConfig& config);
+/// The scan of a keyframe alone, ready for comparing walls: what no other keyframe's scan has part in.
+[[nodiscard]] SearchableSurface scan_of(const PointCloud& scan, const Vector3& viewpoint,
+                                        const RegistrationConfig& config);
 
-  /// Both clouds and `viewpoint`, that of the LiDAR, in the base frame of the keyframe.
-  SeenPlace(const PointCloud& of_view, const PointCloud& of_scan, const Vector3& viewpoint,
-            const RegistrationConfig& config);
-  /// Of both surfaces.
-  [[nodiscard]] std::size_t num_bytes() const { return view.num_bytes() + scan.num_bytes(); }
-};
-
-/// Keyframes made ready for comparing them.
-class SurfaceStore : public KeyframeStore<SeenPlace> {
+/// The views of keyframes.
+class ViewStore : public KeyframeStore<SeenSurface> {
  public:
   /// Default of `max_bytes`.
-  static constexpr std::size_t kMaxBytes = 384'000'000;
-  /// The view of keyframe k is submap(map, k, view_config).
-  SurfaceStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
-               const SubmapConfig& view_config, std::size_t max_bytes = kMaxBytes);
+  static constexpr std::size_t kMaxBytes = 256'000'000;
+  /// The view of keyframe k is of submap(map, k, view_config).
+  ViewStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
+            const SubmapConfig& view_config, std::size_t max_bytes = kMaxBytes);
+};
+
+/// The scans of keyframes; only places whose views agree need theirs.
+class ScanStore : public KeyframeStore<SearchableSurface> {
+ public:
+  /// Default of `max_bytes`.
+  static constexpr std::size_t kMaxBytes = 128'000'000;
+  /// Of the clouds of `map`.
+  ScanStore(std::shared_ptr<const RobotMap> map, const RegistrationConfig& config,
+            std::size_t max_bytes = kMaxBytes);
 };
 
 }  // namespace adit

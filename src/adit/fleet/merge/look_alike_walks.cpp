@@ -87,17 +87,15 @@ void LookAlikeWalks::follow(Measured& measured) {
     const std::vector<bool> is_distinctive = discernment_.distinctive(places);
     step.found = discernment_.compare(step.asked, FitFrom::along_the_path);
     if (config_.merge_check.discernment.second_looks) look_again(step);
-    SurfaceStore& surfaces = discernment_.surfaces();
+    const std::vector<std::vector<PatchOffset>> walls = discernment_.walls_of(step.asked, step.found);
     for (std::size_t w = 0; w < walks_.size(); ++w) {
       Walk& walk = walks_[w];
-      const auto& [a, b, T_a_b] = step.asked[w];
       walk.is_over = discernment_.differ(step.found[w].agreement);
       if (walk.is_over) {
         measured.look_alikes.add_differed(walk.num_passed);
         continue;
       }
-      offsets[walk.look_alike].add(patch_offsets(surfaces.at(a).scan, surfaces.at(b).scan,
-                                                 step.found[w].T_a_b, chain_.pose(a), config_.registration));
+      offsets[walk.look_alike].add(walls[w]);
       if (is_distinctive[w]) measured.look_alikes.add_agreed(walk.num_passed++);
     }
     std::erase_if(walks_, [](const Walk& walk) { return walk.is_over; });

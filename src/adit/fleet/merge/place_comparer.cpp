@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "adit/core/parallel.hpp"
 #include "adit/registration/features.hpp"
@@ -18,6 +19,21 @@ std::vector<std::uint32_t> own_keyframes(const std::vector<PlannedComparison>& a
   return own;
 }
 
+/// What the peer saw at a keyframe, and beside it.
+SeenSurface view_of(const Clouds::Cloud& received, const RegistrationConfig& config) {
+  PointCloud all;
+  all.points = received.points;
+  all.points.insert(all.points.end(), received.beside.begin(), received.beside.end());
+  return view_of(all, received.viewpoint.cast<double>(), config);
+}
+
+SearchableSurface scan_of(const Clouds::Cloud& received, const RegistrationConfig& config) {
+  PointCloud scan;
+  scan.points = received.points;
+  scan.intensities = received.intensities;
+  return scan_of(scan, received.viewpoint.cast<double>(), config);
+}
+
 }  // namespace
 
 void PlaceComparer::prepare(std::vector<std::uint32_t> keyframes, const std::vector<PlannedComparison>& asked,
@@ -28,24 +44,24 @@ void PlaceComparer::prepare(std::vector<std::uint32_t> keyframes, const std::vec
     const std::vector<std::uint32_t> displaced = discernment_.displaced_from(asked[i].own);
     keyframes.insert(keyframes.end(), displaced.begin(), displaced.end());
   }
-  discernment_.surfaces().prepare(keyframes);
+  discernment_.views().prepare(keyframes);
 }
 
-bool PlaceComparer::agrees_displaced(std::uint32_t own, const SeenPlace& theirs,
+bool PlaceComparer::agrees_displaced(std::uint32_t own, const SeenSurface& theirs,
                                      const Pose& T_own_theirs) const {
   return std::ranges::any_of(discernment_.displaced_from(own), [&](std::uint32_t displaced) {
-    const SeenSurface& there = discernment_.surfaces().at(displaced).view;
-    return agreeing_fit(there, theirs.view, T_own_theirs, discernment_.limit(), registration_).has_value();
+    const SeenSurface& there = discernment_.views().at(displaced);
+    return agreeing_fit(there, theirs, T_own_theirs, discernment_.limit(), registration_).has_value();
   });
 }
 
-FoundAgain PlaceComparer::found_again(const SeenPlace& own, const SeenPlace& theirs,
+FoundAgain PlaceComparer::found_again(const SeenSurface& own, const SeenSurface& theirs,
                                       const Pose& T_own_theirs) const {
   constexpr double kSamePlace = 0.5;  // metres
   constexpr double kSameWay = 0.2;    // radians
-  const auto features = [&](const SeenPlace& place) {
+  const auto features = [&](const SeenSurface& view) {
     PointCloud cloud;
-    cloud.points = place.view.points().points;
+    cloud.points = view.points().points;
     return compute_features(cloud, registration_);
   };
   const Registration found = register_features(features(own), features(theirs), registration_);
@@ -56,20 +72,21 @@ FoundAgain PlaceComparer::found_again(const SeenPlace& own, const SeenPlace& the
   return is_there ? FoundAgain::there : FoundAgain::elsewhere;
 }
 
-ComparedPlace PlaceComparer::compared(const PlannedComparison& place, const SeenPlace& theirs,
-                                      const DisplacementSigns& signs) const {
+PlaceComparer::Fitted PlaceComparer::fitted(const PlannedComparison& place, const SeenSurface& theirs,
+                                            const DisplacementSigns& signs) const {
   const double limit = discernment_.limit();
-  const SeenPlace& own = discernment_.surfaces().at(place.own);
-  const LocalFit fit = fit_near(own.view, theirs.view, place.T_own_theirs, limit, registration_);
+  const SeenSurface& own = discernment_.views().at(place.own);
+  const LocalFit fit = fit_near(own, theirs, place.T_own_theirs, limit, registration_);
   const Pose& T_odom_own = map_.keyframes[place.own].T_odom_base;
-  ComparedPlace out{fit.agreement.largest_difference / limit};
+  Fitted out{{fit.agreement.largest_difference / limit}, fit.T_a_b};
+  ComparedPlace& found = out.place;
   if (place.without_guess) {  // all else was compared before
-    out.found_again = out.differs() ? FoundAgain::elsewhere : found_again(own, theirs, fit.T_a_b);
+    found.found_again = found.differs() ? FoundAgain::elsewhere : found_again(own, theirs, fit.T_a_b);
     return out;
   }
   if (!signs.empty() && !agrees_displaced(place.own, theirs, fit.T_a_b)) {
-    out.is_distinctive = true;
-    out.signs = signs;
+    found.is_distinctive = true;
+    found.signs = signs;
   }
   const auto above_limit = [&](const std::vector<DifferingPatch>& patches) {
     std::vector<Vector3> places;
@@ -77,11 +94,29 @@ ComparedPlace PlaceComparer::compared(const PlannedComparison& place, const Seen
       if (patch.num_points > limit) places.push_back(T_odom_own * patch.position);
     return places;
   };
-  out.structures = above_limit(fit.agreement.structures);
-  out.things = above_limit(fit.agreement.things);
-  if (!out.differs())
-    out.offsets = patch_offsets(own.scan, theirs.scan, fit.T_a_b, T_odom_own, registration_);
+  found.structures = above_limit(fit.agreement.structures);
+  found.things = above_limit(fit.agreement.things);
   return out;
+}
+
+void PlaceComparer::add_walls(const PlannedComparison& place, const SearchableSurface& theirs,
+                              Fitted& fitted) const {
+  fitted.place.offsets = patch_offsets(discernment_.scans().at(place.own), theirs, fitted.T_own_theirs,
+                                       map_.keyframes[place.own].T_odom_base, registration_);
+}
+
+std::vector<std::size_t> PlaceComparer::those_that_agree(const std::vector<PlannedComparison>& asked,
+                                                         const std::vector<Fitted>& found) {
+  std::vector<std::size_t> agreeing;
+  for (std::size_t i = 0; i < asked.size(); ++i)
+    if (!asked[i].without_guess && !found[i].place.differs()) agreeing.push_back(i);
+  return agreeing;
+}
+
+std::vector<ComparedPlace> PlaceComparer::places_of(std::vector<Fitted> found) {
+  std::vector<ComparedPlace> places;
+  for (Fitted& fitted : found) places.push_back(std::move(fitted.place));
+  return places;
 }
 
 std::vector<ComparedPlace> PlaceComparer::with_clouds(const std::vector<PlannedComparison>& asked,
@@ -90,18 +125,19 @@ std::vector<ComparedPlace> PlaceComparer::with_clouds(const std::vector<PlannedC
   for (const Clouds::Cloud& cloud : clouds.clouds) came[cloud.index] = &cloud;
   const std::vector<DisplacementSigns> signs = discernment_.displacement_signs(own_keyframes(asked));
   prepare({}, asked, signs);
-  std::vector<ComparedPlace> places(asked.size());
+  std::vector<Fitted> found(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
-    const Clouds::Cloud& received = *came.at(asked[i].theirs);
-    PointCloud scan;
-    scan.points = received.points;
-    PointCloud view = scan;
-    scan.intensities = received.intensities;
-    view.points.insert(view.points.end(), received.beside.begin(), received.beside.end());
-    const SeenPlace theirs(view, scan, received.viewpoint.cast<double>(), registration_);
-    places[i] = compared(asked[i], theirs, signs[i]);
+    found[i] = fitted(asked[i], view_of(*came.at(asked[i].theirs), registration_), signs[i]);
   });
-  return places;
+  const std::vector<std::size_t> agreeing = those_that_agree(asked, found);
+  std::vector<std::uint32_t> own;
+  for (const std::size_t i : agreeing) own.push_back(asked[i].own);
+  discernment_.scans().prepare(own);
+  parallel_for_each(agreeing.size(), [&](std::size_t k) {
+    const PlannedComparison& place = asked[agreeing[k]];
+    add_walls(place, scan_of(*came.at(place.theirs), registration_), found[agreeing[k]]);
+  });
+  return places_of(std::move(found));
 }
 
 std::vector<ComparedPlace> PlaceComparer::within_own_map(const std::vector<PlannedComparison>& asked) {
@@ -109,12 +145,21 @@ std::vector<ComparedPlace> PlaceComparer::within_own_map(const std::vector<Plann
   for (const PlannedComparison& place : asked) later.push_back(place.theirs);
   const std::vector<DisplacementSigns> signs = discernment_.displacement_signs(own_keyframes(asked));
   prepare(later, asked, signs);
-  const SurfaceStore& surfaces = discernment_.surfaces();
-  std::vector<ComparedPlace> places(asked.size());
+  const ViewStore& views = discernment_.views();
+  std::vector<Fitted> found(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
-    places[i] = compared(asked[i], surfaces.at(asked[i].theirs), signs[i]);
+    found[i] = fitted(asked[i], views.at(asked[i].theirs), signs[i]);
   });
-  return places;
+  const std::vector<std::size_t> agreeing = those_that_agree(asked, found);
+  std::vector<std::uint32_t> both;
+  for (const std::size_t i : agreeing) both.insert(both.end(), {asked[i].own, asked[i].theirs});
+  ScanStore& scans = discernment_.scans();
+  scans.prepare(both);
+  parallel_for_each(agreeing.size(), [&](std::size_t k) {
+    const PlannedComparison& place = asked[agreeing[k]];
+    add_walls(place, scans.at(place.theirs), found[agreeing[k]]);
+  });
+  return places_of(std::move(found));
 }
 
 }  // namespace adit

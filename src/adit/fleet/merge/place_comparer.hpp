@@ -28,20 +28,30 @@ class PlaceComparer {
   [[nodiscard]] std::vector<ComparedPlace> within_own_map(const std::vector<PlannedComparison>& asked);
 
  private:
-  /// Surfaces of these keyframes, the own ones that are asked for, and those displaced from them.
+  /// What a place has shown, and where its two views fit.
+  struct Fitted {
+    ComparedPlace place;
+    Pose T_own_theirs;
+  };
+  /// Views of these keyframes, the own ones that are asked for, and those displaced from them.
   void prepare(std::vector<std::uint32_t> keyframes, const std::vector<PlannedComparison>& asked,
                const std::vector<DisplacementSigns>& signs);
-  /// With what was seen at the peer's keyframe; the own one and those displaced from it have been prepared.
-  [[nodiscard]] ComparedPlace compared(const PlannedComparison& place, const SeenPlace& theirs,
-                                       const DisplacementSigns& signs) const;
+  /// With what was seen at the peer's keyframe; the own view and those displaced from it have been prepared.
+  [[nodiscard]] Fitted fitted(const PlannedComparison& place, const SeenSurface& theirs,
+                              const DisplacementSigns& signs) const;
   /// Whether what the peer saw would agree with what was seen some metres on, too, as if the robot stood
   /// there. Own scans may tell those places apart where two unlike sensors, by what both see, cannot.
-  [[nodiscard]] bool agrees_displaced(std::uint32_t own, const SeenPlace& theirs,
+  [[nodiscard]] bool agrees_displaced(std::uint32_t own, const SeenSurface& theirs,
                                       const Pose& T_own_theirs) const;
-
-  /// By the surfaces of both views; search registers longer submaps.
-  [[nodiscard]] FoundAgain found_again(const SeenPlace& own, const SeenPlace& theirs,
+  /// By the points of both views; search registers longer submaps.
+  [[nodiscard]] FoundAgain found_again(const SeenSurface& own, const SeenSurface& theirs,
                                        const Pose& T_own_theirs) const;
+  /// Of the places whose walls are compared: their views agree.
+  [[nodiscard]] static std::vector<std::size_t> those_that_agree(const std::vector<PlannedComparison>& asked,
+                                                                 const std::vector<Fitted>& found);
+  [[nodiscard]] static std::vector<ComparedPlace> places_of(std::vector<Fitted> found);
+  /// The walls of the own scan, which has been prepared, and of the peer's.
+  void add_walls(const PlannedComparison& place, const SearchableSurface& theirs, Fitted& fitted) const;
 
   const RobotMap& map_;
   Discernment& discernment_;
