@@ -239,19 +239,22 @@ Agent::Replies Agent::begin_check(RobotId peer) {
 }
 
 Agent::Replies Agent::compare_clouds(RobotId peer, const Clouds& clouds) {
-  if (!sessions_[peer].has_comparison(clouds)) return {};  // the check wants all of them, in its order
-  MergeChecker& check = checks_.at(peer);
-  PlaceComparer comparer(*map_, discernment(), config_.registration_in_use());
-  check.add(comparer.with_clouds(check.next(kCloudsPerMessage), clouds));
-  return go_on_checking(peer);
+  PeerSession& session = sessions_[peer];
+  session.take_views(clouds);
+  return session.has_comparison() ? go_on_checking(peer) : Replies();  // it wants all of them, in its order
 }
 
 Agent::Replies Agent::go_on_checking(RobotId peer) {
-  std::vector<std::uint32_t> keyframes;
-  for (const PlannedComparison& place : checks_.at(peer).next(kCloudsPerMessage))
-    keyframes.push_back(place.theirs);
-  sessions_[peer].await_comparison_of(keyframes);
-  return keyframes.empty() ? conclude_check(peer) : request_of(sessions_[peer]);
+  PeerSession& session = sessions_[peer];
+  MergeChecker& check = checks_.at(peer);
+  PlaceComparer comparer(*map_, discernment(), config_.registration_in_use());
+  for (auto asked = check.next(kCloudsPerMessage); !asked.empty(); asked = check.next(kCloudsPerMessage)) {
+    session.await_comparison_of(their_keyframes(asked));
+    if (!session.has_comparison()) return request_of(session);
+    check.add(comparer.with_views(asked, session.views()));
+  }
+  session.await_comparison_of({});
+  return conclude_check(peer);
 }
 
 Agent::Replies Agent::conclude_check(RobotId peer) {

@@ -66,7 +66,8 @@ Fields fields_of(AgentConfig& config);
 ///  - the descriptors of one peer at a time, 6 kB per keyframe, until they have been searched;
 ///  - the features of its own keyframes, at most FeatureStore::kMaxBytes, and under MergePolicy::adaptive the
 ///    surfaces that it compares, at most ViewStore::kMaxBytes and ScanStore::kMaxBytes.
-/// It stores no clouds of others: they are asked for, registered or compared, and forgotten.
+///  - what one peer saw at the places that a check compares, some tens of megabytes, until the check is over.
+/// Other clouds are asked for, registered and forgotten.
 class Agent {
  public:
   /// Shares `map`, which has to be complete: keyframes that it gets later are not known to others.
@@ -129,7 +130,7 @@ class Agent {
   Replies register_clouds(RobotId peer, const Clouds& clouds);
   Replies begin_check(RobotId peer);
   Replies compare_clouds(RobotId peer, const Clouds& clouds);
-  /// What the check asks for next, or its verdict.
+  /// What the check asks for next, beyond what has come; or its verdict.
   Replies go_on_checking(RobotId peer);
   Replies conclude_check(RobotId peer);
   /// The verdict of a check that is over, with where to drive if that would decide it.

@@ -30,7 +30,22 @@ std::vector<PlannedComparison> coarse_to_fine(const std::vector<PlannedCompariso
   return out;
 }
 
+std::vector<std::uint32_t> keyframes_of(const std::vector<PlannedComparison>& places,
+                                        std::uint32_t PlannedComparison::*whose) {
+  std::vector<std::uint32_t> keyframes;
+  for (const PlannedComparison& place : places) keyframes.push_back(place.*whose);
+  return keyframes;
+}
+
 }  // namespace
+
+std::vector<std::uint32_t> own_keyframes(const std::vector<PlannedComparison>& places) {
+  return keyframes_of(places, &PlannedComparison::own);
+}
+
+std::vector<std::uint32_t> their_keyframes(const std::vector<PlannedComparison>& places) {
+  return keyframes_of(places, &PlannedComparison::theirs);
+}
 
 ComparisonPlanner::ComparisonPlanner(const OdometryChain& own, const OdometryChain& theirs,
                                      const std::vector<PcmLoop>& loops, const ComparisonSpacing& spacing)

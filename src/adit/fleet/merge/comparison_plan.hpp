@@ -20,6 +20,12 @@ struct PlannedComparison {
   bool without_guess = false;  ///< Asks whether registration finds it where nothing is known of it.
 };
 
+/// Of each place.
+///@{
+[[nodiscard]] std::vector<std::uint32_t> own_keyframes(const std::vector<PlannedComparison>& places);
+[[nodiscard]] std::vector<std::uint32_t> their_keyframes(const std::vector<PlannedComparison>& places);
+///@}
+
 /// Lengths along the path, metres.
 struct ComparisonSpacing {
   double spacing_m = 3.0;       ///< From one place to the next.

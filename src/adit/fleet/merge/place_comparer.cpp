@@ -3,7 +3,6 @@
 #include "adit/fleet/merge/place_comparer.hpp"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include "adit/core/parallel.hpp"
@@ -12,12 +11,6 @@
 
 namespace adit {
 namespace {
-
-std::vector<std::uint32_t> own_keyframes(const std::vector<PlannedComparison>& asked) {
-  std::vector<std::uint32_t> own;
-  for (const PlannedComparison& place : asked) own.push_back(place.own);
-  return own;
-}
 
 /// What the peer saw at a keyframe, and beside it.
 SeenSurface view_of(const Clouds::Cloud& received, const RegistrationConfig& config) {
@@ -119,15 +112,13 @@ std::vector<ComparedPlace> PlaceComparer::places_of(std::vector<Fitted> found) {
   return places;
 }
 
-std::vector<ComparedPlace> PlaceComparer::with_clouds(const std::vector<PlannedComparison>& asked,
-                                                      const Clouds& clouds) {
-  std::map<std::uint32_t, const Clouds::Cloud*> came;
-  for (const Clouds::Cloud& cloud : clouds.clouds) came[cloud.index] = &cloud;
+std::vector<ComparedPlace> PlaceComparer::with_views(const std::vector<PlannedComparison>& asked,
+                                                     const PeerSession::Views& views) {
   const std::vector<DisplacementSigns> signs = discernment_.displacement_signs(own_keyframes(asked));
   prepare({}, asked, signs);
   std::vector<Fitted> found(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
-    found[i] = fitted(asked[i], view_of(*came.at(asked[i].theirs), registration_), signs[i]);
+    found[i] = fitted(asked[i], view_of(views.at(asked[i].theirs), registration_), signs[i]);
   });
   const std::vector<std::size_t> agreeing = those_that_agree(asked, found);
   std::vector<std::uint32_t> own;
@@ -135,16 +126,14 @@ std::vector<ComparedPlace> PlaceComparer::with_clouds(const std::vector<PlannedC
   discernment_.scans().prepare(own);
   parallel_for_each(agreeing.size(), [&](std::size_t k) {
     const PlannedComparison& place = asked[agreeing[k]];
-    add_walls(place, scan_of(*came.at(place.theirs), registration_), found[agreeing[k]]);
+    add_walls(place, scan_of(views.at(place.theirs), registration_), found[agreeing[k]]);
   });
   return places_of(std::move(found));
 }
 
 std::vector<ComparedPlace> PlaceComparer::within_own_map(const std::vector<PlannedComparison>& asked) {
-  std::vector<std::uint32_t> later;
-  for (const PlannedComparison& place : asked) later.push_back(place.theirs);
   const std::vector<DisplacementSigns> signs = discernment_.displacement_signs(own_keyframes(asked));
-  prepare(later, asked, signs);
+  prepare(their_keyframes(asked), asked, signs);
   const ViewStore& views = discernment_.views();
   std::vector<Fitted> found(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {

@@ -9,7 +9,7 @@
 #include "adit/fleet/merge/comparison_plan.hpp"
 #include "adit/fleet/merge/discernment.hpp"
 #include "adit/fleet/merge/hypothesis.hpp"
-#include "adit/fleet/sync/protocol.hpp"
+#include "adit/fleet/sync/peer_session.hpp"
 #include "adit/robot/robot_map.hpp"
 
 namespace adit {
@@ -21,9 +21,9 @@ class PlaceComparer {
   PlaceComparer(const RobotMap& map, Discernment& discernment, const RegistrationConfig& registration)
       : map_(map), discernment_(discernment), registration_(registration) {}
 
-  /// Own keyframes with clouds of a peer, one for each place.
-  [[nodiscard]] std::vector<ComparedPlace> with_clouds(const std::vector<PlannedComparison>& asked,
-                                                       const Clouds& clouds);
+  /// Own keyframes with those of a peer, whose `views` have all that are asked for.
+  [[nodiscard]] std::vector<ComparedPlace> with_views(const std::vector<PlannedComparison>& asked,
+                                                      const PeerSession::Views& views);
   /// Keyframes of the own map with later ones of it.
   [[nodiscard]] std::vector<ComparedPlace> within_own_map(const std::vector<PlannedComparison>& asked);
 

@@ -32,9 +32,9 @@ ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
       own, chain_of(graph_of(*own)), [] { return std::vector<LoopCandidate>(); },
       std::make_shared<FeatureStore>(own, config.registration, config.submap), config);
   PlaceComparer comparer(*own, discernment, config.registration);
-  Clouds clouds = clouds_of(*theirs, {{kBesideTheBlock}, CloudKind::view},
-                            {config.registration.voxel_size, config.submap, config.view});
-  Clouds::Cloud& cloud = clouds.clouds[0];
+  Clouds::Cloud cloud = clouds_of(*theirs, {{kBesideTheBlock}, CloudKind::view},
+                                  {config.registration.voxel_size, config.submap, config.view})
+                            .clouds[0];
   PointCloud seen;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     if (!is_seen_by_peer(cloud.points[i])) continue;
@@ -44,7 +44,9 @@ ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
   cloud.points = seen.points;
   cloud.intensities = seen.intensities;
   std::erase_if(cloud.beside, [&](const Eigen::Vector3f& p) { return !is_seen_by_peer(p); });
-  return comparer.with_clouds({{kBesideTheBlock, kBesideTheBlock, Pose(), without_guess}}, clouds).front();
+  return comparer
+      .with_views({{kBesideTheBlock, kBesideTheBlock, Pose(), without_guess}}, {{kBesideTheBlock, cloud}})
+      .front();
 }
 
 bool everything(const Eigen::Vector3f& /*point*/) { return true; }

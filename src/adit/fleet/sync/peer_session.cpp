@@ -73,15 +73,33 @@ std::optional<CloudRequest> PeerSession::request() const {
     if (request.indices.size() == kCloudsPerMessage) break;
     request.indices.push_back(index);
   }
-  if (request.indices.empty()) request = {to_compare_, CloudKind::view};
+  if (request.indices.empty()) request = {missing_views(), CloudKind::view};
   if (request.indices.empty()) return std::nullopt;
   return request;
 }
 
-bool PeerSession::has_comparison(const Clouds& clouds) const {
-  return clouds.kind == CloudKind::view && std::ranges::all_of(to_compare_, [&](std::uint32_t keyframe) {
-           return std::ranges::find(clouds.clouds, keyframe, &Clouds::Cloud::index) != clouds.clouds.end();
-         });
+void PeerSession::await_comparison_of(std::vector<std::uint32_t> keyframes) {
+  constexpr std::size_t kMaxViews = 512;  // some tens of megabytes
+  to_compare_ = std::move(keyframes);
+  if (to_compare_.empty() || views_.size() > kMaxViews)
+    std::erase_if(views_, [&](const auto& view) { return !awaits(view.first); });
+}
+
+bool PeerSession::awaits(std::uint32_t view) const {
+  return std::ranges::find(to_compare_, view) != to_compare_.end();
+}
+
+std::vector<std::uint32_t> PeerSession::missing_views() const {
+  std::vector<std::uint32_t> missing;
+  for (const std::uint32_t keyframe : to_compare_)
+    if (!views_.contains(keyframe)) missing.push_back(keyframe);
+  return missing;
+}
+
+void PeerSession::take_views(const Clouds& clouds) {
+  if (clouds.kind != CloudKind::view) return;
+  for (const Clouds::Cloud& cloud : clouds.clouds)
+    if (awaits(cloud.index)) views_.insert_or_assign(cloud.index, cloud);
 }
 
 std::vector<PeerSession::Arrived> PeerSession::take_arrived(const Clouds& clouds) {

@@ -54,8 +54,11 @@ class PeerSession {
   void await_clouds_of(const std::vector<LoopCandidate>& candidates);
   /// Candidates that wait for clouds.
   [[nodiscard]] std::size_t num_waiting() const;
-  /// The peer's keyframes whose clouds the merge check needs, in its order; none ends the comparison.
-  void await_comparison_of(std::vector<std::uint32_t> keyframes) { to_compare_ = std::move(keyframes); }
+  /// Views by the peer's keyframe.
+  using Views = std::map<std::uint32_t, Clouds::Cloud>;
+  /// The peer's keyframes whose views the merge check needs; none ends the comparison, and all views are
+  /// forgotten.
+  void await_comparison_of(std::vector<std::uint32_t> keyframes);
 
   /// The clouds to ask for next.
   [[nodiscard]] std::optional<CloudRequest> request() const;
@@ -66,11 +69,17 @@ class PeerSession {
   };
   /// Candidates whose clouds have come, which then wait no longer.
   [[nodiscard]] std::vector<Arrived> take_arrived(const Clouds& clouds);
-  /// Whether all clouds that the merge check waits for have come.
-  [[nodiscard]] bool has_comparison(const Clouds& clouds) const;
+  /// Keeps the views that the merge check waits for. Other alignments of the maps compare the same ones.
+  void take_views(const Clouds& clouds);
+  /// Whether the merge check has all views that it waits for.
+  [[nodiscard]] bool has_comparison() const { return missing_views().empty(); }
+  /// All that have come and were not forgotten.
+  [[nodiscard]] const Views& views() const { return views_; }
 
  private:
   [[nodiscard]] bool exists(std::uint32_t keyframe) const { return keyframe < num_keyframes_; }
+  [[nodiscard]] bool awaits(std::uint32_t view) const;
+  [[nodiscard]] std::vector<std::uint32_t> missing_views() const;
 
   std::uint32_t num_keyframes_ = std::numeric_limits<std::uint32_t>::max();  ///< As the peer last said.
   std::uint32_t num_places_ = 0;
@@ -79,6 +88,7 @@ class PeerSession {
   bool is_searched_ = false;
   std::map<std::uint32_t, std::vector<LoopCandidate>> waiting_;  ///< By the peer's keyframe.
   std::vector<std::uint32_t> to_compare_;
+  Views views_;
 };
 
 }  // namespace adit

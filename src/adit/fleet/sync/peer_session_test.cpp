@@ -52,11 +52,18 @@ TEST(PeerSession, GoesFromGreetingToDecided) {
   EXPECT_EQ(session.take_arrived(clouds_of({4, 5}, CloudKind::submap)).size(), 3U);
   session.await_comparison_of({10, 20});
   EXPECT_EQ(session.state(), PeerState::comparing);
-  EXPECT_FALSE(session.has_comparison(clouds_of({10, 20}, CloudKind::submap))) << "late clouds of candidates";
+  session.take_views(clouds_of({10, 20}, CloudKind::submap));
+  EXPECT_FALSE(session.has_comparison()) << "late clouds of candidates";
   EXPECT_EQ(session.request()->indices, (std::vector<std::uint32_t>{10, 20}));
-  EXPECT_FALSE(session.has_comparison(clouds_of({10}, CloudKind::view)));
-  EXPECT_TRUE(session.has_comparison(clouds_of({20, 10}, CloudKind::view)));
+  session.take_views(clouds_of({10, 30}, CloudKind::view));
+  EXPECT_FALSE(session.has_comparison());
+  EXPECT_EQ(session.request()->indices, std::vector<std::uint32_t>{20});
+  session.take_views(clouds_of({20}, CloudKind::view));
+  EXPECT_TRUE(session.has_comparison());
+  session.await_comparison_of({20, 30});
+  EXPECT_EQ(session.request()->indices, std::vector<std::uint32_t>{30}) << "20 has come, 30 was not asked for";
   session.await_comparison_of({});
+  EXPECT_TRUE(session.views().empty()) << "nothing is kept beyond the check";
   EXPECT_EQ(session.state(), PeerState::decided);
   EXPECT_FALSE(session.request());
 }
