@@ -46,7 +46,7 @@ LookedForAgain looked_for_again(FoundAgain found, double missing, MergeCheckConf
   LookedForAgain out;
   const auto compared = [&](const PlannedComparison& asked) {
     ComparedPlace place = kAgrees;
-    if (!asked.without_guess) return place;
+    if (asked.question != PlaceQuestion::registration) return place;
     out.asked.push_back(asked);
     place.found_again = found;
     return place;
@@ -94,7 +94,7 @@ TEST(FewLoops, AreForgivenOnlyIfMoreIsFoundThanNot) {
     const std::vector<PcmLoop> two = {loop_at(80), loop_at(90)};
     const auto compared = [&](const PlannedComparison& asked) {
       ComparedPlace place = kAgrees;
-      if (asked.without_guess)
+      if (asked.question == PlaceQuestion::registration)
         place.found_again = num++ % 3 < of_three ? FoundAgain::there : FoundAgain::elsewhere;
       return place;
     };

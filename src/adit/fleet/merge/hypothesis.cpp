@@ -136,16 +136,34 @@ void Hypothesis::add_second_look(std::size_t which, const ComparedPlace& place) 
   const bool has_moved = seen_again.empty() && !first.structures.empty() && !place.structures.empty();
   if (has_moved && std::min(first.difference, place.difference) < model.gross) {
     first.is_explained = true;  // by chance: the place says nothing
-    first.signs.clear();
+    first.signs = DisplacementSigns();
     return;
   }
   first.is_explained = note_changes(seen_again);
 }
 
-bool Hypothesis::is_finished() const { return compared.size() == plan.size() && to_look_at_again().empty(); }
+void Hypothesis::add_signs(std::size_t which, const ComparedPlace& place) {
+  compared[which].signs = place.signs.value_or(DisplacementSigns());
+}
+
+bool Hypothesis::is_finished() const {
+  return compared.size() == plan.size() && to_look_at_again().empty() && to_ask_for_signs().empty();
+}
 
 bool Hypothesis::waits_for_second_look(std::size_t which) const {
   return compared[which].differs() && second_looks[which];
+}
+
+bool Hypothesis::waits_for_signs(std::size_t which) const {
+  const ComparedPlace& place = compared[which];
+  return place.differs() && place.is_explained && !place.signs;
+}
+
+std::vector<std::size_t> Hypothesis::to_ask_for_signs() const {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < compared.size(); ++i)
+    if (waits_for_signs(i)) out.push_back(i);
+  return out;
 }
 
 std::vector<std::size_t> Hypothesis::to_look_at_again() const {
@@ -192,9 +210,10 @@ std::size_t Hypothesis::num_distinctive() const {
 
 bool Hypothesis::shows_beside_changes(const ComparedPlace& place) const {
   const auto is_beside = [&](const Vector3& sign) { return !structures.has(sign); };
-  return !place.signs.empty() && std::ranges::all_of(place.signs, [&](const std::vector<Vector3>& one_way) {
+  const auto shows_beside = [&](const std::vector<Vector3>& one_way) {
     return std::ranges::any_of(one_way, is_beside);
-  });
+  };
+  return place.signs && !place.signs->empty() && std::ranges::all_of(*place.signs, shows_beside);
 }
 
 PlaceOutcome Hypothesis::outcome(const ComparedPlace& place, bool distinctive_only) const {
@@ -215,9 +234,10 @@ std::vector<TestedPlace> Hypothesis::places(bool distinctive_only) const {
 std::vector<TestedPlace> Hypothesis::places_at_best(bool distinctive_only) const {
   std::vector<TestedPlace> places;
   for (std::size_t i = 0; i < compared.size(); ++i)
-    places.push_back(
-        {plan[i].own, plan[i].theirs,
-         waits_for_second_look(i) ? PlaceOutcome::distinctive : outcome(compared[i], distinctive_only)});
+    places.push_back({plan[i].own, plan[i].theirs,
+                      waits_for_second_look(i) || waits_for_signs(i)
+                          ? PlaceOutcome::distinctive
+                          : outcome(compared[i], distinctive_only)});
   std::ranges::stable_sort(places, {}, &TestedPlace::a);
   return places;
 }

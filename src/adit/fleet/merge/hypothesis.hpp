@@ -36,9 +36,11 @@ struct ComparedPlace {
   std::vector<Vector3> structures = {};
   std::vector<Vector3> things = {};
   ///@}
-  DisplacementSigns signs = {};  ///< By what it is distinctive (Discernment).
+  /// By what a displacement would show (Discernment); none where that was not asked, as it is of places that
+  /// differ only once what differs is explained.
+  std::optional<DisplacementSigns> signs = {};
   bool is_explained = false;  ///< What differs was counted before, at another place, or was not seen again.
-  FoundAgain found_again = FoundAgain::not_asked;  ///< Of a place that is compared without a guess.
+  FoundAgain found_again = FoundAgain::not_asked;  ///< By registration.
   /// Whether the scans cannot be of one place; those with nothing in common differ.
   [[nodiscard]] bool differs() const { return !(difference <= 1.0); }
 };
@@ -89,16 +91,21 @@ struct Hypothesis {
   double known_before = 0.0;      ///< Evidence that does not come from comparing scans.
   std::size_t num_unlocated = 0;  ///< Places that differ as a whole, by a second look, too.
 
-  /// Whether all places of the plan were compared, those that differ a second time where they can be.
+  /// Whether all places of the plan were compared, those that differ a second time where they can be, and
+  /// explained ones for what would show there.
   [[nodiscard]] bool is_finished() const;
   /// Places that differ and have a second look left, once all have been seen: one fit in many fails.
   [[nodiscard]] std::vector<std::size_t> to_look_at_again() const;
+  /// Places whose differences are explained and that were not asked yet by what a displacement would show.
+  [[nodiscard]] std::vector<std::size_t> to_ask_for_signs() const;
   /// The pairs of scans that agreed at distinctive places, along the path of the other robot.
   [[nodiscard]] std::vector<PlannedComparison> distinctive() const;
   /// What comparing a place has shown; the places of the plan in turn.
   void add(const ComparedPlace& place);
   /// What a second look at a place that differed has shown.
   void add_second_look(std::size_t which, const ComparedPlace& place);
+  /// By what a displacement would show at a place that differs.
+  void add_signs(std::size_t which, const ComparedPlace& place);
   /// Compared places that differ by more than this times the limit.
   [[nodiscard]] std::size_t num_differing(double by_more_than = 1.0) const;
   /// Changes of structure, and places that differ as a whole.
@@ -114,11 +121,12 @@ struct Hypothesis {
   /// What was found at each place; what differs elsewhere leaves the rest of a place to agree. In the order
   /// driven by the own robot; where not `distinctive_only` every place that agrees counts as distinctive.
   [[nodiscard]] std::vector<TestedPlace> places(bool distinctive_only) const;
-  /// The same if all second looks that are left showed that places agree, and are distinctive.
+  /// The same if all that is left to ask about these places showed that they agree, and are distinctive.
   [[nodiscard]] std::vector<TestedPlace> places_at_best(bool distinctive_only) const;
 
  private:
   [[nodiscard]] bool waits_for_second_look(std::size_t which) const;
+  [[nodiscard]] bool waits_for_signs(std::size_t which) const;
   [[nodiscard]] PlaceOutcome outcome(const ComparedPlace& place, bool distinctive_only) const;
   [[nodiscard]] bool shows_beside_changes(const ComparedPlace& place) const;
   /// Counts what differs at a place; true if there is something and all of it had been counted before.

@@ -22,6 +22,11 @@ std::vector<PlannedComparison> part_of(const std::vector<PlannedComparison>& pla
   return {first, first + static_cast<std::ptrdiff_t>(std::min(num, plan.size() - from))};
 }
 
+std::vector<PlannedComparison> asking(PlaceQuestion question, std::vector<PlannedComparison> places) {
+  for (PlannedComparison& place : places) place.question = question;
+  return places;
+}
+
 }  // namespace
 
 MergeChecker::MergeChecker(LoopsBetween between, OwnMeasurements own, const AdaptiveConfig& config)
@@ -202,7 +207,7 @@ std::vector<PlannedComparison> MergeChecker::to_find_again(const Hypothesis& h) 
   for (const std::uint32_t i :
        evenly_spread(places.size(), static_cast<std::size_t>(config_.max_found_again))) {
     out.push_back(places[i]);
-    out.back().without_guess = true;
+    out.back().question = PlaceQuestion::registration;
   }
   const bool may_be_many = static_cast<double>(h.loops.size() + out.size()) > config_.evidence.few_loops;
   return may_be_many ? out : std::vector<PlannedComparison>();
@@ -227,7 +232,8 @@ std::optional<std::size_t> MergeChecker::whose_places_to_find_again() const {
 std::optional<MergeChecker::Step> MergeChecker::next_step() const {
   if (const auto which = to_go_on_with()) {
     const Hypothesis& h = hypotheses_[*which];
-    return Step{h.compared.size() < h.plan.size() ? Stage::places : Stage::second_looks, *which};
+    if (h.compared.size() < h.plan.size()) return Step{Stage::places, *which};
+    return Step{h.to_look_at_again().empty() ? Stage::signs : Stage::second_looks, *which};
   }
   if (const auto which = whose_walls_to_compare()) return Step{Stage::walls, *which};
   if (const auto which = whose_places_to_find_again()) return Step{Stage::find_again, *which};
@@ -251,8 +257,13 @@ std::vector<PlannedComparison> MergeChecker::planned(const Step& step, std::size
       for (const std::size_t i : h.to_look_at_again()) again.push_back(*h.second_looks[i]);
       return part_of(again, 0, num);
     }
+    case Stage::signs: {
+      std::vector<PlannedComparison> explained;
+      for (const std::size_t i : h.to_ask_for_signs()) explained.push_back(h.plan[i]);
+      return asking(PlaceQuestion::displacement, part_of(explained, 0, num));
+    }
     case Stage::walls:
-      return part_of(h.wall_plan, h.num_walls_compared, num);
+      return asking(PlaceQuestion::walls, part_of(h.wall_plan, h.num_walls_compared, num));
     case Stage::find_again:
       return part_of(to_find_again(h), h.num_looked_for, num);
   }
@@ -272,6 +283,11 @@ void MergeChecker::add(const std::vector<ComparedPlace>& places) {
     case Stage::second_looks: {
       const std::vector<std::size_t> again = h.to_look_at_again();
       for (std::size_t i = 0; i < places.size(); ++i) h.add_second_look(again[i], places[i]);
+      break;
+    }
+    case Stage::signs: {
+      const std::vector<std::size_t> explained = h.to_ask_for_signs();
+      for (std::size_t i = 0; i < places.size(); ++i) h.add_signs(explained[i], places[i]);
       break;
     }
     case Stage::walls:

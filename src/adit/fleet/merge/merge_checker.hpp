@@ -70,7 +70,7 @@ class MergeChecker {
 
  private:
   /// What is compared of a hypothesis, in this order.
-  enum class Stage : std::uint8_t { places, second_looks, walls, find_again };
+  enum class Stage : std::uint8_t { places, second_looks, signs, walls, find_again };
   struct Step {
     Stage stage = Stage::places;
     std::size_t hypothesis = 0;

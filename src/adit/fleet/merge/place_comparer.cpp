@@ -3,6 +3,7 @@
 #include "adit/fleet/merge/place_comparer.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "adit/core/parallel.hpp"
@@ -27,18 +28,14 @@ SearchableSurface scan_of(const Clouds::Cloud& received, const RegistrationConfi
   return scan_of(scan, received.viewpoint.cast<double>(), config);
 }
 
-}  // namespace
-
-void PlaceComparer::prepare(std::vector<std::uint32_t> keyframes, const std::vector<PlannedComparison>& asked,
-                            const std::vector<DisplacementSigns>& signs) {
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    keyframes.push_back(asked[i].own);
-    if (signs[i].empty()) continue;
-    const std::vector<std::uint32_t> displaced = discernment_.displaced_from(asked[i].own);
-    keyframes.insert(keyframes.end(), displaced.begin(), displaced.end());
-  }
-  discernment_.views().prepare(keyframes);
+std::vector<PlannedComparison> picked(const std::vector<PlannedComparison>& asked,
+                                      const std::vector<std::size_t>& which) {
+  std::vector<PlannedComparison> out;
+  for (const std::size_t i : which) out.push_back(asked[i]);
+  return out;
 }
+
+}  // namespace
 
 bool PlaceComparer::agrees_displaced(std::uint32_t own, const SeenSurface& theirs,
                                      const Pose& T_own_theirs) const {
@@ -65,31 +62,63 @@ FoundAgain PlaceComparer::found_again(const SeenSurface& own, const SeenSurface&
   return is_there ? FoundAgain::there : FoundAgain::elsewhere;
 }
 
-PlaceComparer::Fitted PlaceComparer::fitted(const PlannedComparison& place, const SeenSurface& theirs,
-                                            const DisplacementSigns& signs) const {
+PlaceComparer::Fitted PlaceComparer::fitted(const PlannedComparison& place, const SeenSurface& theirs) const {
   const double limit = discernment_.limit();
   const SeenSurface& own = discernment_.views().at(place.own);
   const LocalFit fit = fit_near(own, theirs, place.T_own_theirs, limit, registration_);
-  const Pose& T_odom_own = map_.keyframes[place.own].T_odom_base;
   Fitted out{{fit.agreement.largest_difference / limit}, fit.T_a_b};
   ComparedPlace& found = out.place;
-  if (place.without_guess) {  // all else was compared before
+  if (place.question == PlaceQuestion::registration) {  // all else was compared before
     found.found_again = found.differs() ? FoundAgain::elsewhere : found_again(own, theirs, fit.T_a_b);
     return out;
-  }
-  if (!signs.empty() && !agrees_displaced(place.own, theirs, fit.T_a_b)) {
-    found.is_distinctive = true;
-    found.signs = signs;
   }
   const auto above_limit = [&](const std::vector<DifferingPatch>& patches) {
     std::vector<Vector3> places;
     for (const DifferingPatch& patch : patches)
-      if (patch.num_points > limit) places.push_back(T_odom_own * patch.position);
+      if (patch.num_points > limit)
+        places.push_back(map_.keyframes[place.own].T_odom_base * patch.position);
     return places;
   };
   found.structures = above_limit(fit.agreement.structures);
   found.things = above_limit(fit.agreement.things);
   return out;
+}
+
+std::vector<PlaceComparer::Fitted> PlaceComparer::compare_views(const std::vector<PlannedComparison>& asked,
+                                                                const ViewOfTheirs& theirs,
+                                                                const std::vector<std::uint32_t>& kept) {
+  const auto prepare = [&](const std::vector<std::uint32_t>& more) {
+    std::vector<std::uint32_t> all = kept;
+    all.insert(all.end(), more.begin(), more.end());
+    discernment_.views().prepare(all);
+  };
+  prepare(own_keyframes(asked));
+  std::vector<Fitted> found(asked.size());
+  parallel_for_each(asked.size(), [&](std::size_t i) { found[i] = fitted(asked[i], theirs(i)); });
+
+  // What a displacement would show is asked of few places that differ, and most do.
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < asked.size(); ++i)
+    if (asked[i].question == PlaceQuestion::displacement ||
+        (asked[i].question == PlaceQuestion::agreement && !found[i].place.differs()))
+      which.push_back(i);
+  const std::vector<std::uint32_t> own = own_keyframes(picked(asked, which));
+  const std::vector<DisplacementSigns> signs = discernment_.displacement_signs(own);
+  std::vector<std::uint32_t> displaced;
+  for (std::size_t k = 0; k < which.size(); ++k) {
+    if (signs[k].empty()) continue;
+    const std::vector<std::uint32_t> both_ways = discernment_.displaced_from(own[k]);
+    displaced.insert(displaced.end(), both_ways.begin(), both_ways.end());
+  }
+  prepare(displaced);
+  parallel_for_each(which.size(), [&](std::size_t k) {
+    auto& [place, T_own_theirs] = found[which[k]];
+    place.signs.emplace();
+    if (signs[k].empty() || agrees_displaced(own[k], theirs(which[k]), T_own_theirs)) return;
+    place.is_distinctive = true;
+    place.signs = signs[k];
+  });
+  return found;
 }
 
 void PlaceComparer::add_walls(const PlannedComparison& place, const SearchableSurface& theirs,
@@ -98,12 +127,14 @@ void PlaceComparer::add_walls(const PlannedComparison& place, const SearchableSu
                                        map_.keyframes[place.own].T_odom_base, registration_);
 }
 
-std::vector<std::size_t> PlaceComparer::those_that_agree(const std::vector<PlannedComparison>& asked,
+std::vector<std::size_t> PlaceComparer::those_with_walls(const std::vector<PlannedComparison>& asked,
                                                          const std::vector<Fitted>& found) {
-  std::vector<std::size_t> agreeing;
+  std::vector<std::size_t> out;
   for (std::size_t i = 0; i < asked.size(); ++i)
-    if (!asked[i].without_guess && !found[i].place.differs()) agreeing.push_back(i);
-  return agreeing;
+    if ((asked[i].question == PlaceQuestion::agreement || asked[i].question == PlaceQuestion::walls) &&
+        !found[i].place.differs())
+      out.push_back(i);
+  return out;
 }
 
 std::vector<ComparedPlace> PlaceComparer::places_of(std::vector<Fitted> found) {
@@ -114,39 +145,33 @@ std::vector<ComparedPlace> PlaceComparer::places_of(std::vector<Fitted> found) {
 
 std::vector<ComparedPlace> PlaceComparer::with_views(const std::vector<PlannedComparison>& asked,
                                                      const PeerSession::Views& views) {
-  const std::vector<DisplacementSigns> signs = discernment_.displacement_signs(own_keyframes(asked));
-  prepare({}, asked, signs);
-  std::vector<Fitted> found(asked.size());
+  std::vector<std::optional<SeenSurface>> theirs(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
-    found[i] = fitted(asked[i], view_of(views.at(asked[i].theirs), registration_), signs[i]);
+    theirs[i].emplace(view_of(views.at(asked[i].theirs), registration_));
   });
-  const std::vector<std::size_t> agreeing = those_that_agree(asked, found);
-  std::vector<std::uint32_t> own;
-  for (const std::size_t i : agreeing) own.push_back(asked[i].own);
-  discernment_.scans().prepare(own);
-  parallel_for_each(agreeing.size(), [&](std::size_t k) {
-    const PlannedComparison& place = asked[agreeing[k]];
-    add_walls(place, scan_of(views.at(place.theirs), registration_), found[agreeing[k]]);
+  std::vector<Fitted> found =
+      compare_views(asked, [&](std::size_t i) -> const SeenSurface& { return *theirs[i]; }, {});
+  const std::vector<std::size_t> with_walls = those_with_walls(asked, found);
+  discernment_.scans().prepare(own_keyframes(picked(asked, with_walls)));
+  parallel_for_each(with_walls.size(), [&](std::size_t k) {
+    const std::size_t i = with_walls[k];
+    add_walls(asked[i], scan_of(views.at(asked[i].theirs), registration_), found[i]);
   });
   return places_of(std::move(found));
 }
 
 std::vector<ComparedPlace> PlaceComparer::within_own_map(const std::vector<PlannedComparison>& asked) {
-  const std::vector<DisplacementSigns> signs = discernment_.displacement_signs(own_keyframes(asked));
-  prepare(their_keyframes(asked), asked, signs);
-  const ViewStore& views = discernment_.views();
-  std::vector<Fitted> found(asked.size());
-  parallel_for_each(asked.size(), [&](std::size_t i) {
-    found[i] = fitted(asked[i], views.at(asked[i].theirs), signs[i]);
-  });
-  const std::vector<std::size_t> agreeing = those_that_agree(asked, found);
-  std::vector<std::uint32_t> both;
-  for (const std::size_t i : agreeing) both.insert(both.end(), {asked[i].own, asked[i].theirs});
+  const std::vector<std::uint32_t> later = their_keyframes(asked);
+  std::vector<Fitted> found = compare_views(
+      asked, [&](std::size_t i) -> const SeenSurface& { return discernment_.views().at(later[i]); }, later);
+  const std::vector<std::size_t> with_walls = those_with_walls(asked, found);
+  std::vector<std::uint32_t> both = own_keyframes(picked(asked, with_walls));
+  for (const std::size_t i : with_walls) both.push_back(later[i]);
   ScanStore& scans = discernment_.scans();
   scans.prepare(both);
-  parallel_for_each(agreeing.size(), [&](std::size_t k) {
-    const PlannedComparison& place = asked[agreeing[k]];
-    add_walls(place, scans.at(place.theirs), found[agreeing[k]]);
+  parallel_for_each(with_walls.size(), [&](std::size_t k) {
+    const std::size_t i = with_walls[k];
+    add_walls(asked[i], scans.at(later[i]), found[i]);
   });
   return places_of(std::move(found));
 }

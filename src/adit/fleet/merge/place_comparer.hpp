@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "adit/fleet/merge/comparison_plan.hpp"
@@ -33,21 +34,25 @@ class PlaceComparer {
     ComparedPlace place;
     Pose T_own_theirs;
   };
-  /// Views of these keyframes, the own ones that are asked for, and those displaced from them.
-  void prepare(std::vector<std::uint32_t> keyframes, const std::vector<PlannedComparison>& asked,
-               const std::vector<DisplacementSigns>& signs);
-  /// With what was seen at the peer's keyframe; the own view and those displaced from it have been prepared.
-  [[nodiscard]] Fitted fitted(const PlannedComparison& place, const SeenSurface& theirs,
-                              const DisplacementSigns& signs) const;
+  /// The view of theirs at the i-th place that is asked for.
+  using ViewOfTheirs = std::function<const SeenSurface&(std::size_t i)>;
+
+  /// All but the walls. `kept`: further own keyframes whose views `theirs` reads.
+  [[nodiscard]] std::vector<Fitted> compare_views(const std::vector<PlannedComparison>& asked,
+                                                  const ViewOfTheirs& theirs,
+                                                  const std::vector<std::uint32_t>& kept);
+  /// The own view has been prepared.
+  [[nodiscard]] Fitted fitted(const PlannedComparison& place, const SeenSurface& theirs) const;
   /// Whether what the peer saw would agree with what was seen some metres on, too, as if the robot stood
-  /// there. Own scans may tell those places apart where two unlike sensors, by what both see, cannot.
+  /// there; those views have been prepared. Own scans may tell those places apart where two unlike sensors,
+  /// by what both see, cannot.
   [[nodiscard]] bool agrees_displaced(std::uint32_t own, const SeenSurface& theirs,
                                       const Pose& T_own_theirs) const;
   /// By the points of both views; search registers longer submaps.
   [[nodiscard]] FoundAgain found_again(const SeenSurface& own, const SeenSurface& theirs,
                                        const Pose& T_own_theirs) const;
-  /// Of the places whose walls are compared: their views agree.
-  [[nodiscard]] static std::vector<std::size_t> those_that_agree(const std::vector<PlannedComparison>& asked,
+  /// Of the places where walls are asked for and the views agree.
+  [[nodiscard]] static std::vector<std::size_t> those_with_walls(const std::vector<PlannedComparison>& asked,
                                                                  const std::vector<Fitted>& found);
   [[nodiscard]] static std::vector<ComparedPlace> places_of(std::vector<Fitted> found);
   /// The walls of the own scan, which has been prepared, and of the peer's.

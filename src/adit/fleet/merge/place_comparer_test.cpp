@@ -24,7 +24,7 @@ constexpr float kIntensityOfPeer = 100.0F;
 /// are left out.
 ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
                        const std::function<bool(const Eigen::Vector3f&)>& is_seen_by_peer,
-                       bool without_guess = false) {
+                       PlaceQuestion question = PlaceQuestion::agreement) {
   const auto own = in_a_tube(kBlock);
   const auto theirs = in_a_tube(boxes_of_peer, {1});
   const AdaptiveConfig config;
@@ -45,7 +45,7 @@ ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
   cloud.intensities = seen.intensities;
   std::erase_if(cloud.beside, [&](const Eigen::Vector3f& p) { return !is_seen_by_peer(p); });
   return comparer
-      .with_views({{kBesideTheBlock, kBesideTheBlock, Pose(), without_guess}}, {{kBesideTheBlock, cloud}})
+      .with_views({{kBesideTheBlock, kBesideTheBlock, Pose(), question}}, {{kBesideTheBlock, cloud}})
       .front();
 }
 
@@ -56,14 +56,16 @@ TEST(PlaceComparer, APlaceBesideABlockThatBothSeeIsDistinctive) {
   const ComparedPlace place = compared(kBlock, everything);
   EXPECT_FALSE(place.differs());
   EXPECT_TRUE(place.is_distinctive);
-  EXPECT_FALSE(place.signs.empty());
+  ASSERT_TRUE(place.signs);
+  EXPECT_FALSE(place.signs->empty());
 }
 
 TEST(PlaceComparer, APlaceIsNotDistinctiveByWhatThePeersSensorCannotSee) {
   const ComparedPlace place = compared(kBlock, away_from_the_block);
   EXPECT_FALSE(place.differs());
   EXPECT_FALSE(place.is_distinctive) << "the smooth half of the tube looks alike five metres on";
-  EXPECT_TRUE(place.signs.empty());
+  ASSERT_TRUE(place.signs);
+  EXPECT_TRUE(place.signs->empty());
 }
 
 TEST(PlaceComparer, WallsKnowTheIntensitiesThatThePeerSent) {
@@ -78,12 +80,24 @@ TEST(PlaceComparer, WallsKnowTheIntensitiesThatThePeerSent) {
 
 TEST(PlaceComparer, RegistrationFindsAPlaceAgainWhereItCannotSlide) {
   EXPECT_EQ(compared(kBlock, everything).found_again, FoundAgain::not_asked);
-  EXPECT_EQ(compared(kBlock, everything, true).found_again, FoundAgain::there);
-  EXPECT_NE(compared(kBlock, away_from_the_block, true).found_again, FoundAgain::there);
-  EXPECT_EQ(compared({}, everything, true).found_again, FoundAgain::elsewhere);
+  EXPECT_EQ(compared(kBlock, everything, PlaceQuestion::registration).found_again, FoundAgain::there);
+  EXPECT_NE(compared(kBlock, away_from_the_block, PlaceQuestion::registration).found_again, FoundAgain::there);
+  EXPECT_EQ(compared({}, everything, PlaceQuestion::registration).found_again, FoundAgain::elsewhere);
 }
 
-TEST(PlaceComparer, ABlockThatOnlyOneTubeHasDiffers) { EXPECT_TRUE(compared({}, everything).differs()); }
+TEST(PlaceComparer, ABlockThatOnlyOneTubeHasDiffers) {
+  const ComparedPlace place = compared({}, everything);
+  EXPECT_TRUE(place.differs());
+  EXPECT_FALSE(place.signs) << "not asked of a place that differs";
+  EXPECT_TRUE(compared({}, everything, PlaceQuestion::displacement).signs);
+}
+
+TEST(PlaceComparer, OnlyWallsAreComparedWhereOnlyTheyAreAskedFor) {
+  const ComparedPlace place = compared(kBlock, everything, PlaceQuestion::walls);
+  EXPECT_FALSE(place.offsets.empty());
+  EXPECT_FALSE(place.signs);
+  EXPECT_FALSE(place.is_distinctive);
+}
 
 }  // namespace
 }  // namespace adit
