@@ -40,6 +40,13 @@ struct Unaligned {
 /// bytes, on every machine, whether it has registers of 32 bytes or not.
 using Double4 = Unaligned<double, 4>::Type;
 
+/// Eight floats or integers anywhere in memory: one register where the machine has AVX2 and the function is
+/// compiled for it (ADIT_WIDE_VECTORS), else two. Not to be passed or returned by value.
+///@{
+using Float8 = Unaligned<float, 8>::Type;
+using Int8 = Unaligned<std::int32_t, 8>::Type;
+///@}
+
 /// Four floats from anywhere in memory.
 [[nodiscard]] inline Float4 load4(const float* x) {
   return Float4(*reinterpret_cast<const Unaligned<float, 4>::Type*>(x));
@@ -67,6 +74,13 @@ using Double4 = Unaligned<double, 4>::Type;
   using Halves [[gnu::vector_size(16)]] = std::uint64_t;
   const auto halves = reinterpret_cast<Halves>(mask);
   return (halves[0] | halves[1]) != 0;
+}
+
+/// The same of eight lanes.
+[[nodiscard, gnu::always_inline]] inline bool any(const Int8& mask) {
+  using Quarters [[gnu::vector_size(32)]] = std::uint64_t;
+  const auto quarters = reinterpret_cast<Quarters>(mask);
+  return (quarters[0] | quarters[1] | quarters[2] | quarters[3]) != 0;
 }
 
 /// The values of an array, four at a time.

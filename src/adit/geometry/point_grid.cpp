@@ -15,9 +15,10 @@ namespace adit {
 namespace {
 
 using simd::Float4;
+using simd::Float8;
 using simd::Int4;
 
-constexpr std::size_t kLanes = 4;       ///< Points that are compared at once.
+constexpr std::size_t kLanes = 8;       ///< Points that are compared at once.
 constexpr double kCellsPerPoint = 8.0;  ///< At most; each takes four bytes.
 
 Float4 vector_of(const Eigen::Vector3f& v) { return Float4{v.x(), v.y(), v.z(), 0.0F}; }
@@ -113,15 +114,16 @@ float PointGrid::to_farthest(const Eigen::Vector3f& query) const {
   return 1.001F * std::sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]) + slack_;
 }
 
-/// Those of one cell or of cells side by side along x.
+/// Those of one cell or of cells side by side along x. Part of the searches that are compiled for wide
+/// vectors, like `search`.
 template <class Visitor>
-void PointGrid::visit(std::uint32_t begin, std::uint32_t end, const Eigen::Vector3f& query,
-                      Visitor& visitor) const {
+[[gnu::always_inline]] inline void PointGrid::visit(std::uint32_t begin, std::uint32_t end,
+                                                    const Eigen::Vector3f& query, Visitor& visitor) const {
   for (std::uint32_t i = begin; i < end; i += kLanes) {
-    const Float4 dx = simd::load4(&x_[i]) - query.x();
-    const Float4 dy = simd::load4(&y_[i]) - query.y();
-    const Float4 dz = simd::load4(&z_[i]) - query.z();
-    const Float4 squared = dx * dx + dy * dy + dz * dz;
+    const Float8 dx = reinterpret_cast<const Float8&>(x_[i]) - query.x();
+    const Float8 dy = reinterpret_cast<const Float8&>(y_[i]) - query.y();
+    const Float8 dz = reinterpret_cast<const Float8&>(z_[i]) - query.z();
+    const Float8 squared = dx * dx + dy * dy + dz * dz;
     if (!simd::any(squared <= visitor.bound)) continue;
     float distances[kLanes];
     std::memcpy(distances, &squared, sizeof(distances));
@@ -133,7 +135,7 @@ void PointGrid::visit(std::uint32_t begin, std::uint32_t end, const Eigen::Vecto
 
 /// The cell of the query first: what is found there narrows the rest.
 template <class Visitor>
-void PointGrid::search(const Eigen::Vector3f& query, Visitor& visitor) const {
+[[gnu::always_inline]] inline void PointGrid::search(const Eigen::Vector3f& query, Visitor& visitor) const {
   const Float4 q = vector_of(query);
   const Float4 num = __builtin_convertvector(num_cells_, Float4);
   const Float4 at = cells_to(q);
@@ -163,7 +165,8 @@ void PointGrid::search(const Eigen::Vector3f& query, Visitor& visitor) const {
   }
 }
 
-std::optional<Neighbor> PointGrid::nearest(const Eigen::Vector3f& query, float max_distance) const {
+ADIT_WIDE_VECTORS std::optional<Neighbor> PointGrid::nearest(const Eigen::Vector3f& query,
+                                                             float max_distance) const {
   if (index_.empty() || !query.allFinite()) return {};
   for (float reach = std::min(cell_size_, max_distance);; reach = std::min(2.0F * reach, max_distance)) {
     NearestVisitor visitor{reach * reach, {}};
@@ -172,7 +175,8 @@ std::optional<Neighbor> PointGrid::nearest(const Eigen::Vector3f& query, float m
   }
 }
 
-std::optional<NearestAlone> PointGrid::nearest_alone(const Eigen::Vector3f& query, float bound) const {
+ADIT_WIDE_VECTORS std::optional<NearestAlone> PointGrid::nearest_alone(const Eigen::Vector3f& query,
+                                                                       float bound) const {
   if (index_.empty() || !query.allFinite()) return {};
   NearestAloneVisitor visitor{.bound = bound};
   search(query, visitor);

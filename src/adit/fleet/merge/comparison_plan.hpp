@@ -14,17 +14,17 @@ namespace adit {
 
 /// What is asked about a place.
 enum class PlaceQuestion : std::uint8_t {
-  agreement,     ///< Whether it agrees; and where it does, by what a displacement shows and how the walls stand.
-  walls,         ///< How the walls stand, where it agrees.
+  agreement,  ///< Whether it agrees; and where it does, by what a displacement shows and how the walls stand.
+  walls,      ///< How the walls stand, where it agrees.
   displacement,  ///< By what a displacement would show, although it differs.
   registration,  ///< Whether registration finds it where nothing is known of it.
 };
 
 /// Two keyframes that stand side by side if the loops are true.
 struct PlannedComparison {
-  std::uint32_t own = 0;       ///< Index of a keyframe of the own map.
-  std::uint32_t theirs = 0;    ///< Of the other robot's map; within one map that of the later keyframe.
-  Pose T_own_theirs;           ///< By the nearest loop and the odometries; a guess for the fit.
+  std::uint32_t own = 0;     ///< Index of a keyframe of the own map.
+  std::uint32_t theirs = 0;  ///< Of the other robot's map; within one map that of the later keyframe.
+  Pose T_own_theirs;         ///< By the nearest loop and the odometries; a guess for the fit.
   PlaceQuestion question = PlaceQuestion::agreement;
 };
 

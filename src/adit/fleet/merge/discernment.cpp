@@ -137,8 +137,7 @@ std::vector<std::vector<PatchOffset>> Discernment::walls_of(const std::vector<Ow
   parallel_for_each(agreeing.size(), [&](std::size_t k) {
     const std::size_t i = agreeing[k];
     const auto& [a, b, T_a_b] = asked[i];
-    out[i] =
-        patch_offsets(scans_.at(a), scans_.at(b), found[i].T_a_b, chain_.pose(a), config_.registration);
+    out[i] = patch_offsets(scans_.at(a), scans_.at(b), found[i].T_a_b, chain_.pose(a), config_.registration);
   });
   return out;
 }

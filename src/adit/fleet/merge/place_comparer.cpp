@@ -75,8 +75,7 @@ PlaceComparer::Fitted PlaceComparer::fitted(const PlannedComparison& place, cons
   const auto above_limit = [&](const std::vector<DifferingPatch>& patches) {
     std::vector<Vector3> places;
     for (const DifferingPatch& patch : patches)
-      if (patch.num_points > limit)
-        places.push_back(map_.keyframes[place.own].T_odom_base * patch.position);
+      if (patch.num_points > limit) places.push_back(map_.keyframes[place.own].T_odom_base * patch.position);
     return places;
   };
   found.structures = above_limit(fit.agreement.structures);

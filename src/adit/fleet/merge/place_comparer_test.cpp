@@ -81,7 +81,8 @@ TEST(PlaceComparer, WallsKnowTheIntensitiesThatThePeerSent) {
 TEST(PlaceComparer, RegistrationFindsAPlaceAgainWhereItCannotSlide) {
   EXPECT_EQ(compared(kBlock, everything).found_again, FoundAgain::not_asked);
   EXPECT_EQ(compared(kBlock, everything, PlaceQuestion::registration).found_again, FoundAgain::there);
-  EXPECT_NE(compared(kBlock, away_from_the_block, PlaceQuestion::registration).found_again, FoundAgain::there);
+  EXPECT_NE(compared(kBlock, away_from_the_block, PlaceQuestion::registration).found_again,
+            FoundAgain::there);
   EXPECT_EQ(compared({}, everything, PlaceQuestion::registration).found_again, FoundAgain::elsewhere);
 }
 

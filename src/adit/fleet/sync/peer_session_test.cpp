@@ -61,7 +61,8 @@ TEST(PeerSession, GoesFromGreetingToDecided) {
   session.take_views(clouds_of({20}, CloudKind::view));
   EXPECT_TRUE(session.has_comparison());
   session.await_comparison_of({20, 30});
-  EXPECT_EQ(session.request()->indices, std::vector<std::uint32_t>{30}) << "20 has come, 30 was not asked for";
+  EXPECT_EQ(session.request()->indices, std::vector<std::uint32_t>{30})
+      << "20 has come, 30 was not asked for";
   session.await_comparison_of({});
   EXPECT_TRUE(session.views().empty()) << "nothing is kept beyond the check";
   EXPECT_EQ(session.state(), PeerState::decided);
