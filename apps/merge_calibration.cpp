@@ -18,6 +18,7 @@ namespace adit::app {
 namespace {
 
 constexpr const char* kCalibrationSection = "merge-calibration";
+constexpr const char* kPartName = "calibration.part.json";
 
 struct CalibrationOptions {
   ListedWorldsOptions worlds;
@@ -33,7 +34,7 @@ Result<> add(std::vector<JudgedHypothesis>& all, const Result<std::vector<Judged
 }
 
 /// Each world by itself, and with those that follow it in the list, which begins anew at its end. After each,
-/// calibration.json has all so far: a run takes hours.
+/// calibration.part.json has all so far: a run takes hours.
 Result<std::vector<JudgedHypothesis>> measure(const CalibrationStudy& study,
                                               const std::vector<ListedWorld>& worlds, int num_partners) {
   std::vector<JudgedHypothesis> all;
@@ -41,7 +42,7 @@ Result<std::vector<JudgedHypothesis>> measure(const CalibrationStudy& study,
     Result<> done = add(all, hypotheses_within(study, worlds[w]));
     for (std::size_t k = 1; done && k <= static_cast<std::size_t>(num_partners) && k < worlds.size(); ++k)
       done = add(all, hypotheses_between(study, worlds[w], worlds[(w + k) % worlds.size()]));
-    if (done) done = write_bytes(study.folder / "calibration.json", calibration_json(all));
+    if (done) done = write_bytes(study.folder / kPartName, calibration_json(all));
     if (!done) return tl::unexpected(done.error());
   }
   return all;
@@ -60,9 +61,13 @@ Result<> merge_calibration(const CalibrationOptions& options, const Common& comm
   const EvidenceModel& model = config->slam.loops.adaptive.merge_check.evidence;
   std::vector<Table> tables = calibration_tables(*all);
   tables.push_back(evidence_table(model, fitted_values(*all, model)));
-  if (!options.page.empty())
-    if (const Result<> done = write_tables(options.page, kCalibrationSection, tables); !done) return done;
-  if (common.json) std::printf("%s", calibration_json(*all).c_str());
+  const std::string json = calibration_json(*all);
+  Result<> done = write_bytes(folder / "calibration.json", json);
+  if (done && !options.page.empty()) done = write_tables(options.page, kCalibrationSection, tables);
+  if (!done) return done;
+  std::error_code ignored;
+  std::filesystem::remove(folder / kPartName, ignored);
+  if (common.json) std::printf("%s", json.c_str());
   for (const Table& table : tables)
     if (!common.json) std::printf("%s\n", text_of(table).c_str());
   return {};

@@ -10,8 +10,9 @@
 #include <cstdint>
 
 /// ADIT_WIDE_VECTORS before a function definition: the compiler makes two versions of it, one for AVX2, and
-/// the program takes the widest that the machine has. Meant for plain loops over arrays without aliasing;
-/// only where each output is computed on its own (no reordered sums) are the bytes the same on all machines.
+/// the program takes the widest that the machine has. Meant for plain loops over arrays without aliasing, and
+/// for searches whose helpers are all `always_inline`, as others stay narrow; only where each output is
+/// computed on its own (no reordered sums) are the bytes the same on all machines.
 /// Sanitizers do not survive the resolver functions that run before them.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
@@ -40,8 +41,8 @@ struct Unaligned {
 /// bytes, on every machine, whether it has registers of 32 bytes or not.
 using Double4 = Unaligned<double, 4>::Type;
 
-/// Eight floats or integers anywhere in memory: one register where the machine has AVX2 and the function is
-/// compiled for it (ADIT_WIDE_VECTORS), else two. Not to be passed or returned by value.
+/// Eight floats or integers of 32 bits anywhere in memory: one register where the machine has AVX2 and the
+/// function is compiled for it (ADIT_WIDE_VECTORS), else two. Not to be passed or returned by value.
 ///@{
 using Float8 = Unaligned<float, 8>::Type;
 using Int8 = Unaligned<std::int32_t, 8>::Type;
@@ -78,9 +79,9 @@ using Int8 = Unaligned<std::int32_t, 8>::Type;
 
 /// The same of eight lanes.
 [[nodiscard, gnu::always_inline]] inline bool any(const Int8& mask) {
-  using Quarters [[gnu::vector_size(32)]] = std::uint64_t;
-  const auto quarters = reinterpret_cast<Quarters>(mask);
-  return (quarters[0] | quarters[1] | quarters[2] | quarters[3]) != 0;
+  using Words [[gnu::vector_size(32)]] = std::uint64_t;
+  const auto words = reinterpret_cast<Words>(mask);
+  return (words[0] | words[1] | words[2] | words[3]) != 0;
 }
 
 /// The values of an array, four at a time.

@@ -115,8 +115,13 @@ Agent::Replies Agent::on(RobotId from, const Hello& theirs) {
   append(replies, ledger_.news_for(from, theirs));
   const auto known = std::ranges::find(theirs.known, map_->id, &Hello::Known::robot);
   const std::uint32_t num_known_places = known == theirs.known.end() ? 0 : known->num_places;
-  // Clouds that were asked for in an earlier meeting and never came are asked for again.
-  append(replies, searches(from) ? request_of(session) : places_since(*map_, num_known_places));
+  if (!searches(from)) {
+    append(replies, places_since(*map_, num_known_places));
+  } else if (session.state() == PeerState::comparing) {
+    append(replies, go_on_checking(from));
+  } else {  // clouds that were asked for in an earlier meeting and never came are asked for again
+    append(replies, request_of(session));
+  }
   return replies;
 }
 
@@ -235,6 +240,8 @@ Agent::Replies Agent::begin_check(RobotId peer) {
     if (ends.first.robot == map_->id && ends.second.robot == peer) loops.push_back(loop);
   checks_.insert_or_assign(peer,
                            checker_of(without_sliding(std::move(loops)), chain_by(map_->id), chain_by(peer)));
+  sessions_[peer].await_comparison_of({});  // the peer's map may have grown since a check that was broken off
+  for (auto& [robot, session] : sessions_) session.forget_views();
   return go_on_checking(peer);
 }
 

@@ -65,7 +65,7 @@ Fields fields_of(AgentConfig& config);
 ///    r (0.4 n + 0.6 (max_candidates + r candidates_per_peer)) kB;
 ///  - the descriptors of one peer at a time, 6 kB per keyframe, until they have been searched;
 ///  - the features of its own keyframes, at most FeatureStore::kMaxBytes, and under MergePolicy::adaptive the
-///    surfaces that it compares, at most ViewStore::kMaxBytes and ScanStore::kMaxBytes.
+///    surfaces that it compares, at most ViewStore::kMaxBytes and ScanStore::kMaxBytes;
 ///  - what one peer saw at the places that a check compares, some tens of megabytes, until the check is over.
 /// Other clouds are asked for, registered and forgotten.
 class Agent {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <set>
 
 #include "adit/core/parallel.hpp"
 #include "adit/fleet/agent.hpp"
@@ -178,6 +179,38 @@ TEST(AdaptiveAgent, ASearchWaitsForAGraphThatWasLost) {
   EXPECT_GT(fleet.agents[0].known().loops.size(), 0U);
   ASSERT_EQ(fleet.agents[1].known().checks.size(), 1U);
   EXPECT_TRUE(fleet.agents[0].known().checks.begin()->second.accepted);
+}
+
+// Every third part of the views is lost, and the robots meet again until the check is over.
+TEST(AdaptiveAgent, AsksForAViewOnceUnlessItIsLost) {
+  TwoRobots fleet(3, adaptive());
+  std::vector<std::uint32_t> asked;  // views, in the order of the requests
+  int num_answers = 0;
+  const auto meet = [&](bool lose) {
+    std::deque<Message> queue;
+    for (const Message& message : fleet.agents[0].meet({1})) queue.push_back(message);
+    for (int budget = 10000; !queue.empty() && budget > 0; --budget) {
+      const Message message = queue.front();
+      queue.pop_front();
+      if (const auto* request = std::get_if<CloudRequest>(&message.body);
+          request != nullptr && request->kind == CloudKind::view)
+        asked.insert(asked.end(), request->indices.begin(), request->indices.end());
+      const auto* clouds = std::get_if<Clouds>(&message.body);
+      if (clouds != nullptr && clouds->kind == CloudKind::view && lose && num_answers++ % 3 == 0) continue;
+      for (const Message& reply : fleet.agents[message.to.value].on(message)) queue.push_back(reply);
+    }
+  };
+  meet(false);
+  ASSERT_EQ(fleet.agents[1].known().checks.size(), 1U);
+  const MergeCheck check = fleet.agents[1].known().checks.begin()->second;
+  EXPECT_GT(asked.size(), 8U);
+  EXPECT_EQ(std::set(asked.begin(), asked.end()).size(), asked.size());
+
+  fleet = TwoRobots(3, adaptive());
+  for (int meeting = 0; meeting < 20 && fleet.agents[1].known().checks.empty(); ++meeting) meet(true);
+  ASSERT_EQ(fleet.agents[1].known().checks.size(), 1U);
+  EXPECT_GT(num_answers, 1);
+  EXPECT_EQ(fleet.agents[1].known().checks.begin()->second.evidence, check.evidence);
 }
 
 TEST(AdaptiveAgent, WhatItForgetsOfItsOwnKeyframesChangesNoResult) {

@@ -20,6 +20,16 @@ enum class PlaceQuestion : std::uint8_t {
   registration,  ///< Whether registration finds it where nothing is known of it.
 };
 
+/// Whether that question asks by what a displacement shows, or how walls stand, at a place that `differs`.
+///@{
+[[nodiscard]] constexpr bool asks_for_signs(PlaceQuestion question, bool differs) {
+  return question == PlaceQuestion::displacement || (question == PlaceQuestion::agreement && !differs);
+}
+[[nodiscard]] constexpr bool asks_for_walls(PlaceQuestion question, bool differs) {
+  return (question == PlaceQuestion::walls || question == PlaceQuestion::agreement) && !differs;
+}
+///@}
+
 /// Two keyframes that stand side by side if the loops are true.
 struct PlannedComparison {
   std::uint32_t own = 0;     ///< Index of a keyframe of the own map.

@@ -119,7 +119,7 @@ WallOffsets Discernment::compare_displaced_walls() {
 WallOffsets Discernment::offsets_between(const std::vector<OwnComparison>& pairs) {
   WallOffsets offsets(config_.registration.relief);
   for (const std::vector<PatchOffset>& of_pair : walls_of(pairs, compare(pairs, FitFrom::guess)))
-    offsets.add(of_pair);
+    if (!of_pair.empty()) offsets.add(of_pair);
   return offsets;
 }
 

@@ -146,23 +146,16 @@ void Hypothesis::add_signs(std::size_t which, const ComparedPlace& place) {
   compared[which].signs = place.signs.value_or(DisplacementSigns());
 }
 
-bool Hypothesis::is_finished() const {
-  return compared.size() == plan.size() && to_look_at_again().empty() && to_ask_for_signs().empty();
-}
+bool Hypothesis::is_finished() const { return compared.size() == plan.size() && to_look_at_again().empty(); }
 
 bool Hypothesis::waits_for_second_look(std::size_t which) const {
   return compared[which].differs() && second_looks[which];
 }
 
-bool Hypothesis::waits_for_signs(std::size_t which) const {
-  const ComparedPlace& place = compared[which];
-  return place.differs() && place.is_explained && !place.signs;
-}
-
 std::vector<std::size_t> Hypothesis::to_ask_for_signs() const {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < compared.size(); ++i)
-    if (waits_for_signs(i)) out.push_back(i);
+    if (compared[i].differs() && compared[i].is_explained && !compared[i].signs) out.push_back(i);
   return out;
 }
 
@@ -234,10 +227,9 @@ std::vector<TestedPlace> Hypothesis::places(bool distinctive_only) const {
 std::vector<TestedPlace> Hypothesis::places_at_best(bool distinctive_only) const {
   std::vector<TestedPlace> places;
   for (std::size_t i = 0; i < compared.size(); ++i)
-    places.push_back({plan[i].own, plan[i].theirs,
-                      waits_for_second_look(i) || waits_for_signs(i)
-                          ? PlaceOutcome::distinctive
-                          : outcome(compared[i], distinctive_only)});
+    places.push_back(
+        {plan[i].own, plan[i].theirs,
+         waits_for_second_look(i) ? PlaceOutcome::distinctive : outcome(compared[i], distinctive_only)});
   std::ranges::stable_sort(places, {}, &TestedPlace::a);
   return places;
 }

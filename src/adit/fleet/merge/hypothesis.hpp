@@ -28,7 +28,7 @@ enum class FoundAgain : std::uint8_t {
 /// What comparing the scans of one place has shown.
 struct ComparedPlace {
   double difference = 0.0;      ///< Over the limit of Discernment: above 1 the scans cannot be of one place.
-  bool is_distinctive = false;  ///< A displacement along the tunnel would have shown.
+  bool is_distinctive = false;  ///< A displacement along the tunnel would have shown, where it was asked for.
   std::vector<PatchOffset> offsets = {};  ///< Of their walls from the own ones; none where it differs.
   /// Where structure differs by more than the limit, and where one robot met what may come and go; own
   /// odometry frame, metres.
@@ -40,7 +40,8 @@ struct ComparedPlace {
   /// differ only once what differs is explained.
   std::optional<DisplacementSigns> signs = {};
   bool is_explained = false;  ///< What differs was counted before, at another place, or was not seen again.
-  FoundAgain found_again = FoundAgain::not_asked;  ///< By registration.
+  FoundAgain found_again =
+      FoundAgain::not_asked;  ///< Where registration alone puts it, where that was asked.
   /// Whether the scans cannot be of one place; those with nothing in common differ.
   [[nodiscard]] bool differs() const { return !(difference <= 1.0); }
 };
@@ -91,12 +92,12 @@ struct Hypothesis {
   double known_before = 0.0;      ///< Evidence that does not come from comparing scans.
   std::size_t num_unlocated = 0;  ///< Places that differ as a whole, by a second look, too.
 
-  /// Whether all places of the plan were compared, those that differ a second time where they can be, and
-  /// explained ones for what would show there.
+  /// Whether all places of the plan were compared, those that differ a second time where they can be.
   [[nodiscard]] bool is_finished() const;
   /// Places that differ and have a second look left, once all have been seen: one fit in many fails.
   [[nodiscard]] std::vector<std::size_t> to_look_at_again() const;
-  /// Places whose differences are explained and that were not asked yet by what a displacement would show.
+  /// Places of which it is not known yet by what a displacement would show, although they count since what
+  /// differs there is explained.
   [[nodiscard]] std::vector<std::size_t> to_ask_for_signs() const;
   /// The pairs of scans that agreed at distinctive places, along the path of the other robot.
   [[nodiscard]] std::vector<PlannedComparison> distinctive() const;
@@ -121,12 +122,11 @@ struct Hypothesis {
   /// What was found at each place; what differs elsewhere leaves the rest of a place to agree. In the order
   /// driven by the own robot; where not `distinctive_only` every place that agrees counts as distinctive.
   [[nodiscard]] std::vector<TestedPlace> places(bool distinctive_only) const;
-  /// The same if all that is left to ask about these places showed that they agree, and are distinctive.
+  /// The same if all second looks that are left showed that places agree, and are distinctive.
   [[nodiscard]] std::vector<TestedPlace> places_at_best(bool distinctive_only) const;
 
  private:
   [[nodiscard]] bool waits_for_second_look(std::size_t which) const;
-  [[nodiscard]] bool waits_for_signs(std::size_t which) const;
   [[nodiscard]] PlaceOutcome outcome(const ComparedPlace& place, bool distinctive_only) const;
   [[nodiscard]] bool shows_beside_changes(const ComparedPlace& place) const;
   /// Counts what differs at a place; true if there is something and all of it had been counted before.

@@ -230,10 +230,12 @@ std::optional<std::size_t> MergeChecker::whose_places_to_find_again() const {
 }
 
 std::optional<MergeChecker::Step> MergeChecker::next_step() const {
+  // At once, of refuted hypotheses too: all that is decided and told reads it.
+  for (std::size_t i = 0; i < hypotheses_.size(); ++i)
+    if (!hypotheses_[i].to_ask_for_signs().empty()) return Step{Stage::signs, i};
   if (const auto which = to_go_on_with()) {
     const Hypothesis& h = hypotheses_[*which];
-    if (h.compared.size() < h.plan.size()) return Step{Stage::places, *which};
-    return Step{h.to_look_at_again().empty() ? Stage::signs : Stage::second_looks, *which};
+    return Step{h.compared.size() < h.plan.size() ? Stage::places : Stage::second_looks, *which};
   }
   if (const auto which = whose_walls_to_compare()) return Step{Stage::walls, *which};
   if (const auto which = whose_places_to_find_again()) return Step{Stage::find_again, *which};

@@ -69,7 +69,7 @@ class MergeChecker {
   [[nodiscard]] std::optional<UndecidedStretch> undecided() const;
 
  private:
-  /// What is compared of a hypothesis, in this order.
+  /// What is compared of a hypothesis, in this order; signs whenever what differs at a place is explained.
   enum class Stage : std::uint8_t { places, second_looks, signs, walls, find_again };
   struct Step {
     Stage stage = Stage::places;

@@ -14,14 +14,14 @@ namespace adit {
 namespace {
 
 /// What the peer saw at a keyframe, and beside it.
-SeenSurface view_of(const Clouds::Cloud& received, const RegistrationConfig& config) {
+SeenSurface received_view(const Clouds::Cloud& received, const RegistrationConfig& config) {
   PointCloud all;
   all.points = received.points;
   all.points.insert(all.points.end(), received.beside.begin(), received.beside.end());
   return view_of(all, received.viewpoint.cast<double>(), config);
 }
 
-SearchableSurface scan_of(const Clouds::Cloud& received, const RegistrationConfig& config) {
+SearchableSurface received_scan(const Clouds::Cloud& received, const RegistrationConfig& config) {
   PointCloud scan;
   scan.points = received.points;
   scan.intensities = received.intensities;
@@ -62,14 +62,14 @@ FoundAgain PlaceComparer::found_again(const SeenSurface& own, const SeenSurface&
   return is_there ? FoundAgain::there : FoundAgain::elsewhere;
 }
 
-PlaceComparer::Fitted PlaceComparer::fitted(const PlannedComparison& place, const SeenSurface& theirs) const {
+PlaceComparer::Fitted PlaceComparer::fit(const PlannedComparison& place, const SeenSurface& theirs) const {
   const double limit = discernment_.limit();
   const SeenSurface& own = discernment_.views().at(place.own);
-  const LocalFit fit = fit_near(own, theirs, place.T_own_theirs, limit, registration_);
-  Fitted out{{fit.agreement.largest_difference / limit}, fit.T_a_b};
+  const LocalFit near = fit_near(own, theirs, place.T_own_theirs, limit, registration_);
+  Fitted out{{near.agreement.largest_difference / limit}, near.T_a_b};
   ComparedPlace& found = out.place;
   if (place.question == PlaceQuestion::registration) {  // all else was compared before
-    found.found_again = found.differs() ? FoundAgain::elsewhere : found_again(own, theirs, fit.T_a_b);
+    found.found_again = found.differs() ? FoundAgain::elsewhere : found_again(own, theirs, near.T_a_b);
     return out;
   }
   const auto above_limit = [&](const std::vector<DifferingPatch>& patches) {
@@ -78,8 +78,8 @@ PlaceComparer::Fitted PlaceComparer::fitted(const PlannedComparison& place, cons
       if (patch.num_points > limit) places.push_back(map_.keyframes[place.own].T_odom_base * patch.position);
     return places;
   };
-  found.structures = above_limit(fit.agreement.structures);
-  found.things = above_limit(fit.agreement.things);
+  found.structures = above_limit(near.agreement.structures);
+  found.things = above_limit(near.agreement.things);
   return out;
 }
 
@@ -93,14 +93,12 @@ std::vector<PlaceComparer::Fitted> PlaceComparer::compare_views(const std::vecto
   };
   prepare(own_keyframes(asked));
   std::vector<Fitted> found(asked.size());
-  parallel_for_each(asked.size(), [&](std::size_t i) { found[i] = fitted(asked[i], theirs(i)); });
+  parallel_for_each(asked.size(), [&](std::size_t i) { found[i] = fit(asked[i], theirs(i)); });
 
   // What a displacement would show is asked of few places that differ, and most do.
   std::vector<std::size_t> which;
   for (std::size_t i = 0; i < asked.size(); ++i)
-    if (asked[i].question == PlaceQuestion::displacement ||
-        (asked[i].question == PlaceQuestion::agreement && !found[i].place.differs()))
-      which.push_back(i);
+    if (asks_for_signs(asked[i].question, found[i].place.differs())) which.push_back(i);
   const std::vector<std::uint32_t> own = own_keyframes(picked(asked, which));
   const std::vector<DisplacementSigns> signs = discernment_.displacement_signs(own);
   std::vector<std::uint32_t> displaced;
@@ -130,9 +128,7 @@ std::vector<std::size_t> PlaceComparer::those_with_walls(const std::vector<Plann
                                                          const std::vector<Fitted>& found) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < asked.size(); ++i)
-    if ((asked[i].question == PlaceQuestion::agreement || asked[i].question == PlaceQuestion::walls) &&
-        !found[i].place.differs())
-      out.push_back(i);
+    if (asks_for_walls(asked[i].question, found[i].place.differs())) out.push_back(i);
   return out;
 }
 
@@ -146,7 +142,7 @@ std::vector<ComparedPlace> PlaceComparer::with_views(const std::vector<PlannedCo
                                                      const PeerSession::Views& views) {
   std::vector<std::optional<SeenSurface>> theirs(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
-    theirs[i].emplace(view_of(views.at(asked[i].theirs), registration_));
+    theirs[i].emplace(received_view(views.at(asked[i].theirs), registration_));
   });
   std::vector<Fitted> found =
       compare_views(asked, [&](std::size_t i) -> const SeenSurface& { return *theirs[i]; }, {});
@@ -154,7 +150,7 @@ std::vector<ComparedPlace> PlaceComparer::with_views(const std::vector<PlannedCo
   discernment_.scans().prepare(own_keyframes(picked(asked, with_walls)));
   parallel_for_each(with_walls.size(), [&](std::size_t k) {
     const std::size_t i = with_walls[k];
-    add_walls(asked[i], scan_of(views.at(asked[i].theirs), registration_), found[i]);
+    add_walls(asked[i], received_scan(views.at(asked[i].theirs), registration_), found[i]);
   });
   return places_of(std::move(found));
 }

@@ -42,7 +42,7 @@ class PlaceComparer {
                                                   const ViewOfTheirs& theirs,
                                                   const std::vector<std::uint32_t>& kept);
   /// The own view has been prepared.
-  [[nodiscard]] Fitted fitted(const PlannedComparison& place, const SeenSurface& theirs) const;
+  [[nodiscard]] Fitted fit(const PlannedComparison& place, const SeenSurface& theirs) const;
   /// Whether what the peer saw would agree with what was seen some metres on, too, as if the robot stood
   /// there; those views have been prepared. Own scans may tell those places apart where two unlike sensors,
   /// by what both see, cannot.

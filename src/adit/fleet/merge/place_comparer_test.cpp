@@ -93,6 +93,15 @@ TEST(PlaceComparer, ABlockThatOnlyOneTubeHasDiffers) {
   EXPECT_TRUE(compared({}, everything, PlaceQuestion::displacement).signs);
 }
 
+TEST(PlaceComparer, ABlockThatBothSeeShowsBesideOneThatOnlyThePeerSees) {
+  std::vector<test::Box> with_another = kBlock;
+  with_another.push_back({{27.0, -4.0, -4.0}, {28.5, -1.0, 4.0}});
+  EXPECT_TRUE(compared(with_another, everything).differs());
+  const ComparedPlace place = compared(with_another, everything, PlaceQuestion::displacement);
+  ASSERT_TRUE(place.signs);
+  EXPECT_FALSE(place.signs->empty());
+}
+
 TEST(PlaceComparer, OnlyWallsAreComparedWhereOnlyTheyAreAskedFor) {
   const ComparedPlace place = compared(kBlock, everything, PlaceQuestion::walls);
   EXPECT_FALSE(place.offsets.empty());

@@ -81,8 +81,11 @@ std::optional<CloudRequest> PeerSession::request() const {
 void PeerSession::await_comparison_of(std::vector<std::uint32_t> keyframes) {
   constexpr std::size_t kMaxViews = 512;  // some tens of megabytes
   to_compare_ = std::move(keyframes);
-  if (to_compare_.empty() || views_.size() > kMaxViews)
-    std::erase_if(views_, [&](const auto& view) { return !awaits(view.first); });
+  if (to_compare_.empty() || views_.size() > kMaxViews) forget_views();
+}
+
+void PeerSession::forget_views() {
+  std::erase_if(views_, [&](const auto& view) { return !awaits(view.first); });
 }
 
 bool PeerSession::awaits(std::uint32_t view) const {

@@ -59,6 +59,8 @@ class PeerSession {
   /// The peer's keyframes whose views the merge check needs; none ends the comparison, and all views are
   /// forgotten.
   void await_comparison_of(std::vector<std::uint32_t> keyframes);
+  /// Forgets views that are not awaited; they are asked for again when they are.
+  void forget_views();
 
   /// The clouds to ask for next.
   [[nodiscard]] std::optional<CloudRequest> request() const;

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numeric>
+
 namespace adit {
 namespace {
 
@@ -87,6 +90,25 @@ TEST(PeerSession, ForgottenPlacesAreAskedForAgain) {
   session.forget_places();
   EXPECT_EQ(session.num_places(), 0U);
   EXPECT_EQ(session.state(), PeerState::greeting);
+}
+
+TEST(PeerSession, KeepsABoundedNumberOfViewsAndAllThatAreAwaited) {
+  PeerSession session;
+  std::size_t most = 0;
+  for (std::uint32_t first = 0; first < 2000; first += 16) {
+    std::vector<std::uint32_t> keyframes(16);
+    std::iota(keyframes.begin(), keyframes.end(), first);
+    session.await_comparison_of(keyframes);
+    session.take_views(clouds_of(keyframes, CloudKind::view));
+    session.await_comparison_of(keyframes);
+    ASSERT_TRUE(session.has_comparison());
+    most = std::max(most, session.views().size());
+  }
+  EXPECT_GT(most, 100U);
+  EXPECT_LE(most, 600U);
+  session.forget_views();
+  EXPECT_TRUE(session.has_comparison());
+  EXPECT_EQ(session.views().size(), 16U);
 }
 
 TEST(PeerSession, WhatThePeerDoesNotHaveBlocksNothing) {
