@@ -63,7 +63,7 @@ class PointGrid {
   simd::Float4 low_ = {};             ///< Corner of the box; the fourth lane is 0, as in all that follow.
   simd::Int4 num_cells_ = {};         ///< Along each axis; 1 in the fourth lane.
   std::vector<std::uint32_t> first_;  ///< Point of each cell, x fastest, then y; and the number of points.
-  std::vector<float> x_, y_, z_;      ///< By cell, then index; with NaN behind the last, to be read in eights.
+  std::vector<float> x_, y_, z_;  ///< By cell, then index; with NaN behind the last, to be read in eights.
   std::vector<std::uint32_t> index_;  ///< Of each in the cloud.
 };
 
