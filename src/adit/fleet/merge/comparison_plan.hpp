@@ -35,7 +35,7 @@ struct PlannedComparison {
   std::uint32_t own = 0;     ///< Index of a keyframe of the own map.
   std::uint32_t theirs = 0;  ///< Of the other robot's map; within one map that of the later keyframe.
   Pose T_own_theirs;         ///< By the nearest loop and the odometries; a guess for the fit.
-  PlaceQuestion question = PlaceQuestion::agreement;
+  PlaceQuestion question = PlaceQuestion::agreement;  ///< What is to be found out.
 };
 
 /// Of each place.
