@@ -105,7 +105,7 @@ const Side info_large_adit("io/info_10gb", "adit", []() -> Work {
 
 /// Peak memory stands beside the times.
 const Growth by_length(
-    "io/by_length", "Decoding all clouds of a recording", "GB", {0.5, 1, 2, 4},
+    "io/by_length", "Decoding all clouds of a recording, a gigabyte", "GB", {0.5, 1, 2, 4},
     [](double gigabytes) -> Work {
       const auto num_scans = static_cast<std::size_t>(gigabytes * 1000.0 / kMegabytesOfScan);
       const auto bag = std::make_shared<const TemporaryBag>(MadeBag{num_scans, "", true});
