@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <optional>
 #include <sstream>
+#include <type_traits>
 
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
@@ -73,7 +75,12 @@ class TableReader {
 
   template <class T>
   T value(const char* key) {
-    const std::optional<T> found = table_ == nullptr ? std::nullopt : (*table_)[key].value<T>();
+    std::optional<T> found;
+    if constexpr (std::is_same_v<T, std::int64_t>) {  // a fraction beyond its range would be cast to it
+      if (table_ != nullptr) found = (*table_)[key].value_exact<T>();
+    } else if (table_ != nullptr) {
+      found = (*table_)[key].value<T>();
+    }
     is_bad_ |= !found;
     return found.value_or(T{});
   }

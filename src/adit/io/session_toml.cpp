@@ -172,7 +172,7 @@ std::vector<RobotProvenance> mapping_in(const toml::table& table) {
     if (entry == nullptr) continue;
     robots.push_back({(*entry)["name"].value_or(std::string()), (*entry)["odometry"].value_or(std::string()),
                       (*entry)["lidar"].value_or(std::string()),
-                      static_cast<std::size_t>((*entry)["scans"].value_or(std::int64_t{0})),
+                      static_cast<std::size_t>((*entry)["scans"].value_exact<std::int64_t>().value_or(0)),
                       (*entry)["failed"].value_or(std::string())});
   }
   return robots;
@@ -186,7 +186,7 @@ Provenance provenance_in(const toml::table& table) {
   provenance.world = table["world"].value_or(std::string());
   provenance.profile = table["profile"].value_or(std::string("default"));
   provenance.settings = strings_of(table["settings"].node());
-  provenance.seed = static_cast<std::uint64_t>(table["seed"].value_or(std::int64_t{0}));
+  provenance.seed = static_cast<std::uint64_t>(table["seed"].value_exact<std::int64_t>().value_or(0));
   provenance.robots = mapping_in(table);
   if (const toml::table* configuration = table["configuration"].as_table()) {
     std::ostringstream text;
@@ -209,7 +209,7 @@ std::uint32_t count_of(std::int64_t value) {
 }
 
 std::uint32_t count_in(const toml::table& table, const char* key) {
-  return count_of(table[key].value_or(std::int64_t{0}));
+  return count_of(table[key].value_exact<std::int64_t>().value_or(0));
 }
 
 MergeHypothesis hypothesis_in(const toml::table& table) {
@@ -233,8 +233,8 @@ MergeHypothesis hypothesis_in(const toml::table& table) {
   if (const toml::array* loops = table["loops"].as_array())
     for (const toml::node& node : *loops)
       if (const toml::array* loop = node.as_array(); loop != nullptr && loop->size() == 2)
-        h.loops.emplace_back(count_of((*loop)[0].value_or(std::int64_t{0})),
-                             count_of((*loop)[1].value_or(std::int64_t{0})));
+        h.loops.emplace_back(count_of((*loop)[0].value_exact<std::int64_t>().value_or(0)),
+                             count_of((*loop)[1].value_exact<std::int64_t>().value_or(0)));
   return h;
 }
 
