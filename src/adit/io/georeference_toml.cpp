@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <type_traits>
 
