@@ -7,7 +7,6 @@
 #include <optional>
 #include <span>
 #include <sstream>
-#include <type_traits>
 
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
@@ -75,14 +74,15 @@ class TableReader {
 
   template <class T>
   T value(const char* key) {
-    std::optional<T> found;
-    if constexpr (std::is_same_v<T, std::int64_t>) {  // a fraction beyond its range would be cast to it
-      if (table_ != nullptr) found = (*table_)[key].value_exact<T>();
-    } else if (table_ != nullptr) {
-      found = (*table_)[key].value<T>();
-    }
+    const std::optional<T> found = table_ == nullptr ? std::nullopt : (*table_)[key].value<T>();
     is_bad_ |= !found;
     return found.value_or(T{});
+  }
+  /// Not `value`: toml++ would cast a fraction, whatever its size.
+  std::int64_t integer(const char* key) {
+    const toml::node* node = table_ == nullptr ? nullptr : table_->get(key);
+    is_bad_ |= node == nullptr || !node->is_integer();
+    return is_bad_ ? 0 : node->as_integer()->get();
   }
   template <std::size_t N>
   std::array<double, N> numbers(const char* key) {
@@ -151,7 +151,7 @@ Result<Georeference> georeference_in(const toml::node& node) {
   const Vector3 translation = table.vector("translation");
   map.covariance = Eigen::Map<const Matrix6>(table.numbers<36>("covariance").data());
   map.chi2 = table.value<double>("chi2");
-  map.redundancy = static_cast<int>(table.value<std::int64_t>("redundancy"));
+  map.redundancy = static_cast<int>(table.integer("redundancy"));
   map.scale_ppm = table.value<double>("scale_ppm");
   map.scale_sigma_ppm = table.value<double>("scale_sigma_ppm");
   TableReader far_end(table.node("far_end"), is_bad);

@@ -163,6 +163,17 @@ TEST(SessionDir, MergesAreReadBackAsTheyWereTested) {
   EXPECT_TRUE(merges->back().check.accepted);
 }
 
+TEST(SessionDir, WhatIsNoIntegerIsNoCount) {
+  const auto scans = [](const std::string& written) {
+    const Result<SessionHeader> header =
+        parse_session_toml("[[mapping]]\nname = 'ada'\nscans = " + written + "\n");
+    return header ? header->provenance.robots.at(0).scans : 1U;
+  };
+  EXPECT_EQ(scans("12"), 12U);
+  for (const char* written : {"1e300", "-1e300", "inf", "nan", "2.5", "-3", "'12'"})
+    EXPECT_EQ(scans(written), 0U) << written;
+}
+
 TEST(SessionDir, APairIsListedAlsoWhereNothingWasTested) {
   Session session = session_of_two();
   session.fleet.checks.clear();

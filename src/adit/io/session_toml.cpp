@@ -163,6 +163,18 @@ void insert_merges(const Session& session, toml::table& table) {
   table.insert("revisits", revisits);
 }
 
+/// 0 for what is not written as an integer: toml++ would cast a fraction, whatever its size.
+std::int64_t integer_of(const toml::node* node) {
+  return node == nullptr ? 0 : node->value_exact<std::int64_t>().value_or(0);
+}
+
+std::uint32_t count_of(const toml::node* node) {
+  return static_cast<std::uint32_t>(
+      std::clamp<std::int64_t>(integer_of(node), 0, std::numeric_limits<std::uint32_t>::max()));
+}
+
+std::uint32_t count_in(const toml::table& table, const char* key) { return count_of(table.get(key)); }
+
 std::vector<RobotProvenance> mapping_in(const toml::table& table) {
   std::vector<RobotProvenance> robots;
   const toml::array* mapping = table["mapping"].as_array();
@@ -171,8 +183,7 @@ std::vector<RobotProvenance> mapping_in(const toml::table& table) {
     const toml::table* entry = node.as_table();
     if (entry == nullptr) continue;
     robots.push_back({(*entry)["name"].value_or(std::string()), (*entry)["odometry"].value_or(std::string()),
-                      (*entry)["lidar"].value_or(std::string()),
-                      static_cast<std::size_t>((*entry)["scans"].value_exact<std::int64_t>().value_or(0)),
+                      (*entry)["lidar"].value_or(std::string()), count_in(*entry, "scans"),
                       (*entry)["failed"].value_or(std::string())});
   }
   return robots;
@@ -186,7 +197,7 @@ Provenance provenance_in(const toml::table& table) {
   provenance.world = table["world"].value_or(std::string());
   provenance.profile = table["profile"].value_or(std::string("default"));
   provenance.settings = strings_of(table["settings"].node());
-  provenance.seed = static_cast<std::uint64_t>(table["seed"].value_exact<std::int64_t>().value_or(0));
+  provenance.seed = static_cast<std::uint64_t>(integer_of(table.get("seed")));
   provenance.robots = mapping_in(table);
   if (const toml::table* configuration = table["configuration"].as_table()) {
     std::ostringstream text;
@@ -201,15 +212,6 @@ HypothesisOutcome outcome_in(const std::string& words) {
   for (const HypothesisOutcome outcome : {accepted, unsure, rival, behind})
     if (words == to_string(outcome)) return outcome;
   return refuted;
-}
-
-std::uint32_t count_of(std::int64_t value) {
-  return static_cast<std::uint32_t>(
-      std::clamp<std::int64_t>(value, 0, std::numeric_limits<std::uint32_t>::max()));
-}
-
-std::uint32_t count_in(const toml::table& table, const char* key) {
-  return count_of(table[key].value_exact<std::int64_t>().value_or(0));
 }
 
 MergeHypothesis hypothesis_in(const toml::table& table) {
@@ -233,8 +235,7 @@ MergeHypothesis hypothesis_in(const toml::table& table) {
   if (const toml::array* loops = table["loops"].as_array())
     for (const toml::node& node : *loops)
       if (const toml::array* loop = node.as_array(); loop != nullptr && loop->size() == 2)
-        h.loops.emplace_back(count_of((*loop)[0].value_exact<std::int64_t>().value_or(0)),
-                             count_of((*loop)[1].value_exact<std::int64_t>().value_or(0)));
+        h.loops.emplace_back(count_of(loop->get(0)), count_of(loop->get(1)));
   return h;
 }
 

@@ -7,16 +7,11 @@
 #include <numeric>
 #include <utility>
 
+#include "adit/core/picked.hpp"
 #include "adit/fleet/search/path.hpp"
 
 namespace adit {
 namespace {
-
-std::vector<PcmLoop> picked(const std::vector<PcmLoop>& loops, const std::vector<std::size_t>& indices) {
-  std::vector<PcmLoop> out;
-  for (const std::size_t i : indices) out.push_back(loops[i]);
-  return out;
-}
 
 /// Metres between where two sets of loops put the other robot, at the loops of the second.
 double apart_m(const std::vector<PcmLoop>& first, const std::vector<PcmLoop>& second,

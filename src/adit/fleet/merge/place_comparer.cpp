@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "adit/core/parallel.hpp"
+#include "adit/core/picked.hpp"
 #include "adit/registration/features.hpp"
 #include "adit/registration/registration.hpp"
 
@@ -26,13 +27,6 @@ SearchableSurface received_scan(const Clouds::Cloud& received, const Registratio
   scan.points = received.points;
   scan.intensities = received.intensities;
   return scan_of(scan, received.viewpoint.cast<double>(), config);
-}
-
-std::vector<PlannedComparison> picked(const std::vector<PlannedComparison>& asked,
-                                      const std::vector<std::size_t>& which) {
-  std::vector<PlannedComparison> out;
-  for (const std::size_t i : which) out.push_back(asked[i]);
-  return out;
 }
 
 }  // namespace
