@@ -138,5 +138,5 @@ if(ADIT_BUILD_TESTS)
   # Where tests look for the real data sets; a test whose file is absent says SKIPPED.
   add_library(adit_test_support INTERFACE)
   target_include_directories(adit_test_support INTERFACE ${PROJECT_SOURCE_DIR}/tests)
-  target_compile_definitions(adit_test_support INTERFACE ADIT_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data")
+  target_compile_definitions(adit_test_support INTERFACE ADIT_SHARED_DATA="${ADIT_DATA_DIR}")
 endif()
