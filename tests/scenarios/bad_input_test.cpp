@@ -58,7 +58,7 @@ TEST_F(BadInput, MissingFiles) {
   expect_refused("slam " + absent + ".mcap --out " + out(), 1, "absent.mcap: no such file");
   expect_refused("slam " + absent + ".yaml --out " + out(), 1, "absent.yaml: no such file");
   expect_refused("register " + absent + ".ply " + absent + ".ply", 1, "absent.ply: no such file");
-  expect_refused("solve " + absent + ".g2o", 1, "absent.g2o: cannot be opened");
+  expect_refused("solve " + absent + ".g2o", 1, "absent.g2o: no such file");
   expect_refused("convert " + absent + ".tum " + existing(), 1, "absent.tum: no such file");
   expect_refused("simulate --routes " + absent + ".yaml --out " + out(), 1, "absent.yaml: no such file");
 }

@@ -258,7 +258,8 @@ ShownRobot shown_robot(const Bag& bag, const std::filesystem::path& folder, cons
   const auto decode = [](std::string_view message, MessageEncoding encoding) {
     return ros::decode_transforms(message, encoding);
   };
-  for (const std::vector<ros::TransformMessage>& both : messages_of(bag, "/tf", decode)) {
+  for (const ros::TransformsMessage& message : messages_of(bag, "/tf", decode)) {
+    const std::vector<ros::TransformMessage>& both = message.links;
     EXPECT_EQ(both.size(), 2U);
     EXPECT_EQ(both[0].frame, "map");
     EXPECT_EQ(both[0].child, both[1].frame);

@@ -117,6 +117,13 @@ class ForeignFile {
     for (const auto& [stamp, cloud] : clouds) message(id, stamp + recorded_after, cloud);
     return *this;
   }
+  /// Transforms or odometry (`type` as in ros_messages.hpp) as they stand.
+  ForeignFile& messages_of(std::string_view type, const std::string& topic,
+                           const std::vector<std::string>& contents) {
+    const std::uint16_t id = channel(type == ros::kOdometry ? 2 : 3, topic);
+    for (std::size_t i = 0; i < contents.size(); ++i) message(id, make_scan(i, 0).stamp, contents[i]);
+    return *this;
+  }
   ForeignFile& joints(const std::string& topic, const std::vector<ros::JointStateMessage>& messages) {
     const std::uint16_t id = channel(6, topic);
     for (const ros::JointStateMessage& joints : messages) message(id, joints.stamp, encoded(joints));

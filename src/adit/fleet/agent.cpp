@@ -115,19 +115,34 @@ Agent::Replies Agent::on(RobotId from, const Hello& theirs) {
   append(replies, ledger_.news_for(from, theirs));
   const auto known = std::ranges::find(theirs.known, map_->id, &Hello::Known::robot);
   const std::uint32_t num_known_places = known == theirs.known.end() ? 0 : known->num_places;
-  if (!searches(from)) {
-    append(replies, places_since(*map_, num_known_places));
-  } else if (session.state() == PeerState::comparing) {
-    append(replies, go_on_checking(from));
-  } else {  // clouds that were asked for in an earlier meeting and never came are asked for again
-    append(replies, request_of(session));
-  }
+  append(replies, searches(from) ? resume(from) : places_since(*map_, num_known_places));
   return replies;
+}
+
+Agent::Replies Agent::resume(RobotId peer) {
+  PeerSession& session = sessions_[peer];
+  switch (session.state()) {
+    case PeerState::greeting:
+    case PeerState::receiving_places:
+      break;
+    case PeerState::awaiting_path:  // which may have come by way of a third robot
+      return search_when_ready(peer);
+    case PeerState::awaiting_clouds:
+      return request_of(session);
+    case PeerState::comparing:
+      return go_on_checking(peer);
+    case PeerState::decided:
+      return check_if_due(peer);
+  }
+  return {};
 }
 
 Agent::Replies Agent::on(RobotId from, const GraphPart& part) {
   const bool may_be_awaited = ledger_.take(part) && part.owner == from && searches(from);
-  return may_be_awaited ? search_when_ready(from) : Replies{};
+  if (!may_be_awaited) return {};
+  Replies replies = search_when_ready(from);
+  if (sessions_[from].state() == PeerState::decided) append(replies, check_if_due(from));
+  return replies;
 }
 
 Agent::Replies Agent::on(RobotId /*from*/, const Loops& part) {
@@ -155,10 +170,14 @@ Agent::Replies Agent::on(RobotId from, const Places& part) {
     return !map_->places.empty() && have_same_grid(place.context, map_->places.front());
   });
   if (!searches(from) || !are_comparable) return {};
-  for (auto& [robot, other] :
-       sessions_)  // one transfer at a time: another one starts anew in a later meeting
-    if (robot != from) other.forget_places();
-  return sessions_[from].take(part) ? search_when_ready(from) : Replies{};
+  PeerSession& session = sessions_[from];
+  const std::uint32_t num_before = session.num_places();
+  const bool is_next = session.take(part);
+  // One transfer at a time: another one starts anew in a later meeting. A part that brings nothing ends none.
+  if (session.num_places() > num_before)
+    for (auto& [robot, other] : sessions_)
+      if (robot != from) other.forget_places();
+  return is_next ? search_when_ready(from) : Replies{};
 }
 
 Agent::Replies Agent::search_when_ready(RobotId peer) {
@@ -168,7 +187,7 @@ Agent::Replies Agent::search_when_ready(RobotId peer) {
   std::vector<LoopCandidate> found = candidates_with(peer);
   if (is_adaptive() && !found.empty()) found = search_->most_promising(std::move(found));
   await_clouds(session, std::move(found));
-  return request_of(session);
+  return session.state() == PeerState::decided ? check_if_due(peer) : request_of(session);
 }
 
 std::vector<LoopCandidate> Agent::candidates_with(RobotId peer) {
@@ -234,12 +253,27 @@ Agent::Replies Agent::register_clouds(RobotId peer, const Clouds& clouds) {
   return replies;
 }
 
-Agent::Replies Agent::begin_check(RobotId peer) {
+std::vector<LoopClosure> Agent::loops_with(RobotId peer) const {
   std::vector<LoopClosure> loops;
   for (const auto& [ends, loop] : known().loops)
-    if (ends.first.robot == map_->id && ends.second.robot == peer) loops.push_back(loop);
+    if (ends.first.robot == map_->id && ends.second.robot == peer && known().knows(ends.first) &&
+        known().knows(ends.second))
+      loops.push_back(loop);
+  return loops;
+}
+
+Agent::Replies Agent::check_if_due(RobotId peer) {
+  if (!is_adaptive()) return {};
+  if (checks_.contains(peer)) return go_on_checking(peer);
+  // Before all of the path has come, a check would be of a part of the loops.
+  const bool has_path = sessions_[peer].is_whole(ledger_.num_nodes_of(peer));
+  const bool is_due = has_path && !known().checks.contains({map_->id, peer}) && !loops_with(peer).empty();
+  return is_due ? begin_check(peer) : Replies{};
+}
+
+Agent::Replies Agent::begin_check(RobotId peer) {
   checks_.insert_or_assign(peer,
-                           checker_of(without_sliding(std::move(loops)), chain_by(map_->id), chain_by(peer)));
+                           checker_of(without_sliding(loops_with(peer)), chain_by(map_->id), chain_by(peer)));
   sessions_[peer].await_comparison_of({});  // the peer's map may have grown since a check that was broken off
   for (auto& [robot, session] : sessions_) session.forget_views();
   return go_on_checking(peer);

@@ -125,10 +125,14 @@ class Agent {
   Replies on(RobotId from, const Loops& part);
   Replies on(RobotId from, const MergeChecks& part);
 
+  /// What an earlier meeting has left undone, as far as it can go on.
+  Replies resume(RobotId peer);
   /// Once all places of the peer have come, and the path on which they lie.
   Replies search_when_ready(RobotId peer);
   Replies register_clouds(RobotId peer, const Clouds& clouds);
   Replies begin_check(RobotId peer);
+  /// Where all is searched: the check that an exception or a restart has left undone.
+  Replies check_if_due(RobotId peer);
   Replies compare_clouds(RobotId peer, const Clouds& clouds);
   /// What the check asks for next, beyond what has come; or its verdict.
   Replies go_on_checking(RobotId peer);
@@ -142,6 +146,8 @@ class Agent {
   [[nodiscard]] std::size_t num_tried() const;
   void await_clouds(PeerSession& session, std::vector<LoopCandidate> candidates) const;
   [[nodiscard]] std::vector<LoopCandidate> candidates_with(RobotId peer);
+  /// All that this robot registered whose ends are known, accepted or not.
+  [[nodiscard]] std::vector<LoopClosure> loops_with(RobotId peer) const;
   [[nodiscard]] OdometryChain chain_by(RobotId robot) const;
   [[nodiscard]] Discernment& discernment();
   [[nodiscard]] MergeChecker checker_of(const std::vector<LoopClosure>& loops, const OdometryChain& own,

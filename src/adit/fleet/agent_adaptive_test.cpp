@@ -181,6 +181,73 @@ TEST(AdaptiveAgent, ASearchWaitsForAGraphThatWasLost) {
   EXPECT_TRUE(fleet.agents[0].known().checks.begin()->second.accepted);
 }
 
+// The peer's own messages of its path are lost, and what a third robot says of it answers no Hello of the
+// peer.
+TEST(AdaptiveAgent, ASearchStartsWhereThePathCameByWayOfAThirdRobot) {
+  TwoRobots fleet(3, adaptive());
+  std::vector<Message> lost;
+  const auto meet = [&] {
+    std::deque<Message> queue;
+    for (const Message& message : fleet.agents[0].meet({1})) queue.push_back(message);
+    for (int budget = 10000; !queue.empty() && budget > 0; --budget) {
+      const Message message = queue.front();
+      queue.pop_front();
+      if (message.to == RobotId{0} && std::holds_alternative<GraphPart>(message.body) && lost.empty()) {
+        lost.push_back(message);
+        continue;
+      }
+      for (const Message& reply : fleet.agents[message.to.value].on(message)) queue.push_back(reply);
+    }
+  };
+  meet();
+  ASSERT_EQ(lost.size(), 1U);
+  EXPECT_TRUE(fleet.agents[0].on({{2}, {0}, lost.front().body}).empty());
+  EXPECT_TRUE(fleet.agents[0].known().loops.empty());
+  meet();
+  EXPECT_GT(fleet.agents[0].known().loops.size(), 0U);
+  ASSERT_EQ(fleet.agents[1].known().checks.size(), 1U);
+}
+
+// As after an exception: of what was saved the check is missing. The peer's path comes in that meeting, or
+// has come before by way of a third robot.
+TEST(AdaptiveAgent, ACheckThatWasNeverConcludedIsMadeWhenTheRobotsMeetAgain) {
+  TwoRobots before(3, adaptive());
+  before.meet();
+  const MergeCheck concluded = before.agents[0].known().checks.at({{0}, {1}});
+  const Hello met = std::get<Hello>(before.agents[0].meet({1}).front().body);
+  std::map<RobotId, std::uint32_t> num_places;
+  for (const Hello::Known& known : met.known)
+    if (known.num_places > 0) num_places[known.robot] = known.num_places;
+  std::vector<MessageBody> findings = before.agents[0].findings();
+  std::erase_if(findings, [](const MessageBody& body) { return std::holds_alternative<MergeChecks>(body); });
+  for (const bool knows_path : {false, true}) {
+    TwoRobots fleet(3, adaptive());
+    ASSERT_TRUE(fleet.agents[0].restore(findings, num_places));
+    if (knows_path) {
+      const std::vector<GraphNode>& nodes = before.agents[1].known().robots.at({1}).nodes;
+      EXPECT_TRUE(fleet.agents[0].on({{2}, {0}, GraphPart{{1}, "robot_1", 0, nodes}}).empty());
+    }
+    EXPECT_TRUE(fleet.agents[0].known().checks.empty());
+    fleet.meet();
+    ASSERT_EQ(fleet.agents[1].known().checks.size(), 1U) << knows_path;
+    EXPECT_EQ(fleet.agents[1].known().checks.at({{0}, {1}}).evidence, concluded.evidence);
+    EXPECT_EQ(fleet.agents[0].findings().size(), before.agents[0].findings().size()) << "one check";
+  }
+  // It searches again and may register no more than it has.
+  AgentConfig config = adaptive();
+  config.max_candidates = 6;
+  config.candidates_per_peer = 0;
+  TwoRobots all(3, config);
+  all.meet();
+  findings = all.agents[0].findings();
+  std::erase_if(findings, [](const MessageBody& body) { return std::holds_alternative<MergeChecks>(body); });
+  TwoRobots fleet(3, config);
+  ASSERT_TRUE(fleet.agents[0].restore(findings, {}));
+  fleet.meet();
+  EXPECT_EQ(fleet.agents[0].known().loops.size(), all.agents[0].known().loops.size());
+  EXPECT_EQ(fleet.agents[1].known().checks.size(), 1U);
+}
+
 // Every third part of the views is lost, and the robots meet again until the check is over.
 TEST(AdaptiveAgent, AsksForAViewOnceUnlessItIsLost) {
   TwoRobots fleet(3, adaptive());

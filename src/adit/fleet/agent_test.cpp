@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <limits>
+#include <stdexcept>
 
 #include "adit/core/parallel.hpp"
 #include "support/two_robots.hpp"
@@ -235,6 +238,44 @@ TEST(FeatureStore, ForgetsWhatWasUsedLongestAgoAndKeepsItsBound) {
   for (const std::uint32_t i : {0U, 1U, 2U, 3U}) EXPECT_NO_THROW((void)store.at(i));
   store.prepare({5});
   EXPECT_LE(store.num_bytes(), measure.num_bytes());
+}
+
+TEST(KeyframeStore, WhereOneCannotBeComputedNoneIsKeptThatIsNotCounted) {
+  const test::BoxWorld world(3);
+  const auto map = std::make_shared<const RobotMap>(test::drive(world, {0}, street(0.0, 20.0, 0.0), 0.0));
+  std::atomic<bool> fails = true;
+  KeyframeStore<std::uint32_t> store(
+      map,
+      [&](const RobotMap&, std::uint32_t index) {
+        if (index == 3 && fails) throw std::runtime_error("no memory");
+        return index;
+      },
+      [](std::uint32_t) { return std::size_t{10}; }, 20);
+  EXPECT_THROW(store.prepare({0, 1, 2, 3}), std::runtime_error);
+  fails = false;
+  store.prepare({4, 5, 6});
+  EXPECT_EQ(store.num_bytes(), 30U);
+  store.prepare({0, 3});
+  EXPECT_EQ(store.num_bytes(), 20U);
+  EXPECT_EQ(store.at(3), 3U);
+}
+
+TEST(Agent, PlacesThatBringNothingEndNoTransfer) {
+  TwoRobots fleet;
+  Agent& agent = fleet.agents[0];
+  const Places::Place place{0, test_place(fleet)};
+  const auto num_received = [&](RobotId of) {
+    const Hello hello = std::get<Hello>(agent.meet(of).front().body);
+    const auto known = std::ranges::find(hello.known, of, &Hello::Known::robot);
+    return known == hello.known.end() ? 0U : known->num_places;
+  };
+  EXPECT_TRUE(agent.on({{1}, {0}, Places{0, {place}, false}}).empty());
+  EXPECT_TRUE(agent.on({{2}, {0}, Places{5, {place}, true}}).empty()) << "a part before it was lost";
+  EXPECT_TRUE(agent.on({{2}, {0}, Places{0, {}, true}}).empty());
+  EXPECT_EQ(num_received({1}), 1U);
+  EXPECT_TRUE(agent.on({{2}, {0}, Places{0, {place}, false}}).empty());
+  EXPECT_EQ(num_received({1}), 0U) << "one transfer at a time";
+  EXPECT_EQ(num_received({2}), 1U);
 }
 
 }  // namespace

@@ -133,6 +133,18 @@ template <class Visitor>
   }
 }
 
+/// Those that hold every point whose squared distance is at most `bound`. Part of the searches that are
+/// compiled for wide vectors.
+[[gnu::always_inline]] inline PointGrid::CellRange PointGrid::cells_around(Float4 query, float bound) const {
+  const Float4 num = __builtin_convertvector(num_cells_, Float4);
+  const float reach = 1.0001F * std::sqrt(bound) + slack_;
+  const Float4 low = cells_to(query - reach);
+  const Float4 high = cells_to(query + reach);
+  if (simd::any((low >= num) | (high < 0.0F))) return {};
+  return {__builtin_convertvector(simd::max(low, Float4{}), Int4),
+          __builtin_convertvector(simd::min(high, num - 1.0F), Int4)};
+}
+
 /// The cell of the query first: what is found there narrows the rest.
 template <class Visitor>
 [[gnu::always_inline]] inline void PointGrid::search(const Eigen::Vector3f& query, Visitor& visitor) const {
@@ -146,12 +158,7 @@ template <class Visitor>
     const std::uint32_t* cell = &first_[row_of(own[1], own[2]) + static_cast<std::size_t>(own[0])];
     visit(cell[0], cell[1], query, visitor);
   }
-  const float reach = 1.0001F * std::sqrt(visitor.bound) + slack_;
-  const Float4 low = cells_to(q - reach);
-  const Float4 high = cells_to(q + reach);
-  if (simd::any((low >= num) | (high < 0.0F))) return;
-  const Int4 from = __builtin_convertvector(simd::max(low, Float4{}), Int4);
-  const Int4 to = __builtin_convertvector(simd::min(high, num - 1.0F), Int4);
+  const auto [from, to] = cells_around(q, visitor.bound);
   for (int z = from[2]; z <= to[2]; ++z) {
     for (int y = from[1]; y <= to[1]; ++y) {
       const std::uint32_t* row = &first_[row_of(y, z)];
@@ -183,6 +190,23 @@ ADIT_WIDE_VECTORS std::optional<NearestAlone> PointGrid::nearest_alone(const Eig
   if (!visitor.found_any) return {};
   visitor.best.others_squared_distance = visitor.bound;
   return visitor.best;
+}
+
+/// Point by point, as the sums of `visit` are rounded in another order.
+std::size_t PointGrid::num_nearer(const Eigen::Vector3f& query, float bound) const {
+  if (index_.empty() || !query.allFinite() || !(bound > 0.0F)) return 0;
+  const auto [from, to] = cells_around(vector_of(query), bound);
+  std::size_t num = 0;
+  for (int z = from[2]; z <= to[2]; ++z) {
+    for (int y = from[1]; y <= to[1]; ++y) {
+      const std::uint32_t* row = &first_[row_of(y, z)];
+      for (std::uint32_t i = row[from[0]]; i < row[to[0] + 1]; ++i) {
+        const Eigen::Vector3f point(x_[i], y_[i], z_[i]);
+        num += (point - query).squaredNorm() < bound ? 1 : 0;
+      }
+    }
+  }
+  return num;
 }
 
 std::size_t PointGrid::num_bytes() const {

@@ -45,10 +45,22 @@ class PointGrid {
   /// nearest is; empty where no point is so near.
   [[nodiscard]] std::optional<NearestAlone> nearest_alone(const Eigen::Vector3f& query, float bound) const;
 
+  /// How many points have a squared distance of less than `bound`, square metres, as Eigen's `squaredNorm` of
+  /// the difference rounds it.
+  [[nodiscard]] std::size_t num_nearer(const Eigen::Vector3f& query, float bound) const;
+
   [[nodiscard]] std::size_t size() const { return index_.size(); }  ///< Finite points only.
   [[nodiscard]] std::size_t num_bytes() const;                      ///< About what this takes.
 
  private:
+  /// From one cell to another one along each axis, both included; without cells where `to` is less than
+  /// `from`.
+  struct CellRange {
+    simd::Int4 from = {};
+    simd::Int4 to = {-1, -1, -1, 0};
+  };
+
+  [[nodiscard]] CellRange cells_around(simd::Float4 query, float bound) const;
   [[nodiscard]] simd::Float4 cells_to(simd::Float4 position) const;
   [[nodiscard]] std::size_t row_of(int y, int z) const;
   [[nodiscard]] float to_farthest(const Eigen::Vector3f& query) const;

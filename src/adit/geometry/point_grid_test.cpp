@@ -8,6 +8,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "adit/core/records.hpp"
 #include "adit/core/rng.hpp"
 
 namespace adit {
@@ -105,6 +106,42 @@ TEST(PointGrid, AnswersDoNotDependOnTheCells) {
   for (Points* shifted : {&far, &near_them})
     for (Eigen::Vector3f& p : *shifted) p = 0.37F * p + Eigen::Vector3f(50000.0F, -70000.0F, 900.0F);
   for (const double cell_size : {0.01, 0.37, 3.0}) expect_same_as_brute_force(far, near_them, cell_size);
+}
+
+std::size_t num_nearer_by_brute_force(const Points& points, const Eigen::Vector3f& query, float bound) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      points, [&](const Eigen::Vector3f& point) { return (point - query).squaredNorm() < bound; }));
+}
+
+TEST(PointGrid, CountsAsManyNearerAsBruteForce) {
+  Points with_holes = lattice_points(17, 300);
+  with_holes[3].x() = std::nanf("");
+  with_holes[50].z() = std::numeric_limits<float>::infinity();
+  for (const Points& points : {Points(), lattice_points(15, 700), scattered_points(16, 900), with_holes})
+    for (const double cell_size : {0.3, 2.0, 50.0}) {
+      const PointGrid grid(points, cell_size);
+      // Distances of a lattice are equal to some of these bounds: they do not count.
+      for (const float bound : {0.0F, 1.0F, 2.0F, 5.0F, 9.5F, 1e4F, std::numeric_limits<float>::infinity()})
+        for (const Points& queries : {lattice_points(18, 20), scattered_points(19, 20), with_holes})
+          for (const Eigen::Vector3f& query : queries)
+            ASSERT_EQ(grid.num_nearer(query, bound), num_nearer_by_brute_force(points, query, bound));
+    }
+}
+
+TEST(PointGrid, CountsNearerWithTheRoundingOfEigen) {
+  // On a sphere the last bit decides which point is nearer than its radius.
+  constexpr float kRadius = 0.45F;
+  Rng rng(20);
+  const Eigen::Vector3f middle(3.1F, -2.7F, 0.9F);
+  Points sphere;
+  for (int i = 0; i < 5000; ++i) {
+    const Vector3 direction = Vector3(rng.normal(), rng.normal(), rng.normal()).normalized();
+    sphere.emplace_back(middle + kRadius * direction.cast<float>());
+  }
+  const std::size_t expected = num_nearer_by_brute_force(sphere, middle, kRadius * kRadius);
+  EXPECT_GT(expected, 100U);
+  EXPECT_LT(expected, 4900U);
+  EXPECT_EQ(PointGrid(sphere, 0.9).num_nearer(middle, kRadius * kRadius), expected);
 }
 
 TEST(PointGrid, TakesFewBytesHoweverFarPointsAre) {

@@ -29,15 +29,20 @@ Bag bag_of(const std::shared_ptr<const mcap::Reader>& reader) {
   if (!contents.torn.empty())
     bag.warnings.push_back(
         format("{}; {} messages in front of that are read", contents.torn, contents.messages.size()));
+  if (!contents.summary_fault.empty())
+    bag.warnings.push_back(format(
+        "its index cannot be used ({}); the file was gone through instead, and its {} messages are read",
+        contents.summary_fault, contents.messages.size()));
+  TopicIndex topics;
   std::map<std::uint16_t, std::size_t> topic_of_channel;
   for (const auto& [id, channel] : contents.channels) {
     const auto schema = contents.schemas.find(channel.schema_id);
     const std::string type = schema == contents.schemas.end() ? "" : schema->second.name;
-    topic_of_channel[id] = topic_index(bag.topics, {channel.topic, type, channel.message_encoding});
+    topic_of_channel[id] = topics.of({channel.topic, type, channel.message_encoding}, bag.topics);
   }
   for (std::size_t i = 0; i < contents.messages.size(); ++i) {
     const mcap::MessageRef& message = contents.messages[i];
-    bag.messages.push_back({topic_of_channel.at(message.channel_id), message.log_time, i});
+    bag.messages.push_back({topic_of_channel.at(message.channel_id), usable_log_time(message.log_time), i});
   }
   bag.read = [reader](const BagMessage& message) {
     return reader->read(reader->contents().messages.at(message.where)).map([](mcap::Message&& found) {
@@ -49,12 +54,15 @@ Bag bag_of(const std::shared_ptr<const mcap::Reader>& reader) {
 
 }  // namespace
 
-std::size_t topic_index(std::vector<BagTopic>& topics, const BagTopic& topic) {
-  const auto known = std::ranges::find_if(
-      topics, [&](const BagTopic& other) { return other.name == topic.name && other.type == topic.type; });
-  const auto index = static_cast<std::size_t>(known - topics.begin());
-  if (known == topics.end()) topics.push_back(topic);
-  return index;
+std::size_t TopicIndex::of(const BagTopic& topic, std::vector<BagTopic>& topics) {
+  const auto [known, is_new] = known_.emplace(std::pair(topic.name, topic.type), topics.size());
+  if (is_new) topics.push_back(topic);
+  return known->second;
+}
+
+Stamp usable_log_time(Stamp time) {
+  constexpr std::int64_t kMost = std::int64_t{1} << 62U;
+  return {std::clamp(time.ns, -kMost, kMost)};
 }
 
 Result<Bag> open_mcap_bag(ByteSource source) {
@@ -90,6 +98,7 @@ Bag joined(std::vector<Bag> parts) {
   all.storage = parts.front().storage;
   all.num_files = parts.size();
   all.profile = parts.front().profile;
+  TopicIndex topics;
   auto places = std::make_shared<std::vector<Place>>();
   auto readers = std::make_shared<std::vector<std::function<Result<std::string>(const BagMessage&)>>>();
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -100,7 +109,7 @@ Bag joined(std::vector<Bag> parts) {
     std::ranges::move(part.warnings, std::back_inserter(all.warnings));
     readers->push_back(std::move(part.read));
     std::vector<std::size_t> topic_of;
-    for (const BagTopic& topic : part.topics) topic_of.push_back(topic_index(all.topics, topic));
+    for (const BagTopic& topic : part.topics) topic_of.push_back(topics.of(topic, all.topics));
     for (const BagMessage& message : part.messages) {
       all.messages.push_back({topic_of[message.topic], message.log_time, places->size()});
       places->push_back({p, message});

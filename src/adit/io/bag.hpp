@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "adit/core/result.hpp"
@@ -57,16 +58,29 @@ template <class Decode>
   });
 }
 
-/// Index of the topic with this name and type, which is added if it is missing.
-[[nodiscard]] std::size_t topic_index(std::vector<BagTopic>& topics, const BagTopic& topic);
+/// Topics by name and type, each once. Files may have any number of connections.
+class TopicIndex {
+ public:
+  /// That of the topic with this name and type in `topics`, which is added if it is missing. Always the same
+  /// `topics`, which nothing else changes.
+  [[nodiscard]] std::size_t of(const BagTopic& topic, std::vector<BagTopic>& topics);
+
+ private:
+  std::map<std::pair<std::string, std::string>, std::size_t> known_;
+};
+
+/// The time itself between the years 1824 and 2116; beyond them, where only damaged files have one, the
+/// nearest. Differences of log times and of stamps of ROS then fit into 64 bits.
+[[nodiscard]] Stamp usable_log_time(Stamp time);
 
 /// Opens
 ///  - FILE.mcap, with or without chunks, index, lz4 and zstd;
 ///  - FILE.db3, the sqlite storage of rosbag2;
 ///  - FILE.bag, of ROS 1: chunks plain, bz2 or lz4, with or without index (ros1_bag.hpp);
 ///  - FOLDER: a bag folder of rosbag2, its files in the order of metadata.yaml, or by name where there is
-///    none. Files that were compressed as a whole (.db3.zstd) are an error with the remedy; one that
-///    cannot be read is left out with a warning, as long as another one can.
+///    none, or one that says nothing. Files that were compressed as a whole (.db3.zstd) are an error with
+///    the remedy; one that is missing or cannot be read is left out with a warning, as long as another one
+///    can be.
 /// Messages that were compressed one by one (zstd, compression mode MESSAGE of rosbag2) are expanded.
 [[nodiscard]] Result<Bag> open_bag(const std::filesystem::path& path);
 /// Of an MCAP file, wherever its bytes come from. Errors name the byte, not the file.

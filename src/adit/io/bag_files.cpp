@@ -3,10 +3,13 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 #include <utility>
 
 #include "adit/core/format.hpp"
 #include "adit/io/bag.hpp"
+#include "adit/io/byte_source.hpp"
 #include "adit/io/compression.hpp"
 #include "adit/io/ros1_bag.hpp"
 #include "adit/io/sqlite_bag.hpp"
@@ -36,7 +39,8 @@ std::vector<fs::path> files_in(const fs::path& folder, bool (*wanted)(const fs::
   return files;
 }
 
-/// Where the file that metadata.yaml names lies. Bags of early versions name it with the bag's own folder.
+/// Where the file that metadata.yaml names lies, if it is there. Bags of early versions name it with the
+/// bag's own folder.
 Result<fs::path> file_named(const fs::path& folder, const std::string& name) {
   fs::path path = folder / name;
   if (!fs::exists(path)) path = folder / fs::path(name).filename();
@@ -45,21 +49,52 @@ Result<fs::path> file_named(const fs::path& folder, const std::string& name) {
   if (is_packed)
     return fail(format("'{}' is compressed as a whole, which cannot be read in parts; unpack it: zstd -d {}",
                        name, path.string()));
-  if (!fs::exists(path)) return fail(format("names '{}', which is not there", name));
   return path;
 }
 
-Result<std::vector<fs::path>> files_of_metadata(const fs::path& folder) {
+/// What a bag folder consists of.
+struct FolderFiles {
+  std::vector<fs::path> files;
+  std::vector<Error> faults;  ///< One for each file that is not there.
+  std::vector<std::string> warnings;
+};
+
+FolderFiles files_by_name(const fs::path& folder) { return {files_in(folder, is_bag_file), {}, {}}; }
+
+/// A recorder whose power was cut leaves an empty metadata.yaml, or one of zeros, beside files that are
+/// whole.
+bool says_nothing(const fs::path& metadata) {
+  const Result<ByteSource> source = open_source(metadata);
+  const Result<std::string> text = source ? source->read(0, source->size) : std::string("unreadable");
+  if (text && text->find_first_not_of('\0') == std::string::npos) return true;  // zeros are an error in YAML
+  return !YAML::LoadFile(metadata.string())[kInformation].IsDefined();
+}
+
+Result<FolderFiles> files_of_metadata(const fs::path& folder) {
   const fs::path file = folder / kMetadata;
   try {
-    std::vector<fs::path> files;
+    if (says_nothing(file)) {
+      FolderFiles found = files_by_name(folder);
+      found.warnings.push_back(
+          format("{}: has no {}, as after an interrupted recording; the files of the folder are read by "
+                 "their names, "
+                 "and 'ros2 bag reindex' writes it anew",
+                 file.string(), kInformation));
+      return found;
+    }
+    FolderFiles named;
+    std::set<fs::path> known;  // one that is named twice is read once
     for (const YAML::Node& name : YAML::LoadFile(file.string())[kInformation]["relative_file_paths"]) {
       Result<fs::path> found = file_named(folder, name.as<std::string>());
       if (!found) return fail(file.string(), found.error());
-      files.push_back(std::move(*found));
+      if (!known.insert(found->lexically_normal()).second) continue;
+      if (fs::exists(*found))
+        named.files.push_back(std::move(*found));
+      else
+        named.faults.push_back({format("{}: names '{}', which is not there", file.string(), name.Scalar())});
     }
-    if (files.empty()) return fail(format("{}: names no files (relative_file_paths)", file.string()));
-    return files;
+    if (known.empty()) return fail(format("{}: names no files (relative_file_paths)", file.string()));
+    return named;
   } catch (const YAML::Exception& error) {
     return fail(format("{}: line {}: {}", file.string(), error.mark.line + 1, error.msg));
   }
@@ -77,21 +112,22 @@ Result<Bag> open_file(const fs::path& path) {
   return bag;
 }
 
-/// A file that cannot be read, as one that was opened when power was cut, costs what it holds alone.
-Result<Bag> open_files(const std::vector<fs::path>& files) {
+/// A file that cannot be read or found, as one that was opened when power was cut, costs what it holds alone.
+Result<Bag> open_files(FolderFiles folder) {
+  const std::size_t num_files = folder.files.size() + folder.faults.size();
   std::vector<Bag> parts;
-  std::vector<Error> faults;
-  for (const fs::path& file : files) {
+  for (const fs::path& file : folder.files) {
     Result<Bag> part = open_file(file);
     if (part)
       parts.push_back(std::move(*part));
     else
-      faults.push_back(part.error());
+      folder.faults.push_back(part.error());
   }
-  if (parts.empty()) return tl::unexpected(faults.front());
+  if (parts.empty()) return tl::unexpected(folder.faults.front());
   Bag all = joined(std::move(parts));
-  for (const Error& fault : faults)
-    all.warnings.push_back(format("{}; this one of {} files is left out", fault.message, files.size()));
+  std::ranges::move(folder.warnings, std::back_inserter(all.warnings));
+  for (const Error& fault : folder.faults)
+    all.warnings.push_back(format("{}; this one of {} files is left out", fault.message, num_files));
   return all;
 }
 
@@ -116,21 +152,26 @@ bool is_bag_file(const fs::path& path) {
 bool is_bag_folder(const fs::path& folder) {
   std::error_code ignored;
   if (!fs::is_directory(folder, ignored)) return false;
+  const bool has_files = !files_in(folder, is_bag_file).empty();
   if (fs::exists(folder / kMetadata, ignored)) {
     try {
-      return YAML::LoadFile((folder / kMetadata).string())[kInformation].IsDefined();
+      if (!says_nothing(folder / kMetadata)) return true;
     } catch (const YAML::Exception&) {
-      return !files_in(folder, is_bag_file).empty();  // opening it says what is wrong
+      return has_files;  // opening it says what is wrong
     }
   }
-  return !files_in(folder, is_bag_file).empty() && files_in(folder, is_cloud_file).empty();
+  return has_files && files_in(folder, is_cloud_file).empty();
 }
 
 Result<Bag> open_bag(const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_directory(path, ignored)) return open_file(path).map(expanding);
-  if (!fs::exists(path / kMetadata, ignored)) return open_files(files_in(path, is_bag_file)).map(expanding);
-  return files_of_metadata(path).and_then(open_files).map(expanding);
+  const Result<FolderFiles> found =
+      fs::exists(path / kMetadata, ignored) ? files_of_metadata(path) : files_by_name(path);
+  if (!found) return tl::unexpected(found.error());
+  if (found->files.empty() && found->faults.empty())
+    return fail(format("{}: no files of a bag in this folder (.mcap, .db3, .bag)", path.string()));
+  return open_files(*found).map(expanding);
 }
 
 }  // namespace adit

@@ -10,14 +10,12 @@ void BagPass::add(const std::vector<std::size_t>& topics, const Visit& visit) {
   for (const std::size_t topic : topics) visits_.at(topic).push_back(visit);
 }
 
-Result<> BagPass::run(const Bag& bag) const {
+void BagPass::run(const Bag& bag) const {
   for (const BagMessage& message : bag.messages) {
     if (visits_[message.topic].empty()) continue;
     throw_if_cancelled();
-    for (const Visit& visit : visits_[message.topic])
-      if (Result<> visited = visit(message); !visited) return visited;
+    for (const Visit& visit : visits_[message.topic]) visit(message);
   }
-  return {};
 }
 
 }  // namespace adit

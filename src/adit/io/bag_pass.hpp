@@ -7,7 +7,6 @@
 #include <functional>
 #include <vector>
 
-#include "adit/core/result.hpp"
 #include "adit/io/bag.hpp"
 
 namespace adit {
@@ -15,15 +14,15 @@ namespace adit {
 /// Who is to see which messages.
 class BagPass {
  public:
-  /// Takes one message; an error ends the pass.
-  using Visit = std::function<Result<>(const BagMessage&)>;
+  /// Takes one message.
+  using Visit = std::function<void(const BagMessage&)>;
 
   /// Only the number of topics is taken from `bag`.
   explicit BagPass(const Bag& bag) : visits_(bag.topics.size()) {}
   /// `visit` is called with the messages of these topics (indices into Bag::topics), in order.
   void add(const std::vector<std::size_t>& topics, const Visit& visit);
-  /// Ends at the first error, which it returns.
-  [[nodiscard]] Result<> run(const Bag& bag) const;
+  /// Throws Cancelled.
+  void run(const Bag& bag) const;
 
  private:
   std::vector<std::vector<Visit>> visits_;  ///< By topic.

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "adit/core/format.hpp"
+#include "adit/core/progress.hpp"
 #include "adit/io/ascending.hpp"
 #include "adit/io/bag_mounts.hpp"
 #include "adit/io/bag_pass.hpp"
@@ -14,6 +15,7 @@
 #include "adit/io/frame_tracks.hpp"
 #include "adit/io/imu_topic.hpp"
 #include "adit/io/joint_odometry.hpp"
+#include "adit/io/left_out.hpp"
 #include "adit/io/moving_lidar.hpp"
 #include "adit/io/ros_messages.hpp"
 #include "adit/io/text.hpp"
@@ -96,6 +98,24 @@ Result<ros::CloudMessage> read_cloud_message(const Bag& bag, const BagMessage& m
   });
 }
 
+/// The first cloud that has points: what it shows of fields, times and frames holds for all.
+Result<ros::CloudMessage> first_cloud(const Bag& bag, const TopicIndices& topics,
+                                      std::optional<TimeUnit> time_unit) {
+  std::size_t num = 0;
+  std::string first_fault;
+  for (const BagMessage& message : bag.messages) {
+    if (std::ranges::find(topics, message.topic) == topics.end()) continue;
+    throw_if_cancelled();
+    Result<ros::CloudMessage> cloud = read_cloud_message(bag, message, time_unit);
+    if (cloud && !cloud->scan.cloud.empty()) return cloud;
+    if (!cloud && first_fault.empty()) first_fault = format("scan {}: {}", num, cloud.error().message);
+    ++num;
+  }
+  if (!first_fault.empty()) return fail(first_fault);
+  if (num == 0) return fail(format("{}: no message; there are no scans to read", names_of(bag, topics)));
+  return fail(format("{}: none of {} clouds has a point; look at the driver", names_of(bag, topics), num));
+}
+
 /// adit's own times are nanoseconds.
 Result<std::optional<TimeUnit>> time_unit_of(const Bag& bag, const RecordingConfig& config) {
   if (bag.own && config.point_times.empty()) return std::optional(TimeUnit::nanoseconds);
@@ -167,14 +187,17 @@ std::optional<double> sweep_after_stamp(const Scan& scan) {
 /// in the first, the middle and the last scan. The time of recording has to lie within the sweep, as clocks
 /// may differ, and behind the stamp, which programs that convert recordings write as the time of recording.
 bool is_stamped_at_end(const Bag& bag, const Tracks& tracks, std::optional<TimeUnit> time_unit) {
+  bool any = false;
   for (const std::size_t i : {std::size_t{0}, tracks.scans.size() / 2, tracks.scans.size() - 1}) {
     const Result<ros::CloudMessage> message = read_cloud_message(bag, tracks.scans[i], time_unit);
     if (!message) return false;
+    if (message->scan.cloud.empty()) continue;
+    any = true;
     const std::optional<double> sweep = sweep_after_stamp(message->scan);
     const double recorded_after = to_seconds(tracks.scans[i].log_time - message->scan.stamp);
     if (!sweep || recorded_after <= 0.0 || recorded_after > 0.5 * *sweep) return false;
   }
-  return true;
+  return any;
 }
 
 /// What the configuration says or, without a word, the recording shows.
@@ -220,13 +243,14 @@ Result<FrameNames> frame_names(const Bag& bag, const BagTopics& topics, const st
 }
 
 /// Adds the links of some topics. Static ones go first, wherever they stand.
-BagPass::Visit into(const Bag& bag, FrameTracks& frames,
+BagPass::Visit into(const Bag& bag, FrameTracks& frames, LeftOut& left_out,
                     void (FrameTracks::*add)(const std::vector<ros::TransformMessage>&)) {
-  return [&bag, &frames, add](const BagMessage& message) -> Result<> {
-    const auto links = decoded(bag, message, ros::decode_transforms);
-    if (!links) return fail(bag.topics[message.topic].name, links.error());
-    (frames.*add)(*links);
-    return {};
+  return [&bag, &frames, &left_out, add](const BagMessage& message) {
+    const auto transforms = decoded(bag, message, ros::decode_transforms);
+    if (!transforms) return left_out.leave(transforms.error());
+    for (const Error& reason : transforms->left_out) left_out.leave(reason);
+    for (std::size_t i = 0; i < transforms->links.size(); ++i) left_out.take();
+    (frames.*add)(transforms->links);
   };
 }
 
@@ -235,8 +259,7 @@ Result<std::unique_ptr<PoseReader>> reader_in(BagPass& pass, const Bag& bag, con
                                               const JointDriveConfig& drive) {
   if (topics.empty()) return std::unique_ptr<PoseReader>();
   Result<std::unique_ptr<PoseReader>> reader = pose_reader(bag, topics.front(), drive);
-  if (reader)
-    pass.add(topics, [reader = reader->get()](const BagMessage& message) { return reader->add(message); });
+  if (reader) pass.add(topics, [reader = reader->get()](const BagMessage& message) { reader->add(message); });
   return reader;
 }
 
@@ -246,13 +269,13 @@ Result<PoseTrack> finished(const std::unique_ptr<PoseReader>& reader) {
 
 /// adit's own files are logged at the scan's stamp; others when a scan arrived, so each message must be
 /// looked into.
-BagPass::Visit stamps_into(const Bag& bag, Tracks& tracks) {
-  return [&bag, &tracks](const BagMessage& scan) -> Result<> {
+BagPass::Visit stamps_into(const Bag& bag, Tracks& tracks, LeftOut& left_out) {
+  return [&bag, &tracks, &left_out](const BagMessage& scan) {
     const Result<Stamp> stamp = bag.own ? scan.log_time : decoded(bag, scan, ros::decode_stamp);
-    if (!stamp) return fail(format("scan {}", tracks.stamps.size()), stamp.error());
+    if (!stamp) return left_out.leave(stamp.error());
+    left_out.take();
     tracks.scans.push_back(scan);
     tracks.stamps.push_back(*stamp);
-    return {};
   };
 }
 
@@ -271,21 +294,27 @@ Result<Tracks> read_tracks(const Bag& bag, const BagTopics& topics, const Record
                            const FrameNames& names) {
   Tracks tracks;
   tracks.frames = FrameTracks(names.base, {names.lidar, names.imu});
+  LeftOut links("links");
   BagPass first_pass(bag);
-  first_pass.add(topics.static_transforms, into(bag, tracks.frames, &FrameTracks::add_static));
-  if (Result<> read = first_pass.run(bag); !read) return tl::unexpected(read.error());
+  first_pass.add(topics.static_transforms, into(bag, tracks.frames, links, &FrameTracks::add_static));
+  first_pass.run(bag);
   BagPass pass(bag);
   if (config.mount.empty() || config.imu_mount.empty())
-    pass.add(topics.transforms, into(bag, tracks.frames, &FrameTracks::add));
-  pass.add(topics.points, stamps_into(bag, tracks));
+    pass.add(topics.transforms, into(bag, tracks.frames, links, &FrameTracks::add));
+  LeftOut scans("scans");
+  pass.add(topics.points, stamps_into(bag, tracks, scans));
   ImuReader imu(bag);
-  pass.add(topics.imu, [&](const BagMessage& message) { return imu.add(message); });
+  pass.add(topics.imu, [&](const BagMessage& message) { imu.add(message); });
   const bool has_wheels = config.wheel != kNoWheel;
   const auto wheel = reader_in(pass, bag, has_wheels ? topics.wheel : TopicIndices(), config.drive);
   if (!wheel) return tl::unexpected(wheel.error());
   const auto truth = reader_in(pass, bag, topics.truth, {});
   if (!truth) return tl::unexpected(truth.error());
-  if (Result<> read = pass.run(bag); !read) return tl::unexpected(read.error());
+  pass.run(bag);
+  if (const Result<> any = scans.unless_all(); !any) return fail(names_of(bag, topics.points), any.error());
+  if (const auto sentence = scans.sentence())
+    tracks.warnings.push_back(names_of(bag, topics.points) + ": " + *sentence);
+  if (const auto sentence = links.sentence()) tracks.warnings.push_back("/tf: " + *sentence);
   if (Result<> done = put_in_order(tracks, names_of(bag, topics.points)); !done)
     return tl::unexpected(done.error());
   Result<PoseTrack> wheels = finished(*wheel);
@@ -325,11 +354,8 @@ Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, RecordingC
   if (!topics) return tl::unexpected(topics.error());
   const Result<std::optional<TimeUnit>> time_unit = time_unit_of(*bag, config);
   if (!time_unit) return tl::unexpected(time_unit.error());
-  const std::optional<BagMessage> first_scan = first_of(*bag, topics->points);
-  if (!first_scan)
-    return fail(format("{}: no message; there are no scans to read", names_of(*bag, topics->points)));
-  const Result<ros::CloudMessage> first = read_cloud_message(*bag, *first_scan, *time_unit);
-  if (!first) return fail("scan 0", first.error());
+  const Result<ros::CloudMessage> first = first_cloud(*bag, topics->points, *time_unit);
+  if (!first) return tl::unexpected(first.error());
   const Result<FrameNames> names = frame_names(*bag, *topics, first->frame);
   if (!names) return tl::unexpected(names.error());
   Result<Tracks> tracks = read_tracks(*bag, *topics, config, *names);

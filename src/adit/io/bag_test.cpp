@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "adit/core/format.hpp"
+#include "adit/core/progress.hpp"
 #include "adit/io/bag_recording.hpp"
 #include "adit/io/compression.hpp"
 #include "adit/io/recording_files.hpp"
@@ -171,7 +172,7 @@ TEST(Bag, OfASqliteFileThatBreaksOffTheFirstMessagesAreRead) {
   const std::string whole = test::get_file(folder / "whole.db3");
   std::size_t most = 0;
   int num_warned = 0;
-  for (std::size_t size = 0; size < whole.size(); size += 500) {
+  for (std::size_t size = 0; size < whole.size(); size += 1100) {
     test::put_file(folder / "cut.db3", whole.substr(0, size));
     const Result<Bag> cut = open_bag(folder / "cut.db3");
     if (!cut) continue;
@@ -183,10 +184,142 @@ TEST(Bag, OfASqliteFileThatBreaksOffTheFirstMessagesAreRead) {
                 std::string::npos);
       ++num_warned;
     }
-    for (const BagMessage& message : cut->messages) (void)cut->read(message);
+    for (const BagMessage& message : cut->messages) {
+      const BagMessage& original = many[message.where - 1];  // ids count from 1
+      EXPECT_EQ(cut->read(message).value(), bag.read(original).value()) << "cut at " << size;
+    }
   }
   EXPECT_GT(most, many.size() / 2);
   EXPECT_GT(num_warned, 3);
+}
+
+/// Clouds, of which the most lies on pages of its own, and short messages between them.
+Bag bag_of_long_messages() {
+  Bag bag;
+  bag.topics = {{"/points", "sensor_msgs/msg/PointCloud2", "cdr"}, {"/odom", "nav_msgs/msg/Odometry", "cdr"}};
+  for (std::size_t m = 0; m < 90; ++m)
+    bag.messages.push_back({m % 3 == 0 ? 0U : 1U, {static_cast<std::int64_t>(m)}, m + 1});
+  bag.read = [](const BagMessage& message) -> Result<std::string> {
+    return std::string(message.topic == 0 ? 33'000 : 200, static_cast<char>('a' + message.where % 26));
+  };
+  return bag;
+}
+
+TEST(Bag, OfATornSqliteFileEveryMessageOfTheListCanBeRead) {
+  const test::TemporaryFolder folder;
+  const Bag bag = bag_of_long_messages();
+  write_db3(folder / "whole.db3", bag, bag.messages);
+  expect_same(open_bag(folder / "whole.db3"), bag);
+  const std::string whole = test::get_file(folder / "whole.db3");
+  for (std::size_t size = whole.size() / 5; size < whole.size(); size += 3001) {
+    test::put_file(folder / "cut.db3", whole.substr(0, size));
+    const Result<Bag> cut = open_bag(folder / "cut.db3");
+    ASSERT_TRUE(cut) << cut.error().message;
+    const std::size_t num = cut->messages.size();
+    for (const BagMessage& message : cut->messages) {
+      const Result<std::string> data = cut->read(message);
+      ASSERT_TRUE(data) << "cut at " << size << ": " << data.error().message;
+      EXPECT_EQ(*data, bag.read(message).value()) << "cut at " << size;
+    }
+    ASSERT_EQ(cut->warnings.size(), 1U) << "cut at " << size;
+    EXPECT_NE(cut->warnings[0].find(format("the first {} messages", num)), std::string::npos);
+    EXPECT_GT(num + 5, bag.messages.size() * size / whole.size()) << "cut at " << size;
+  }
+}
+
+/// A file that these statements make.
+fs::path made_by(const fs::path& path, const std::string& statements) {
+  sqlite3* database = nullptr;
+  EXPECT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, statements.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+      << sqlite3_errmsg(database);
+  sqlite3_close(database);
+  return path;
+}
+
+constexpr const char* kTopics =
+    "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT);";
+constexpr const char* kMessages =
+    "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB);";
+constexpr const char* kCounting =
+    "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT i, 7, i, 'x' FROM n";
+
+TEST(Bag, AViewIsNoTableOfMessages) {
+  const test::TemporaryFolder folder;
+  EXPECT_ERROR(
+      open_bag(made_by(folder / "a.db3", format("{}INSERT INTO topics VALUES(7, '/a', 'b', 'cdr');"
+                                                "CREATE VIEW messages(id, topic_id, timestamp, data) AS {};",
+                                                kTopics, kCounting))),
+      "a.db3: not a bag of rosbag2: its 'messages' is no table but a view");
+  EXPECT_ERROR(open_bag(made_by(folder / "b.db3",
+                                format("{}CREATE VIEW Topics(id, name, type, serialization_format) AS {};",
+                                       kMessages, kCounting))),
+               "b.db3: not a bag of rosbag2: its 'Topics' is no table but a view");
+}
+
+TEST(Bag, AQueryThatTakesLongCanBeCancelled) {
+  class Cancelling : public ProgressObserver {
+   public:
+    PhaseId begin(std::string_view /*name*/, std::size_t /*total*/, PhaseId /*parent*/) override { return 1; }
+    void advance(PhaseId /*phase*/, std::size_t /*steps*/) override {}
+    void end(PhaseId /*phase*/) noexcept override {}
+    [[nodiscard]] bool cancelled() const noexcept override { return true; }
+  };
+  const test::TemporaryFolder folder;
+  const fs::path path = made_by(
+      folder / "a.db3", format("{}{}INSERT INTO topics {} LIMIT 100000;", kTopics, kMessages, kCounting));
+  EXPECT_EQ(open_bag(path)->topics.size(), 100'000U);
+  Cancelling observer;
+  const ObserverScope scope(observer);
+  EXPECT_THROW((void)open_bag(path), Cancelled);
+}
+
+TEST(Bag, LogTimesOfDamagedRowsStayWithinWhatDifferencesCanHold) {
+  const test::TemporaryFolder folder;
+  Bag bag = a_bag();
+  bag.messages.front().log_time.ns = INT64_MIN;
+  bag.messages.back().log_time.ns = INT64_MAX;
+  write_db3(folder / "a.db3", bag, bag.messages);
+  const Result<Bag> read = open_bag(folder / "a.db3");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->messages.front().log_time.ns, -(std::int64_t{1} << 62U));
+  EXPECT_EQ(read->messages.back().log_time.ns, std::int64_t{1} << 62U);
+  EXPECT_EQ(read->messages[1].log_time, bag.messages[1].log_time);
+}
+
+TEST(Bag, AnEmptyMetadataYamlIsLikeNone) {
+  const Bag bag = a_bag();
+  for (const std::string& content : {std::string(), std::string(300, '\0'), std::string("other: 3\n")}) {
+    const test::TemporaryFolder folder;
+    test::put_file(folder / "metadata.yaml", content);
+    EXPECT_FALSE(is_bag_folder(folder.path()));
+    EXPECT_ERROR(open_bag(folder.path()), "no files of a bag in this folder");
+    write_db3(folder / "a_0.db3", bag, bag.messages);
+    ASSERT_TRUE(is_bag_folder(folder.path()));
+    const Result<Bag> read = open_bag(folder.path());
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->messages.size(), bag.messages.size());
+    ASSERT_EQ(read->warnings.size(), 1U);
+    EXPECT_NE(read->warnings[0].find("metadata.yaml: has no rosbag2_bagfile_information"), std::string::npos);
+    test::put_file(folder / "cloud.pcd", "");
+    EXPECT_FALSE(is_bag_folder(folder.path())) << "clouds beside it, and nothing says that it is a bag";
+  }
+}
+
+TEST(Bag, WhatMetadataYamlNamesTwiceIsReadOnceAndWhatIsMissingCostsItselfAlone) {
+  const test::TemporaryFolder folder;
+  const Bag bag = a_bag();
+  write_db3(folder / "a_0.db3", bag, bag.messages);
+  test::put_file(folder / "metadata.yaml", metadata_naming({"a_0.db3", "./a_0.db3", "early/a_0.db3"}));
+  expect_same(open_bag(folder.path()), bag);
+  test::put_file(folder / "metadata.yaml", metadata_naming({"a_0.db3", "a_1.db3"}));
+  const Result<Bag> rest = open_bag(folder.path());
+  ASSERT_TRUE(rest) << rest.error().message;
+  EXPECT_EQ(rest->messages.size(), bag.messages.size());
+  ASSERT_EQ(rest->warnings.size(), 1U);
+  EXPECT_NE(rest->warnings[0].find("names 'a_1.db3', which is not there; this one of 2 files is left out"),
+            std::string::npos)
+      << rest->warnings[0];
 }
 
 TEST(Bag, ReadsAFileOfRosbag2) {

@@ -8,6 +8,7 @@
 
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
+#include "adit/io/toml_depth.hpp"
 
 namespace adit {
 namespace {
@@ -58,6 +59,7 @@ Result<> set_table(const Fields& fields, const std::string& prefix, const toml::
 /// Calls `use` with the parsed text; a syntax error says where it is.
 template <class Use>
 Result<> with_parsed(std::string_view text, const Use& use) {
+  if (const Result<> checked = check_toml_depth(text); !checked) return checked;
   try {
     return use(toml::parse(text));
   } catch (const toml::parse_error& error) {

@@ -20,12 +20,15 @@ void FrameTree::add(std::string_view frame, std::string_view child, const Pose& 
   if (bare(frame) != bare(child)) links_.insert_or_assign(bare(child), Link{bare(frame), T_frame_child});
 }
 
-std::vector<std::string> FrameTree::up_to_root(const std::string& frame) const {
+std::vector<std::string> FrameTree::up_to_root(const std::string& frame) const { return up_to(frame, {}); }
+
+std::vector<std::string> FrameTree::up_to(const std::string& frame, const Roots& roots) const {
   std::vector<std::string> path = {frame};
+  std::set<std::string_view> passed = {frame};
   for (auto link = links_.find(frame); link != links_.end(); link = links_.find(path.back())) {
-    const bool is_circle = std::ranges::find(path, link->second.parent) != path.end();
+    if (roots.contains(path.back())) break;
     path.push_back(link->second.parent);
-    if (is_circle) break;
+    if (!passed.insert(link->second.parent).second) break;
   }
   return path;
 }
@@ -54,10 +57,18 @@ Result<FrameTree::Chain> FrameTree::between(std::string_view a, std::string_view
 }
 
 std::string FrameTree::body_of(std::string_view frame) const {
-  const std::string root = up_to_root(bare(frame)).back();
+  Roots roots;  // each frame is walked over once, however long the chains are
+  const auto root_of = [&](const std::string& of) {
+    const std::vector<std::string> path = up_to(of, roots);
+    const auto known = roots.find(path.back());
+    const std::string root = known == roots.end() ? path.back() : known->second;
+    for (const std::string& name : path) roots.emplace(name, root);
+    return root;
+  };
+  const std::string root = root_of(bare(frame));
   std::vector<std::string> linked;
   for (const std::string& other : frames())
-    if (up_to_root(other).back() == root) linked.push_back(other);
+    if (root_of(other) == root) linked.push_back(other);
   if (std::ranges::find(linked, bare(frame)) == linked.end()) return "";
   for (const std::string_view name : std::array{"base_footprint", "base_link", "base", "body"}) {
     const auto body = std::ranges::find_if(linked, [&](const std::string& other) {

@@ -49,6 +49,10 @@ class FrameTree {
     std::string parent;
     Pose T_parent_child;
   };
+  using Roots = std::map<std::string, std::string>;  ///< By frame.
+  /// As up_to_root, but at most to a frame whose root is known.
+  [[nodiscard]] std::vector<std::string> up_to(const std::string& frame, const Roots& roots) const;
+
   std::map<std::string, Link> links_;  ///< By child.
 };
 

@@ -70,5 +70,15 @@ TEST(FrameTree, TheBodyIsTheFrameOnTheFloorOrTheOneThatIsCalledSo) {
   EXPECT_EQ(prefixed.body_of("robot_0/lidar"), "robot_0/base_link");
 }
 
+// Walked over frame by frame for each frame, a chain of so many would take hours.
+TEST(FrameTree, ALongChainIsWalkedOverOnce) {
+  constexpr int kLinks = 20'000;
+  FrameTree tree;
+  for (int i = 0; i < kLinks; ++i) tree.add("f" + std::to_string(i), "f" + std::to_string(i + 1), Pose());
+  const std::string last = "f" + std::to_string(kLinks);
+  EXPECT_EQ(tree.up_to_root(last).size(), kLinks + 1U);
+  EXPECT_EQ(tree.body_of(last), "f0");
+}
+
 }  // namespace
 }  // namespace adit

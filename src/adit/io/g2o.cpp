@@ -6,7 +6,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <istream>
 #include <iterator>
 #include <map>
@@ -17,6 +16,8 @@
 
 #include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
+#include "adit/io/atomic_file.hpp"
+#include "adit/io/far_out.hpp"
 
 namespace adit {
 namespace {
@@ -86,7 +87,9 @@ struct Format<Pose> {
     const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
     if (std::abs(q.norm() - 1.0) > kMaxNormError)
       return fail(format("the quaternion has norm {}, not 1", q.norm()));
-    return Pose(std::abs(q.norm() - 1.0) < 1e-9 ? q : q.normalized(), Vector3(v[0], v[1], v[2]));
+    const Vector3 t(v[0], v[1], v[2]);
+    if (const Result<> checked = check_not_far_out(t); !checked) return tl::unexpected(checked.error());
+    return Pose(std::abs(q.norm() - 1.0) < 1e-9 ? q : q.normalized(), t);
   }
   static std::array<double, 7> numbers(const Pose& T) {
     const Eigen::Quaterniond& q = T.rotation();
@@ -98,7 +101,11 @@ struct Format<Pose2> {
   static constexpr std::string_view kVertex = "VERTEX_SE2";
   static constexpr std::string_view kEdge = "EDGE_SE2";
   static constexpr std::size_t kNumbers = 3;
-  static Result<Pose2> pose(const std::array<double, 3>& v) { return Pose2(v[0], v[1], v[2]); }
+  static Result<Pose2> pose(const std::array<double, 3>& v) {
+    if (const Result<> checked = check_not_far_out(Eigen::Vector2d(v[0], v[1])); !checked)
+      return tl::unexpected(checked.error());
+    return Pose2(v[0], v[1], v[2]);
+  }
   static std::array<double, 3> numbers(const Pose2& T) {
     return {T.translation().x(), T.translation().y(), T.theta()};
   }
@@ -305,11 +312,7 @@ Result<G2oFile> merge(const std::vector<G2oFile>& files) {
   return out;
 }
 
-}  // namespace
-
-Result<G2oFile> read_g2o(std::istream& stream, const std::string& name) {
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) return fail(name + ": reading failed");
+Result<G2oFile> parse_g2o(const std::string& text, const std::string& name) {
   FileReader reader;
   for (std::size_t begin = 0; begin < text.size();) {
     throw_if_cancelled();
@@ -322,10 +325,18 @@ Result<G2oFile> read_g2o(std::istream& stream, const std::string& name) {
   return file ? std::move(file) : fail(name, file.error());
 }
 
+}  // namespace
+
+Result<G2oFile> read_g2o(std::istream& stream, const std::string& name) {
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (stream.bad()) return fail(name + ": reading failed");
+  return parse_g2o(text, name);
+}
+
 Result<G2oFile> read_g2o(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return fail(path.string() + ": cannot be opened; does it exist?");
-  return read_g2o(stream, path.string());
+  const Result<std::string> text = read_bytes(path);
+  if (!text) return tl::unexpected(text.error());
+  return parse_g2o(*text, path.string());
 }
 
 void write_g2o(std::ostream& stream, const PoseGraph& graph) { write(stream, graph); }

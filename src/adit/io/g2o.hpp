@@ -25,8 +25,8 @@ struct G2oFile {
 /// Reads VERTEX_SE3:QUAT and EDGE_SE3:QUAT, or VERTEX_SE2 and EDGE_SE2 (not both kinds in one file). Vertices
 /// may come after the edges that use them; those that never come are composed along edges
 /// (`spanning_tree_poses`). Lines that start with # and the tags FIX and PARAMS_* are skipped and counted.
-/// Any other tag, a repeated vertex, an edge from a vertex to itself, and a number that is missing, surplus
-/// or not finite is an error that names the line.
+/// Any other tag, a repeated vertex, an edge from a vertex to itself, a number that is missing, surplus or
+/// not finite, and a position more than 1e9 m out is an error that names the line.
 ///
 /// Edge kinds are decided here, as the format has no word for them: an edge whose `to` key is its `from` key
 /// plus one is odometry (GTSAM keys hold the robot in the top byte, so that means the next keyframe of the

@@ -8,6 +8,7 @@
 
 #include "adit/posegraph/optimizer.hpp"
 #include "support/data.hpp"
+#include "support/files.hpp"
 
 namespace adit {
 namespace {
@@ -115,6 +116,21 @@ TEST(SharedGraphs, RobotsOfOneFleetMerge) {
   const auto& graph = std::get<PoseGraph>(merged->graph);
   EXPECT_EQ(connected_components(graph).anchors.size(), 1U);
   EXPECT_TRUE(optimize(graph).ok());
+}
+
+TEST(G2o, PosesThatOverflowWhenComposedAreRefused) {
+  EXPECT_NE(error_of("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1.7e308 0 0")
+                .find("test.g2o: line 2: 1.7e+308 is not a coordinate"),
+            std::string::npos);
+  EXPECT_NE(error_of("EDGE_SE2 0 1 0 -2e9 0 1 0 0 1 0 1").find("-2000000000 is not"), std::string::npos);
+  EXPECT_NE(error_of("VERTEX_SE3:QUAT 0 0 0 1e10 0 0 0 1").find("line 1: 10000000000 is not"),
+            std::string::npos);
+}
+
+TEST(G2o, AFolderIsNamedAsOne) {
+  const test::TemporaryFolder folder;
+  EXPECT_ERROR(read_g2o(folder.path()), "is a folder, a file is needed");
+  EXPECT_ERROR(read_g2o(folder / "absent.g2o"), "absent.g2o: no such file");
 }
 
 }  // namespace

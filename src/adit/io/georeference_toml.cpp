@@ -11,6 +11,7 @@
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/georeference.hpp"
+#include "adit/io/toml_depth.hpp"
 #include "adit/io/tum.hpp"
 
 namespace adit {
@@ -196,6 +197,7 @@ Result<std::vector<Georeference>> read_georeferences(const std::filesystem::path
   if (!std::filesystem::exists(path)) return maps;
   const Result<std::string> text = read_bytes(path);
   if (!text) return tl::unexpected(text.error());
+  if (const Result<> checked = check_toml_depth(*text); !checked) return fail(path.string(), checked.error());
   try {
     const toml::table table = toml::parse(*text);
     const toml::array* array = table["maps"].as_array();

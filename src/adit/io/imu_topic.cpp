@@ -19,9 +19,10 @@ std::string_view missing_in(const ImuCovariance& covariance) {
 
 }  // namespace
 
-Result<> ImuReader::add(const BagMessage& message) {
+void ImuReader::add(const BagMessage& message) {
   const Result<ros::ImuMessage> imu = decoded(bag_, message, ros::decode_imu);
-  if (!imu) return fail(format("IMU, message {}", num_messages_), imu.error());
+  if (!imu) return left_out_.leave(imu.error());
+  left_out_.take();
   if (num_messages_++ == 0) {
     track_.covariance = imu->covariance;
   }
@@ -31,7 +32,6 @@ Result<> ImuReader::add(const BagMessage& message) {
   } else {
     track_.samples.push_back(sample);
   }
-  return {};
 }
 
 ImuTrack ImuReader::finish() {
@@ -39,6 +39,7 @@ ImuTrack ImuReader::finish() {
   const std::vector<std::size_t> kept = longest_ascending(stamps);
   track_.samples = taken(std::move(track_.samples), kept);
   if (const auto note = note_of_left_out("samples", stamps, kept)) track_.remarks.push_back("imu: " + *note);
+  if (const auto sentence = left_out_.sentence()) track_.remarks.push_back("imu: " + *sentence);
   if (num_not_finite_ > 0)
     track_.remarks.push_back(
         format("imu: {} of {} samples are left out, whose numbers are not finite (check the driver); the "

@@ -9,6 +9,7 @@
 #include "adit/core/records.hpp"
 #include "adit/core/result.hpp"
 #include "adit/io/bag.hpp"
+#include "adit/io/left_out.hpp"
 
 namespace adit {
 
@@ -19,21 +20,21 @@ struct ImuTrack {
   std::vector<std::string> remarks;  ///< What was left out and why, a sentence each with its remedy.
 };
 
-/// Takes the messages in their order. Samples whose stamps do not ascend with the others' or whose numbers
-/// are not finite are left out, as is an IMU that measures only rates or only accelerations; `remarks` says
-/// so.
+/// Takes the messages in their order. Messages that are damaged, and samples whose stamps do not ascend with
+/// the others' or whose numbers are not finite, are left out, as is an IMU that measures only rates or only
+/// accelerations; `remarks` says so.
 class ImuReader {
  public:
   /// `bag` must outlive it.
   explicit ImuReader(const Bag& bag) : bag_(bag) {}
-  /// Fails when the message is damaged.
-  Result<> add(const BagMessage& message);
+  void add(const BagMessage& message);
   /// Once, after all messages.
   [[nodiscard]] ImuTrack finish();
 
  private:
   const Bag& bag_;
   ImuTrack track_;
+  LeftOut left_out_{"messages"};
   std::size_t num_messages_ = 0;
   std::size_t num_not_finite_ = 0;
   Stamp first_not_finite_;

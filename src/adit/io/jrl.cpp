@@ -5,12 +5,12 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
+#include <cmath>
 #include <map>
 #include <set>
 
 #include "adit/core/format.hpp"
+#include "adit/io/atomic_file.hpp"
 #include "adit/io/jrl_records.hpp"
 
 namespace adit {
@@ -21,6 +21,8 @@ namespace {
 constexpr double kMaxAsymmetry = 1e-6;
 // Two robots' copies of one measurement differ by rounding at most: metres and radians.
 constexpr double kSamePose = 1e-12;
+// By how much their sort keys may then differ at most, per metre of distance and one more.
+constexpr double kSlackOfSortKey = 1e-10;
 // Of an information matrix, reciprocal: below it the inverse in double precision has no correct digit.
 constexpr double kLeastCondition = 1e-15;
 
@@ -84,6 +86,9 @@ class GraphMaker {
  private:
   using Edge = typename BasicPoseGraph<P>::Edge;
   using PosesByKey = std::map<std::uint64_t, P>;
+  // By sort_key_of; one robot's, between the same ends.
+  using EdgesByKey = std::multimap<std::pair<double, double>, std::size_t>;
+  static constexpr int kDimension = P::kDof == 6 ? 3 : 2;
   struct KeyedEdge {
     std::uint64_t from;
     std::uint64_t to;
@@ -133,16 +138,34 @@ class GraphMaker {
 
   // Both robots of an encounter may have logged the same measurement; within one log it is a second one.
   [[nodiscard]] bool is_repeated(const KeyedEdge& keyed) {
-    std::vector<std::size_t>& same_ends = edges_between_[{keyed.from, keyed.to}];
-    for (const std::size_t e : same_ends) {
-      const KeyedEdge& other = edges_[e];
-      if (other.robot == keyed.robot || other.edge.information != keyed.edge.information) continue;
-      if (!(other.edge.T_from_to.inverse() * keyed.edge.T_from_to).log().isZero(kSamePose)) continue;
-      ++num_repeated_;
-      return true;
+    const auto [information, pose] = sort_key_of(keyed.edge);
+    const double slack = kSlackOfSortKey * (1.0 + keyed.edge.T_from_to.translation().norm());
+    auto& by_robot = edges_between_[{keyed.from, keyed.to}];
+    for (const auto& [robot, edges] : by_robot) {
+      if (robot == keyed.robot) continue;
+      const auto end = edges.upper_bound({information, pose + slack});
+      for (auto near = edges.lower_bound({information, pose - slack}); near != end; ++near) {
+        const Edge& other = edges_[near->second].edge;
+        if (other.information != keyed.edge.information) continue;
+        if (!(other.T_from_to.inverse() * keyed.edge.T_from_to).log().isZero(kSamePose)) continue;
+        ++num_repeated_;
+        return true;
+      }
     }
-    same_ends.push_back(edges_.size());
+    by_robot[keyed.robot].emplace(std::pair(information, pose), edges_.size());
     return false;
+  }
+
+  // Equal matrices have equal first numbers, equal poses second ones that differ by rounding alone, and
+  // others hardly ever: so that a measurement need not be compared with all others between its ends.
+  [[nodiscard]] static std::pair<double, double> sort_key_of(const Edge& edge) {
+    double information = 0.0;
+    double weight = 1e-4;  // The sum of such entries stays finite.
+    for (const double entry : edge.information.reshaped()) information += entry * (weight *= 1.07);
+    typename P::Tangent generic;  // Roots have no small whole multiples that cancel, as steps of a grid have.
+    for (int i = 0; i < P::kDof; ++i) generic[i] = std::sqrt(2.0 + i);
+    const auto moved = (edge.T_from_to * generic.template head<kDimension>().eval()).eval();
+    return {information, moved.dot(generic.template tail<kDimension>())};
   }
 
   // A robot's own word counts before that of others.
@@ -225,7 +248,7 @@ class GraphMaker {
   std::vector<std::string> notes_;
   std::map<std::uint64_t, std::size_t> robot_of_key_;
   std::map<std::uint64_t, std::size_t> node_of_;
-  std::map<std::pair<std::uint64_t, std::uint64_t>, std::vector<std::size_t>> edges_between_;
+  std::map<std::pair<std::uint64_t, std::uint64_t>, std::map<std::size_t, EdgesByKey>> edges_between_;
   std::vector<bool> is_known_;
   std::size_t num_repeated_ = 0;
   std::size_t num_composed_ = 0;
@@ -378,11 +401,9 @@ Result<JrlFile> parse_jrl(const std::string& bytes, const std::string& name) {
 }
 
 Result<JrlFile> read_jrl(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) return fail(path.string() + ": cannot be opened; does it exist?");
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) return fail(path.string() + ": reading failed");
-  return parse_jrl(bytes, path.string());
+  const Result<std::string> bytes = read_bytes(path);
+  if (!bytes) return tl::unexpected(bytes.error());
+  return parse_jrl(*bytes, path.string());
 }
 
 template <class P>

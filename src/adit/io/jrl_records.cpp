@@ -9,6 +9,8 @@
 
 #include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
+#include "adit/io/far_out.hpp"
+#include "adit/io/json_depth.hpp"
 
 namespace adit {
 namespace jrl {
@@ -76,7 +78,10 @@ Result<JrlPose> pose3_of(const Json& value) {
   const Eigen::Quaterniond rotation((*q)[0], (*q)[1], (*q)[2], (*q)[3]);  // w first
   if (std::abs(rotation.norm() - 1.0) > kMaxNormError)
     return fail(format("the quaternion 'rotation' has norm {}, not 1", rotation.norm()));
-  return Pose(rotation.normalized(), Vector3((*t)[0], (*t)[1], (*t)[2]));
+  const Vector3 translation((*t)[0], (*t)[1], (*t)[2]);
+  if (const Result<> checked = check_not_far_out(translation); !checked)
+    return fail("'translation'", checked.error());
+  return Pose(rotation.normalized(), translation);
 }
 
 Result<JrlPose> pose2_of(const Json& value) {
@@ -87,6 +92,8 @@ Result<JrlPose> pose2_of(const Json& value) {
     if (!n) return tl::unexpected(n.error());
     v[i] = *n;
   }
+  if (const Result<> checked = check_not_far_out(Eigen::Vector2d(v[0], v[1])); !checked)
+    return fail("'x' and 'y'", checked.error());
   return Pose2(v[0], v[1], v[2]);
 }
 
@@ -139,7 +146,8 @@ Result<std::vector<std::string>> robots_of(const Json& file) {
     } else if (robot.is_string() && robot.get<std::string>().size() == 1) {
       robots.push_back(robot.get<std::string>());
     } else {
-      return fail(format("robots: {} is not one letter or its code", json_text(robot)));
+      const std::string text = robot.is_structured() ? robot.type_name() : json_text(robot).substr(0, 40);
+      return fail(format("robots: {} is not one letter or its code", text));
     }
     if (std::ranges::count(robots, robots.back()) > 1)
       return fail(format("robots: '{}' comes twice", robots.back()));
@@ -360,10 +368,12 @@ std::string jrl_text(const JrlRecords& records) {
 
 Result<JrlRecords> parse_jrl_records(const std::string& bytes) {
   const auto first = static_cast<unsigned char>(bytes.empty() ? '\0' : bytes.front());
+  const bool is_cbor = first >= jrl::kFirstCborMap && first <= jrl::kLastCborMap;
+  const Result<> checked = is_cbor ? check_cbor_depth(bytes) : check_json_depth(bytes);
+  if (!checked) return tl::unexpected(checked.error());
   jrl::Json file;
   try {
-    file = first >= jrl::kFirstCborMap && first <= jrl::kLastCborMap ? jrl::Json::from_cbor(bytes)
-                                                                     : jrl::Json::parse(bytes);
+    file = is_cbor ? jrl::Json::from_cbor(bytes) : jrl::Json::parse(bytes);
   } catch (const jrl::Json::exception& error) {
     return fail(format("not JSON, or cut off: {}", error.what()));
   }

@@ -51,7 +51,7 @@ Result<CloudFile> read_kitti(std::string_view bytes) {
   packed.y = {ScalarType::float32, 4, row};
   packed.z = {ScalarType::float32, 8, row};
   packed.intensity = {ScalarType::float32, 12, row};
-  return unpack(packed);
+  return unpack_file(packed);
 }
 
 std::string write_kitti(const PointCloud& cloud) {

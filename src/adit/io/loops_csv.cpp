@@ -6,10 +6,13 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <type_traits>
 
 #include "adit/core/format.hpp"
 #include "adit/fleet/joint/loop_account.hpp"
 #include "adit/io/csv.hpp"
+#include "adit/io/far_out.hpp"
 #include "adit/io/tum.hpp"
 
 namespace adit {
@@ -102,37 +105,71 @@ std::string loop_row(const Session& session, const LoopOutcome& outcome, std::st
                   sentence(loop.reason)});
 }
 
-template <class T>
-T number(std::string_view text, T otherwise = {}) {
-  T value = otherwise;
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
+/// Reads the numbers of a row. The first cell that holds none is kept for the error.
+class NumberCells {
+ public:
+  explicit NumberCells(const Cells& cells) : cells_(cells) {}
+
+  /// The whole cell as a finite number.
+  template <class T>
+  T at(std::size_t column) {
+    const std::string& cell = cells_[column];
+    T value{};
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    bool is_number = error == std::errc{} && end == cell.data() + cell.size();
+    if constexpr (std::is_floating_point_v<T>) is_number = is_number && std::isfinite(value);
+    if (!is_number && !bad_column_) bad_column_ = column;
+    return is_number ? value : T{};
+  }
+  /// 0 where the cell is empty.
+  template <class T>
+  T at_or_zero(std::size_t column) {
+    return cells_[column].empty() ? T{} : at<T>(column);
+  }
+  [[nodiscard]] Result<> checked() const {
+    if (!bad_column_) return {};
+    return fail(format("{}: '{}' is not a number as adit writes them; take the file from the run again",
+                       first_columns()[*bad_column_], cells_[*bad_column_].substr(0, 40)));
+  }
+
+ private:
+  const Cells& cells_;
+  std::optional<std::size_t> bad_column_;
+};
+
+Result<Pose> pose_in(NumberCells& numbers) {
+  const Eigen::Quaterniond q(numbers.at<double>(20), numbers.at<double>(17), numbers.at<double>(18),
+                             numbers.at<double>(19));
+  const Vector3 t(numbers.at<double>(14), numbers.at<double>(15), numbers.at<double>(16));
+  if (const Result<> checked = numbers.checked(); !checked) return tl::unexpected(checked.error());
+  if (const Result<> checked = check_not_far_out(t); !checked) return fail("x to z", checked.error());
+  if (!(std::abs(q.norm() - 1.0) <= 1e-3)) return fail("x to qw are not a pose");
+  return Pose(q, t);
 }
 
 Result<SavedLoop> saved_loop(const Cells& cells) {
   SavedLoop saved;
   const std::optional<Stamp> from = parse_stamp(cells[2]);
   const std::optional<Stamp> to = parse_stamp(cells[5]);
-  if (!from || !to) return fail("a stamp is not a number");
+  if (!from || !to) return fail("a stamp is not a number of seconds");
   saved.from_robot = cells[0];
   saved.to_robot = cells[3];
   saved.from_stamp = *from;
   saved.to_stamp = *to;
+  NumberCells numbers(cells);
   LoopClosure& loop = saved.loop;
-  loop.from.index = number<std::uint32_t>(cells[1]);
-  loop.to.index = number<std::uint32_t>(cells[4]);
-  loop.place_distance = number<double>(cells[6]);
-  loop.num_inliers = number<int>(cells[7]);
-  loop.overlap = number<double>(cells[8]);
-  loop.weak_axis = number<double>(cells[9]);
+  loop.from.index = numbers.at<std::uint32_t>(1);
+  loop.to.index = numbers.at<std::uint32_t>(4);
+  loop.place_distance = numbers.at<double>(6);
+  loop.num_inliers = numbers.at<int>(7);
+  loop.overlap = numbers.at<double>(8);
+  loop.weak_axis = numbers.at<double>(9);
   loop.verdict = cells[10] == "accepted" ? LoopVerdict::accepted : LoopVerdict::rejected;
   saved.in_clique = cells[11] == "kept";
-  saved.weight = number<double>(cells[12]);
-  const Eigen::Quaterniond q(number<double>(cells[20]), number<double>(cells[17]), number<double>(cells[18]),
-                             number<double>(cells[19]));
-  const Vector3 t(number<double>(cells[14]), number<double>(cells[15]), number<double>(cells[16]));
-  if (!t.allFinite() || std::abs(q.norm() - 1.0) > 1e-3) return fail("x to qw are not a pose");
-  loop.T_from_to = Pose(q, t);
+  saved.weight = numbers.at_or_zero<double>(12);  // of rejected loops the cell is empty
+  const Result<Pose> pose = pose_in(numbers);
+  if (!pose) return tl::unexpected(pose.error());
+  loop.T_from_to = *pose;
   loop.reason = cells[21];
   return saved;
 }
@@ -164,6 +201,8 @@ std::string loops_csv(const Session& session) {
   }
   std::string text = csv_row(header());
   for (const auto& [ends, loop] : session.fleet.loops) {
+    // Messages about a keyframe may come before the graph that it belongs to.
+    if (!session.fleet.knows(loop.from) || !session.fleet.knows(loop.to)) continue;
     const auto found = accepted.find(ends);
     if (found == accepted.end()) {
       text += loop_row(session, {loop, false, 0.0}, "");

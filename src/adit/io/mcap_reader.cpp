@@ -9,6 +9,7 @@
 #include "adit/core/progress.hpp"
 #include "adit/io/compression.hpp"
 #include "adit/io/crc32.hpp"
+#include "adit/io/distinct_parts.hpp"
 
 namespace adit::mcap {
 namespace {
@@ -24,19 +25,40 @@ Result<Record> decode_at(std::uint64_t offset, std::string_view content, std::st
   return std::move(*record);
 }
 
-/// One record of the file, read whole.
+/// What stands in front of a record's content.
+struct RecordHead {
+  Opcode opcode = Opcode::header;
+  std::uint64_t offset = 0;  ///< Of the head itself.
+  std::uint64_t length = 0;  ///< Of the content, which ends within the file.
+  [[nodiscard]] std::uint64_t end() const { return offset + kRecordHead + length; }
+};
+
+/// A record of the file with its content.
 struct FileRecord {
   Opcode opcode = Opcode::header;
   std::string content;
 };
 
+Result<RecordHead> read_head(const ByteSource& source, std::uint64_t offset) {
+  const Result<std::string> bytes = source.read(offset, kRecordHead);
+  if (!bytes) return tl::unexpected(bytes.error());
+  RecordHead head{static_cast<Opcode>((*bytes)[0]), offset, 0};
+  for (std::size_t i = 8; i >= 1; --i)
+    head.length = (head.length << 8U) | static_cast<std::uint8_t>((*bytes)[i]);
+  if (head.length > source.size - offset - kRecordHead)
+    return fail_at(offset, format("a record of {} bytes reaches past the end of the file", head.length));
+  return head;
+}
+
+Result<FileRecord> read_content(const ByteSource& source, const RecordHead& head) {
+  return source.read(head.offset + kRecordHead, head.length).map([&](std::string content) {
+    return FileRecord{head.opcode, std::move(content)};
+  });
+}
+
 Result<FileRecord> read_record(const ByteSource& source, std::uint64_t offset) {
-  const Result<std::string> head = source.read(offset, kRecordHead);
-  if (!head) return tl::unexpected(head.error());
-  std::uint64_t length = 0;
-  for (std::size_t i = 8; i >= 1; --i) length = (length << 8U) | static_cast<std::uint8_t>((*head)[i]);
-  return source.read(offset + kRecordHead, length).map([&](std::string content) {
-    return FileRecord{static_cast<Opcode>((*head)[0]), std::move(content)};
+  return read_head(source, offset).and_then([&](const RecordHead& head) {
+    return read_content(source, head);
   });
 }
 
@@ -129,15 +151,35 @@ Result<> scan_record(Contents& contents, std::uint64_t offset, const FileRecord&
   }
 }
 
+/// Attachments, which can be of any size, and other records that say nothing of messages are not read.
+bool is_of_use(Opcode opcode) {
+  switch (opcode) {
+    case Opcode::header:
+    case Opcode::schema:
+    case Opcode::channel:
+    case Opcode::message:
+    case Opcode::chunk:
+    case Opcode::metadata:
+      return true;
+    default:
+      return false;
+  }
+}
+
 /// Goes through the data section from its start. What was read before an error stays in `contents`.
 Result<> scan_data(const ByteSource& source, Contents& contents) {
   for (std::uint64_t offset = kMagic.size();;) {
     throw_if_cancelled();
-    const Result<FileRecord> record = read_record(source, offset);
-    if (!record) return tl::unexpected(record.error());
-    if (record->opcode == Opcode::data_end || record->opcode == Opcode::footer) return {};
-    if (Result<> scanned = scan_record(contents, offset, *record); !scanned) return scanned;
-    offset += kRecordHead + record->content.size();
+    const Result<RecordHead> head = read_head(source, offset);
+    if (!head) return tl::unexpected(head.error());
+    if (head->opcode == Opcode::data_end || head->opcode == Opcode::footer) return {};
+    if (is_of_use(head->opcode)) {
+      const Result<> scanned = read_content(source, *head).and_then([&](const FileRecord& record) {
+        return scan_record(contents, offset, record);
+      });
+      if (!scanned) return scanned;
+    }
+    offset = head->end();
   }
 }
 
@@ -201,11 +243,14 @@ Result<std::string> read_summary(const ByteSource& source, const Footer& footer)
   return summary;
 }
 
-Result<> read_metadata(const ByteSource& source, Contents& contents, const MetadataIndex& index) {
+Result<> read_metadata(const ByteSource& source, Contents& contents, DistinctParts& parts,
+                       const MetadataIndex& index) {
   const Result<FileRecord> record = read_record(source, index.offset);
   if (!record) return tl::unexpected(record.error());
   if (record->opcode != Opcode::metadata)
     return fail_at(index.offset, "the index announces metadata here, but there is another record");
+  if (!parts.add(index.offset, kRecordHead + record->content.size()))
+    return fail_at(index.offset, "the index names this record twice");
   return scan_record(contents, index.offset, *record);
 }
 
@@ -226,6 +271,9 @@ Result<> read_message_index(const ByteSource& source, Contents& contents, std::s
     const auto entries = decode_at<MessageIndex>(start + record->offset, record->content, "message index");
     if (!entries) return tl::unexpected(entries.error());
     for (const auto& [time, offset] : entries->entries) {
+      if (time > static_cast<std::uint64_t>(INT64_MAX))
+        return fail_at(start + record->offset,
+                       format("a message index has the time {} ns, after 2262", time));
       contents.messages.push_back({entries->channel_id, {static_cast<std::int64_t>(time)}, chunk, offset});
     }
   }
@@ -233,16 +281,24 @@ Result<> read_message_index(const ByteSource& source, Contents& contents, std::s
   return fail_at(start + cursor.offset(), "a message index reaches past its end");
 }
 
-Result<> take_summary_record(const ByteSource& source, Contents& contents, std::uint64_t offset,
-                             const RecordView& record) {
+Result<> take_chunk_index(Contents& contents, DistinctParts& parts, std::uint64_t offset, ChunkIndex index) {
+  if (!parts.add(index.chunk_start, std::max(index.chunk_length, kRecordHead)) ||
+      !parts.add(index.chunk_start + index.chunk_length, index.message_index_length))
+    return fail_at(offset, "the summary names a chunk twice, or chunks that overlap");
+  contents.chunks.push_back(std::move(index));
+  return {};
+}
+
+Result<> take_summary_record(const ByteSource& source, Contents& contents, DistinctParts& parts,
+                             std::uint64_t offset, const RecordView& record) {
   if (record.opcode == Opcode::chunk_index) {
-    return decode_at<ChunkIndex>(offset, record.content, "chunk index").map([&](ChunkIndex index) {
-      contents.chunks.push_back(std::move(index));
+    return decode_at<ChunkIndex>(offset, record.content, "chunk index").and_then([&](ChunkIndex index) {
+      return take_chunk_index(contents, parts, offset, std::move(index));
     });
   }
   if (record.opcode == Opcode::metadata_index) {
     return decode_at<MetadataIndex>(offset, record.content, "metadata index")
-        .and_then([&](const MetadataIndex& index) { return read_metadata(source, contents, index); });
+        .and_then([&](const MetadataIndex& index) { return read_metadata(source, contents, parts, index); });
   }
   return take_definition(contents, record.opcode, offset, record.content);
 }
@@ -251,10 +307,11 @@ Result<Contents> contents_from_summary(const ByteSource& source, const Footer& f
   const Result<std::string> summary = read_summary(source, footer);
   if (!summary) return tl::unexpected(summary.error());
   Contents contents;
+  DistinctParts parts;
   RecordCursor cursor(*summary);
   while (const std::optional<RecordView> record = cursor.next()) {
     const std::uint64_t offset = footer.summary_start + record->offset;
-    if (Result<> taken = take_summary_record(source, contents, offset, *record); !taken) {
+    if (Result<> taken = take_summary_record(source, contents, parts, offset, *record); !taken) {
       return tl::unexpected(taken.error());
     }
   }
@@ -269,22 +326,34 @@ Result<Contents> contents_from_summary(const ByteSource& source, const Footer& f
   return scan_record(contents, kMagic.size(), *header).map([&] { return std::move(contents); });
 }
 
-/// A summary may leave out any kind of record; without channels and chunks it cannot serve as the index.
+/// A summary may leave out any kind of record; without channels, their schemas and chunks it cannot serve as
+/// the index.
 bool is_complete(const Contents& contents) {
-  return !contents.chunks.empty() && std::ranges::all_of(contents.messages, [&](const MessageRef& message) {
-    return contents.channels.contains(message.channel_id);
+  const bool has_schemas = std::ranges::all_of(contents.channels, [&](const auto& channel) {
+    return channel.second.schema_id == 0 || contents.schemas.contains(channel.second.schema_id);
   });
+  return has_schemas && !contents.chunks.empty() &&
+         std::ranges::all_of(contents.messages, [&](const MessageRef& message) {
+           return contents.channels.contains(message.channel_id);
+         });
 }
 
-Result<Contents> read_contents(const ByteSource& source, const Footer& footer) {
-  if (footer.summary_start != 0) {
-    Result<Contents> contents = contents_from_summary(source, footer);
-    if (!contents || is_complete(*contents)) return contents;
+/// Of a file that has an end. The data of a file may be whole where its summary is not.
+Result<Contents> read_contents(const ByteSource& source, const Result<std::optional<Footer>>& footer) {
+  Result<> summary;
+  if (!footer) summary = tl::unexpected(footer.error());
+  if (footer && (*footer)->summary_start != 0) {
+    Result<Contents> contents = contents_from_summary(source, **footer);
+    if (contents && is_complete(*contents)) return contents;
+    if (!contents) summary = tl::unexpected(contents.error());
   }
   Contents contents;
-  return scan_data(source, contents).and_then([&] { return check_channels(contents); }).map([&] {
-    return std::move(contents);
-  });
+  Result<> read = scan_data(source, contents).and_then([&] { return check_channels(contents); });
+  if (!read && !summary)
+    return fail(
+        format("{}; its index cannot be used either ({})", read.error().message, summary.error().message));
+  if (!summary) contents.summary_fault = summary.error().message;
+  return read.map([&] { return std::move(contents); });
 }
 
 }  // namespace
@@ -292,8 +361,8 @@ Result<Contents> read_contents(const ByteSource& source, const Footer& footer) {
 Result<Reader> Reader::open(ByteSource source) {
   if (Result<> start = check_start(source); !start) return tl::unexpected(start.error());
   const Result<std::optional<Footer>> footer = read_footer(source);
-  if (!footer) return tl::unexpected(footer.error());
-  Result<Contents> found = *footer ? read_contents(source, **footer) : contents_before_cut(source);
+  const bool ends_early = footer && !*footer;
+  Result<Contents> found = ends_early ? contents_before_cut(source) : read_contents(source, footer);
   return std::move(found).map([&](Contents contents) {
     std::ranges::stable_sort(contents.messages, {}, &MessageRef::log_time);
     return Reader(std::move(source), std::move(contents));

@@ -204,7 +204,7 @@ TEST(Mcap, DamagedBytesAreAnErrorOrHarmless) {
       EXPECT_EQ(scan->cloud.points, make_scan(index, 3).cloud.points) << i;
     }
   }
-  EXPECT_GT(num_refused, 500);
+  EXPECT_GT(num_refused, 200);  // damage of the summary alone costs nothing
   EXPECT_GT(num_read, 100);
 }
 

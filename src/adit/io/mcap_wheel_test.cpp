@@ -120,10 +120,12 @@ TEST(McapWheel, ATwistThatTheWheelsMeasuredIsAddedUpWhereItIsAskedFor) {
   EXPECT_EQ(repeated->wheel.size(), twists.size() - 1);
   EXPECT_NE(repeated->warnings.back().find("1 of"), std::string::npos);
   twists[2].twist[5] = 1e300;
-  EXPECT_ERROR(file_with_links().twists("/t", twists).read({.wheel = "/t"}),
-               "/t, message 2: no robot is faster");
-  twists[1].twist[0] = std::numeric_limits<double>::infinity();
-  EXPECT_ERROR(file_with_links().twists("/t", twists).read({.wheel = "/t"}), "/t, message 1");
+  const Result<Recording> too_fast = file_with_links().twists("/t", twists).read({.wheel = "/t"});
+  ASSERT_TRUE(too_fast) << too_fast.error().message;
+  EXPECT_NE(too_fast->warnings.back().find("left out; the first, 2: no robot is faster"), std::string::npos)
+      << too_fast->warnings.back();
+  for (ros::TwistMessage& twist : twists) twist.twist[0] = std::numeric_limits<double>::infinity();
+  EXPECT_ERROR(file_with_links().twists("/t", twists).read({.wheel = "/t"}), "/t: ");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "adit/core/angles.hpp"
 #include "adit/core/format.hpp"
+#include "adit/io/far_out.hpp"
 #include "adit/io/text.hpp"
 
 namespace adit {
@@ -48,8 +49,11 @@ Result<Pose> parse_mount(std::string_view text) {
         format("mount '{}': {} numbers; 'x y z' or 'x y z roll pitch yaw' in metres and degrees are needed",
                text, numbers.size()));
   }
+  const Vector3 position(numbers[0], numbers[1], numbers[2]);
+  if (const Result<> checked = check_not_far_out(position); !checked)
+    return fail(format("mount '{}'", text), checked.error());
   if (numbers.size() == 3) return Pose::translation_of(numbers[0], numbers[1], numbers[2]);
-  return Pose(rotation_of(numbers[3], numbers[4], numbers[5]), {numbers[0], numbers[1], numbers[2]});
+  return Pose(rotation_of(numbers[3], numbers[4], numbers[5]), position);
 }
 
 std::string mount_text(const Pose& T_base_lidar) {

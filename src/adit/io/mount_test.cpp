@@ -56,5 +56,10 @@ TEST(Mount, AnythingElseIsRefusedWithTheFormThatIsNeeded) {
   EXPECT_FALSE(mount_of({}).value().has_value());
 }
 
+TEST(Mount, APositionThatOverflowsIsRefused) {
+  EXPECT_ERROR(parse_mount("0 1.7e308 0"), "mount '0 1.7e308 0': 1.7e+308 is not a coordinate in metres");
+  EXPECT_ERROR(parse_mount("0 0 -2e9 0 0 90"), "-2000000000 is not a coordinate");
+}
+
 }  // namespace
 }  // namespace adit

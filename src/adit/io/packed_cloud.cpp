@@ -62,6 +62,16 @@ std::optional<T> parse_number(std::string_view word) {
   return value;
 }
 
+/// Whether a cast to T has a meaning. The largest 64-bit integers are no doubles: a double as large as the
+/// nearest one is out of range already.
+template <class T>
+bool is_in_range(double value) {
+  using Limits = std::numeric_limits<T>;
+  if constexpr (std::is_floating_point_v<T>) return std::abs(value) <= static_cast<double>(Limits::max());
+  const double whole = std::trunc(value);
+  return whole >= static_cast<double>(Limits::min()) && whole < std::ldexp(1.0, Limits::digits);
+}
+
 std::int64_t nanoseconds_in(TimeUnit unit) {
   switch (unit) {
     case TimeUnit::seconds:
@@ -215,7 +225,7 @@ bool append_scalar(std::string& bytes, ScalarType type, std::string_view word) {
     }
     // Some writers print whole numbers as "12.0" or "1e3".
     const std::optional<double> value = parse_double(word);
-    if (!value || !(std::abs(*value) <= static_cast<double>(std::numeric_limits<T>::max()))) return false;
+    if (!value || !is_in_range<T>(*value)) return false;
     append_little_endian(bytes, static_cast<T>(*value));
     return true;
   });
@@ -297,11 +307,18 @@ Result<CloudFile> unpack(PackedCloud packed) {
     times = load_times(packed, unit);
   }
   leave_finite(file, times);
-  if (file.cloud.empty()) return fail(format("none of the {} points is finite", packed.num_points));
-  if (!packed.time) return file;
+  if (!packed.time || file.cloud.empty()) return file;
   return relative_times(times, packed.stamp).map([&](std::vector<std::int32_t> offsets) {
     file.cloud.time_offsets_ns = std::move(offsets);
     return std::move(file);
+  });
+}
+
+Result<CloudFile> unpack_file(PackedCloud packed) {
+  const std::size_t num_points = packed.num_points;
+  return unpack(std::move(packed)).and_then([&](CloudFile file) -> Result<CloudFile> {
+    if (file.cloud.empty()) return fail(format("none of the {} points is finite", num_points));
+    return file;
   });
 }
 

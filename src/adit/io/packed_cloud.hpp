@@ -65,9 +65,11 @@ void assign_field(PackedCloud& cloud, std::string_view name, PackedField field);
 /// Where the unit of point times is not given, it is the one that makes the sweep last 2 ms to 2 s; where
 /// none does, or a hundred times are not there to tell, floats are seconds and integers nanoseconds. Signed
 /// integers are nanoseconds.
-/// Fails when x, y or z is absent, a field reaches past the bytes, no point is finite, or times span more
-/// than 2.1 s.
+/// Fails when x, y or z is absent, a field reaches past the bytes, or times span more than 2.1 s. Where no
+/// point is finite, the cloud is empty.
 Result<CloudFile> unpack(PackedCloud packed);
+/// `unpack` of a file: fails where it has no finite point, too.
+Result<CloudFile> unpack_file(PackedCloud packed);
 
 /// Whether `config.stamp_at` is one of its values.
 Result<> check_stamp_at(const RecordingConfig& config);

@@ -235,7 +235,7 @@ Result<CloudFile> unpack_fields(const PcdHeader& header, std::string_view bytes,
       assign_field(packed, field.name, {field.type, offset, by_rows ? header.row_size() : field.size()});
     offset += by_rows ? field.size() : field.size() * header.num_points();
   }
-  return unpack(packed).map([&](CloudFile file) {
+  return unpack_file(packed).map([&](CloudFile file) {
     file.viewpoint = header.viewpoint;
     return file;
   });

@@ -137,7 +137,9 @@ class BinaryBody {
     if (!skip(1, size_of(*list.count_type))) return false;
     const double count = load_scalar(*list.count_type, bytes_.data() + begin, order_);
     const std::size_t first = offset_;
-    if (!(count >= 0.0) || !skip(static_cast<std::size_t>(count), size_of(list.type))) return false;
+    // Before the cast, which has no meaning for 2^64 and for what is less than nothing.
+    const bool is_count = count >= 0.0 && count <= static_cast<double>(bytes_.size());
+    if (!is_count || !skip(static_cast<std::size_t>(count), size_of(list.type))) return false;
     values.clear();
     for (std::size_t at = first; at < offset_; at += size_of(list.type))
       values.push_back(load_scalar(list.type, bytes_.data() + at, order_));
@@ -241,7 +243,7 @@ Result<CloudFile> read_vertices(Body body, const PlyHeader& header, std::optiona
     if (element.name != "vertex") continue;
     PackedCloud packed = packed_cloud(*rows, element);
     packed.time_unit = time_unit;
-    return unpack(packed);
+    return unpack_file(packed);
   }
   return fail(std::string(kNoVertices));
 }
@@ -261,7 +263,7 @@ Result<std::vector<Eigen::Vector3f>> unpack_vertices(std::string_view rows, cons
   PackedCloud packed = packed_cloud(rows, element);
   packed.intensity.reset();
   packed.time.reset();
-  return unpack(packed).and_then([](CloudFile file) -> Result<std::vector<Eigen::Vector3f>> {
+  return unpack_file(packed).and_then([](CloudFile file) -> Result<std::vector<Eigen::Vector3f>> {
     // Left out as in a cloud, they would shift the indices of the faces.
     if (file.num_skipped_nan > 0) return fail(format("{} vertices are not finite", file.num_skipped_nan));
     return std::move(file.cloud.points);

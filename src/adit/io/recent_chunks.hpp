@@ -19,6 +19,9 @@ namespace adit {
 /// thread.
 class RecentChunks {
  public:
+  /// Keeps so many bytes in all, or a single chunk of more.
+  explicit RecentChunks(std::size_t most_bytes = std::size_t{256} << 20U) : most_bytes_(most_bytes) {}
+
   /// An expanded chunk; lives on with its users when others take its place here.
   using Records = std::shared_ptr<const std::string>;
 
@@ -46,15 +49,21 @@ class RecentChunks {
   void keep(std::size_t chunk, Records records) {
     const std::scoped_lock lock(mutex_);
     if (place_of(chunk) != recent_.end()) return;  // another thread was faster
+    num_bytes_ += records->size();
     recent_.emplace_back(chunk, std::move(records));
-    if (recent_.size() > kMost) recent_.pop_front();
+    while (recent_.size() > kMost || (recent_.size() > 1 && num_bytes_ > most_bytes_)) {
+      num_bytes_ -= recent_.front().second->size();
+      recent_.pop_front();
+    }
   }
 
   std::deque<std::pair<std::size_t, Records>>::iterator place_of(std::size_t chunk) {
     return std::ranges::find(recent_, chunk, &std::pair<std::size_t, Records>::first);
   }
 
+  std::size_t most_bytes_;
   std::mutex mutex_;
+  std::size_t num_bytes_ = 0;                           ///< Of all in `recent_`.
   std::deque<std::pair<std::size_t, Records>> recent_;  ///< The one used last at the back.
 };
 

@@ -3,6 +3,7 @@
 #include "adit/io/robot_map_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -11,9 +12,12 @@
 #include <utility>
 
 #include "adit/core/decompositions.hpp"
+#include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/compression.hpp"
 #include "adit/io/crc32.hpp"
+#include "adit/io/far_out.hpp"
+#include "adit/io/tum.hpp"
 
 namespace adit {
 namespace {
@@ -82,6 +86,29 @@ bool size_of_vector(Archive& archive, Vector& items, std::size_t item_size) {
   return true;
 }
 
+/// Of a vector that is as long as the keyframes, which come before it. That many of them are in the file: a
+/// count alone does not make the memory of more.
+template <class Archive, class Map, class Vector>
+bool size_of_each(Archive& archive, const Map& map, Vector& items) {
+  std::uint64_t count = items.size();
+  archive.number(count);
+  if constexpr (Archive::kReads) {
+    if (count != map.keyframes.size()) archive.refuse();
+    if (!archive.has(count, 1)) return false;
+    items.resize(count);
+  }
+  return true;
+}
+
+template <class Archive>
+bool flag(Archive& archive, bool value) {
+  std::uint8_t byte = value ? 1 : 0;
+  archive.number(byte);
+  if constexpr (Archive::kReads)
+    if (byte > 1) archive.refuse();
+  return byte == 1;
+}
+
 /// Vectors of what can be copied byte by byte.
 template <class Archive, class Vector>
 void plain_vector(Archive& archive, Vector& items) {
@@ -102,7 +129,7 @@ void pose(Archive& archive, P& value) {
   archive.raw(t.data(), 3 * sizeof(double));
   if constexpr (Archive::kReads) {
     constexpr double kRounding = 1e-9;
-    if (q.coeffs().allFinite() && t.allFinite() && std::abs(q.norm() - 1.0) < kRounding)
+    if (check_not_far_out(t) && std::abs(q.norm() - 1.0) < kRounding)
       value = Pose(q, t);
     else
       archive.refuse();
@@ -150,16 +177,6 @@ void keyframe(Archive& archive, K& value) {
   }
 }
 
-template <class Archive, class Bits>
-void bits(Archive& archive, Bits& value) {
-  if (!size_of_vector(archive, value, 1)) return;
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    std::uint8_t bit = value[i] ? 1 : 0;
-    archive.number(bit);
-    if constexpr (Archive::kReads) value[i] = bit != 0;
-  }
-}
-
 template <class Archive, class Config>
 void scan_context_config(Archive& archive, Config& value) {
   archive.number(value.num_rings);
@@ -178,21 +195,27 @@ void transfer(Archive& archive, Map& map) {
   plain_vector(archive, map.innovations);
   archive.number(map.num_degenerate);
   archive.number(map.num_refused);
-  if (size_of_vector(archive, map.keyframes, 8 * sizeof(double)))
+  // Stamp, pose and three counts.
+  if (size_of_vector(archive, map.keyframes, 11 * sizeof(double)))
     for (auto& entry : map.keyframes) keyframe(archive, entry);
-  if (size_of_vector(archive, map.step_covariances, sizeof(Matrix6)))
+  if (size_of_each(archive, map, map.step_covariances))
     for (auto& covariance : map.step_covariances) archive.raw(covariance.data(), sizeof(Matrix6));
-  if (size_of_vector(archive, map.pose_noise, sizeof(Matrix6)))
+  if (size_of_each(archive, map, map.pose_noise))
     for (auto& covariance : map.pose_noise) archive.raw(covariance.data(), sizeof(Matrix6));
   scan_context_config(archive, map.scan_context);
-  if (size_of_vector(archive, map.places, 1))
+  if (size_of_each(archive, map, map.places))
     for (auto& entry : map.places) place(archive, entry);
-  if (size_of_vector(archive, map.tunnel, 3 * sizeof(double)))
+  if (size_of_each(archive, map, map.tunnel))
     for (auto& verdict : map.tunnel) {
       archive.raw(verdict.extents.data(), 3 * sizeof(double));
-      archive.number(verdict.tunnel_like);
+      const bool tunnel_like = flag(archive, verdict.tunnel_like);
+      if constexpr (Archive::kReads) verdict.tunnel_like = tunnel_like;
     }
-  bits(archive, map.searchable);
+  if (size_of_each(archive, map, map.searchable))
+    for (std::size_t k = 0; k < map.searchable.size(); ++k) {
+      const bool searchable = flag(archive, map.searchable[k]);
+      if constexpr (Archive::kReads) map.searchable[k] = searchable;
+    }
   plain_vector(archive, map.unconfirmed);
   archive.raw(map.viewpoint.data(), 3 * sizeof(double));
 }
@@ -212,21 +235,50 @@ bool is_whole(const ScanContext& place, const ScanContextConfig& config) {
 }
 
 /// The solver inverts the covariance of each step but the first.
-bool are_usable(const std::vector<Matrix6>& step_covariances) {
-  for (std::size_t k = 1; k < step_covariances.size(); ++k)
-    if (!step_covariances[k].allFinite() || !is_positive_definite(step_covariances[k])) return false;
-  return true;
+bool is_usable(const Matrix6& step_covariance, std::size_t k) {
+  return step_covariance.allFinite() && (k == 0 || is_positive_definite(step_covariance));
 }
 
-bool is_consistent(const RobotMap& map) {
-  const std::size_t n = map.keyframes.size();
-  return map.step_covariances.size() == n && map.pose_noise.size() == n && map.places.size() == n &&
-         map.tunnel.size() == n && map.searchable.size() == n && map.unconfirmed.size() == n &&
-         are_usable(map.step_covariances) &&
-         std::ranges::all_of(map.places,
-                             [&](const ScanContext& place) { return is_whole(place, map.scan_context); }) &&
-         std::ranges::all_of(map.keyframes,
-                             [](const Keyframe& keyframe) { return is_whole(*keyframe.cloud); });
+/// Far from overflow, and each after the one before.
+template <class Stamped>
+Result<> check_ascending(const std::vector<Stamped>& all, const char* things) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].stamp < Stamp{-kLargestStamp.ns} || all[i].stamp > kLargestStamp)
+      return fail(format("{} {}: its stamp is out of range", things, i));
+    if (i > 0 && all[i].stamp <= all[i - 1].stamp)
+      return fail(format("{} {}: its stamp is not after that of the one before", things, i));
+  }
+  return {};
+}
+
+Result<> check_keyframe(const RobotMap& map, std::size_t k) {
+  const PointCloud& cloud = *map.keyframes[k].cloud;
+  const bool are_finite =
+      std::ranges::all_of(cloud.points, [](const Eigen::Vector3f& p) { return p.allFinite(); });
+  const std::array faults = {
+      std::pair(!is_whole(cloud), "its cloud's arrays differ in length"),
+      std::pair(!are_finite, "a point is not finite"),
+      std::pair(!is_usable(map.step_covariances[k], k), "its step's covariance is not positive definite"),
+      std::pair(!map.pose_noise[k].allFinite(), "its pose's noise is not finite"),
+      std::pair(!is_whole(map.places[k], map.scan_context), "its place does not fit the grid of places"),
+      std::pair(!map.tunnel[k].extents.allFinite(), "its extents are not finite"),
+      std::pair(!std::isfinite(map.unconfirmed[k]), "its share of unconfirmed returns is not finite")};
+  for (const auto& [is_there, fault] : faults)
+    if (is_there) return fail(format("keyframe {}: {}", k, fault));
+  return {};
+}
+
+/// What RobotMap promises and its users rely on.
+Result<> check_map(RobotMap& map) {
+  if (map.unconfirmed.size() != map.keyframes.size()) return fail("its lists differ in length");
+  if (const Result<> checked = check_fields(fields_of(map.scan_context)); !checked)
+    return fail("scan_context", checked.error());
+  if (const Result<> checked = check_ascending(map.odometry, "pose"); !checked) return checked;
+  if (const Result<> checked = check_ascending(map.keyframes, "keyframe"); !checked) return checked;
+  for (std::size_t k = 0; k < map.keyframes.size(); ++k)
+    if (const Result<> checked = check_keyframe(map, k); !checked) return checked;
+  if (!map.viewpoint.allFinite()) return fail("the position of the LiDAR is not finite");
+  return {};
 }
 
 }  // namespace
@@ -257,11 +309,13 @@ Result<RobotMap> parse_robot_map(std::string_view bytes) {
   head.number(sum);
   const Result<std::string> plain = decompress(bytes.substr(kHead), "zstd", size);
   if (!plain) return tl::unexpected(plain.error());
-  if (crc32(*plain) != sum) return fail("the map is damaged");
+  if (crc32(*plain) != sum) return fail("the map is damaged; map the recording again");
   Reader content(*plain);
   RobotMap map;
   transfer(content, map);
-  if (!content.done() || !is_consistent(map)) return fail("the map is damaged");
+  if (!content.done()) return fail("the map is damaged; map the recording again");
+  if (const Result<> checked = check_map(map); !checked)
+    return fail(format("the map is damaged: {}; map the recording again", checked.error().message));
   for (std::size_t k = 0; k < map.keyframes.size(); ++k)
     map.keyframes[k].id = {map.id, static_cast<std::uint32_t>(k)};
   return map;

@@ -3,8 +3,15 @@
 #include "adit/io/robot_map_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <cstring>
+#include <limits>
 
 #include "adit/core/rng.hpp"
+#include "adit/io/compression.hpp"
+#include "adit/io/crc32.hpp"
+#include "adit/io/packed_cloud.hpp"
 #include "support/files.hpp"
 
 namespace adit {
@@ -83,6 +90,99 @@ TEST(RobotMapFile, DamageAndOtherVersionsAreRefused) {
   other[9] = '0';
   EXPECT_ERROR(parse_robot_map(other), "before layout 7");
   EXPECT_ERROR(read_robot_map("/nonexistent.map"), "nonexistent");
+}
+
+/// What the bytes of a map pack, changed by `edit`, with the right size and sum.
+template <class Edit>
+std::string edited(const RobotMap& map, const Edit& edit) {
+  const std::string bytes = robot_map_bytes(map);
+  const std::size_t magic = bytes.find('\n') + 1;
+  std::uint64_t size = 0;
+  std::memcpy(&size, bytes.data() + magic, sizeof(size));
+  std::string plain = decompress(std::string_view(bytes).substr(magic + 12), "zstd", size).value();
+  edit(plain);
+  std::string out = bytes.substr(0, magic);
+  append_little_endian(out, static_cast<std::uint64_t>(plain.size()));
+  append_little_endian(out, crc32(plain));
+  return out + compress_zstd(plain);
+}
+
+// The end of a map of five keyframes: tunnel (extents, flag), searchable, unconfirmed, viewpoint.
+constexpr std::size_t kViewpoint = 24;
+constexpr std::size_t kUnconfirmed = 8 + 5 * 4;
+constexpr std::size_t kSearchable = 8 + 5;
+constexpr std::size_t kTunnel = 8 + 5 * 25;
+constexpr std::size_t kPlaces = 8 + 5 * (2 * 4 + 4 * 8 + (20 * 60 + 60 + 20 + 60) * 4);
+
+TEST(RobotMapFile, FlagsAreZeroOrOne) {
+  const RobotMap map = random_map();
+  EXPECT_TRUE(parse_robot_map(edited(map, [](std::string&) {})));
+  for (const std::size_t from_end : {kViewpoint + kUnconfirmed + 1,                   // searchable
+                                     kViewpoint + kUnconfirmed + kSearchable + 1}) {  // tunnel_like
+    EXPECT_TRUE(
+        parse_robot_map(edited(map, [&](std::string& plain) { plain[plain.size() - from_end] = 1; })));
+    EXPECT_ERROR(
+        parse_robot_map(edited(map, [&](std::string& plain) { plain[plain.size() - from_end] = 2; })),
+        "the map is damaged; map the recording again");
+  }
+}
+
+/// The most memory that the program has had, bytes.
+std::size_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024U;
+}
+
+TEST(RobotMapFile, AFewBytesDoNotMakeMillionsOfPlaces) {
+  constexpr std::uint64_t kMany = 8'000'000;
+  const std::string bytes = edited(random_map(), [&](std::string& plain) {
+    const std::size_t at = plain.size() - kViewpoint - kUnconfirmed - kSearchable - kTunnel - kPlaces;
+    ASSERT_EQ(plain[at], 5);
+    std::memcpy(plain.data() + at, &kMany, sizeof(kMany));
+    plain.append(kMany, '\0');
+  });
+  const std::size_t before = peak_memory();
+  EXPECT_ERROR(parse_robot_map(bytes), "the map is damaged");
+  EXPECT_LT(peak_memory() - before, 400'000'000U);  // Places would take 800 MB.
+}
+
+TEST(RobotMapFile, WhatItsUsersRelyOnIsChecked) {
+  const auto expect_refused = [](const auto& damage, const std::string& fault) {
+    RobotMap map = random_map();
+    damage(map);
+    EXPECT_ERROR(parse_robot_map(robot_map_bytes(map)), "the map is damaged: " + fault);
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  expect_refused([](RobotMap& map) { map.odometry[2].stamp = map.odometry[1].stamp; },
+                 "pose 2: its stamp is not after that of the one before; map the recording again");
+  expect_refused([](RobotMap& map) { map.keyframes[3].stamp = map.keyframes[1].stamp; },
+                 "keyframe 3: its stamp is not after");
+  expect_refused([](RobotMap& map) { map.odometry[4].stamp.ns = std::numeric_limits<std::int64_t>::max(); },
+                 "pose 4: its stamp is out of range");
+  expect_refused(
+      [](RobotMap& map) {
+        auto cloud = std::make_shared<PointCloud>(*map.keyframes[2].cloud);
+        cloud->points[7].y() = std::numeric_limits<float>::infinity();
+        map.keyframes[2].cloud = cloud;
+      },
+      "keyframe 2: a point is not finite");
+  expect_refused([](RobotMap& map) { map.viewpoint.x() = kNan; }, "the position of the LiDAR is not finite");
+  expect_refused([](RobotMap& map) { map.pose_noise[1](2, 3) = kNan; },
+                 "keyframe 1: its pose's noise is not finite");
+  expect_refused([](RobotMap& map) { map.tunnel[0].extents.z() = kNan; },
+                 "keyframe 0: its extents are not finite");
+  expect_refused([](RobotMap& map) { map.step_covariances[4] = -Matrix6::Identity(); },
+                 "keyframe 4: its step's covariance is not positive definite");
+  expect_refused(
+      [](RobotMap& map) {
+        map.scan_context.num_rings = 0;
+        for (ScanContext& place : map.places)
+          place = ScanContext{0, 60, {}, std::vector<float>(60), {}, std::vector<float>(60)};
+      },
+      "scan_context: num_rings");
+  expect_refused([](RobotMap& map) { map.scan_context.num_sectors = 30; },
+                 "keyframe 0: its place does not fit the grid of places");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/io/compression.hpp"
+#include "adit/io/distinct_parts.hpp"
 #include "adit/io/recent_chunks.hpp"
 
 namespace adit {
@@ -126,6 +127,7 @@ struct Place {
 
 struct Contents {
   Bag bag;  ///< Without `read`.
+  TopicIndex topics;
   std::map<std::uint32_t, std::size_t> topic_of_connection;
   std::vector<std::uint64_t> chunks;  ///< Offsets of their records.
   std::vector<Place> places;          ///< BagMessage::where counts these.
@@ -144,7 +146,7 @@ struct Contents {
     const std::optional<HeaderFields> fields = fields_in(data);
     if (!id || !fields) return fail_at(offset, "damaged connection record");
     const BagTopic topic{text_in(head, "topic"), type_in_ros2(text_in(*fields, "type")), "ros1"};
-    topic_of_connection[*id] = topic_index(bag.topics, topic);
+    topic_of_connection[*id] = topics.of(topic, bag.topics);
     return {};
   }
 };
@@ -214,7 +216,7 @@ Result<> scan_file(const ByteSource& source, Contents& contents) {
 
 /// The messages of one chunk, from the index records behind it.
 Result<> read_index(const ByteSource& source, std::uint64_t offset, std::uint32_t num_connections,
-                    Contents& contents) {
+                    DistinctParts& parts, Contents& contents) {
   const Result<Record> chunk = read_record(source, offset);
   if (!chunk) return tl::unexpected(chunk.error());
   const std::size_t number = contents.chunks.size();
@@ -234,26 +236,39 @@ Result<> read_index(const ByteSource& source, std::uint64_t offset, std::uint32_
     }
     at = index->end();
   }
+  if (!parts.add(offset, at - offset))
+    return fail_at(offset, "the index names a chunk twice, or chunks that overlap");
   return {};
 }
 
-/// Connections and chunks, which a whole file lists at its end.
-Result<> read_lists(const ByteSource& source, std::uint64_t index_at, Contents& contents) {
+/// Connections and chunks, which a whole file lists at its end. As many as its header says: a file that was
+/// cut between two of these records looks whole but for that.
+Result<> read_lists(const ByteSource& source, const Record& header, std::uint64_t index_at,
+                    Contents& contents) {
+  if (index_at > source.size) return fail_at(source.size, "the file ends in front of its index");
+  std::uint32_t num_connections = 0;
+  DistinctParts parts;
   for (std::uint64_t at = index_at; at < source.size;) {
     throw_if_cancelled();
     const Result<Record> record = read_record(source, at);
     if (!record) return tl::unexpected(record.error());
     Result<> taken;
-    if (record->op == Op::connection) taken = add_connection_record(source, *record, contents);
+    if (record->op == Op::connection) {
+      taken = add_connection_record(source, *record, contents);
+      ++num_connections;
+    }
     if (record->op == Op::chunk_info) {
       const auto chunk = number_in<std::uint64_t>(record->fields, "chunk_pos");
       const auto count = number_in<std::uint32_t>(record->fields, "count");
       if (!chunk || !count) return fail_at(at, "damaged record of a chunk");
-      taken = read_index(source, *chunk, *count, contents);
+      taken = read_index(source, *chunk, *count, parts, contents);
     }
     if (!taken) return taken;
     at = record->end();
   }
+  if (number_in<std::uint32_t>(header.fields, "conn_count") != num_connections ||
+      number_in<std::uint32_t>(header.fields, "chunk_count") != contents.chunks.size())
+    return fail_at(source.size, "the index has other numbers of connections and chunks than the header says");
   return {};
 }
 
@@ -263,19 +278,27 @@ Result<Contents> read_contents(const ByteSource& source) {
   if (*magic != kMagic) return fail("byte 0: not a bag of ROS 1 (format 2.0), or truncated");
   const Result<Record> header = read_record(source, kMagic.size());
   if (!header) return tl::unexpected(header.error());
+  // Where the recorder did not get to write the index, it is 0, or behind the cut.
   const std::uint64_t index_at = number_in<std::uint64_t>(header->fields, "index_pos").value_or(0);
   Contents contents;
-  // Where the recorder did not get to write the index, it is 0, or behind the cut.
-  if (index_at != 0 && index_at <= source.size && read_lists(source, index_at, contents)) return contents;
-  contents = {};
+  Result<> listed;
+  if (index_at != 0) {
+    listed = read_lists(source, *header, index_at, contents);
+    if (listed) return contents;
+    contents = {};
+  }
   const Result<> scanned = scan_file(source, contents);
-  if (contents.bag.messages.empty())
+  const std::size_t num_messages = contents.bag.messages.size();
+  if (num_messages == 0)
     return scanned ? fail_at(source.size, "the file ends without a message")
                    : tl::unexpected(scanned.error());
-  if (!scanned || index_at != 0)
+  if (!scanned)
     contents.bag.warnings.push_back(format("the file breaks off: {}; {} messages in front of that are read",
-                                           scanned ? "its index is not whole" : scanned.error().message,
-                                           contents.bag.messages.size()));
+                                           scanned.error().message, num_messages));
+  else if (!listed)
+    contents.bag.warnings.push_back(format(
+        "its index cannot be used ({}); the file was gone through instead, and its {} messages are read",
+        listed.error().message, num_messages));
   return contents;
 }
 

@@ -96,16 +96,29 @@ std::string message_record(const Ros1Message& message) {
       message.data);
 }
 
+std::string connection_record(std::uint32_t id, const std::string& topic, const std::string& type) {
+  return record(field_of("op", std::uint8_t{7}) + field_of("conn", id) + field("topic", topic),
+                field("topic", topic) + field("type", type));
+}
+
+std::string bag_header(std::uint64_t index_at, std::uint32_t num_connections, std::uint32_t num_chunks) {
+  return record(field_of("op", std::uint8_t{3}) + field_of("index_pos", index_at) +
+                    field_of("conn_count", num_connections) + field_of("chunk_count", num_chunks),
+                std::string(100, ' '));
+}
+
+std::string chunk_record(const std::string& records) {
+  return record(field_of("op", std::uint8_t{5}) + field("compression", "none") +
+                    field_of("size", static_cast<std::uint32_t>(records.size())),
+                records);
+}
+
 /// A bag as a recorder leaves it that was killed: one plain chunk, no index.
 std::string recording_bytes() {
   std::string chunk;
-  const auto connection = [&](std::uint32_t id, const std::string& topic, const std::string& type) {
-    chunk += record(field_of("op", std::uint8_t{7}) + field_of("conn", id) + field("topic", topic),
-                    field("topic", topic) + field("type", type));
-  };
-  connection(0, "/robot_0/points", "sensor_msgs/PointCloud2");
-  connection(1, "/robot_0/odom", "nav_msgs/Odometry");
-  connection(2, "/tf_static", "tf2_msgs/TFMessage");
+  chunk += connection_record(0, "/robot_0/points", "sensor_msgs/PointCloud2");
+  chunk += connection_record(1, "/robot_0/odom", "nav_msgs/Odometry");
+  chunk += connection_record(2, "/tf_static", "tf2_msgs/TFMessage");
   chunk += message_record({2, {7}, transform("base_link", "os_lidar", test::T_base_ouster)});
   for (std::size_t i = 0; i < 3; ++i) {
     const Scan scan = test::make_scan(i, 5);
@@ -114,12 +127,53 @@ std::string recording_bytes() {
         {1, scan.stamp, odometry(scan.stamp, Pose::planar(0.5 * static_cast<double>(i), 0, 0))});
   }
   std::string bytes = "#ROSBAG V2.0\n";
-  bytes += record(field_of("op", std::uint8_t{3}) + field_of("index_pos", std::uint64_t{0}) +
-                      field_of("conn_count", std::uint32_t{0}) + field_of("chunk_count", std::uint32_t{0}),
-                  std::string(100, ' '));
-  return bytes + record(field_of("op", std::uint8_t{5}) + field("compression", "none") +
-                            field_of("size", static_cast<std::uint32_t>(chunk.size())),
-                        chunk);
+  return bytes + bag_header(0, 0, 0) + chunk_record(chunk);
+}
+
+/// Two chunks, each with three messages of one connection, behind each its index, and the lists at the end.
+struct IndexedBag {
+  std::string bytes;
+  std::size_t index_at = 0;
+};
+
+IndexedBag indexed_bag(std::uint32_t times_each_chunk_is_named = 1) {
+  const std::string magic = "#ROSBAG V2.0\n";
+  const std::size_t first = magic.size() + bag_header(0, 0, 0).size();
+  std::string body;
+  std::string connections;
+  std::string chunks;
+  for (std::uint32_t c = 0; c < 2; ++c) {
+    const std::string connection = connection_record(c, format("/odom_{}", c), "nav_msgs/Odometry");
+    std::string records = connection;
+    std::string entries;
+    for (std::uint32_t m = 0; m < 3; ++m) {
+      append_little_endian(entries, std::uint64_t{10 * c + m});  // in seconds
+      append_little_endian(entries, static_cast<std::uint32_t>(records.size()));
+      records += message_record({c, {(10 * c + m) * 1'000'000'000LL}, format("message {} {}", c, m)});
+    }
+    for (std::uint32_t i = 0; i < times_each_chunk_is_named; ++i)
+      chunks += record(field_of("op", std::uint8_t{6}) + field_of("ver", std::uint32_t{1}) +
+                           field_of("chunk_pos", std::uint64_t{first + body.size()}) +
+                           field_of("count", std::uint32_t{1}),
+                       Ros1Writer().number(c).number(std::uint32_t{3}).bytes());
+    connections += connection;
+    body += chunk_record(records);
+    body += record(field_of("op", std::uint8_t{4}) + field_of("ver", std::uint32_t{1}) + field_of("conn", c) +
+                       field_of("count", std::uint32_t{3}),
+                   entries);
+  }
+  const std::size_t index_at = first + body.size();
+  return {magic + bag_header(index_at, 2, 2 * times_each_chunk_is_named) + body + connections + chunks,
+          index_at};
+}
+
+void expect_six_messages(const Result<Bag>& bag) {
+  ASSERT_TRUE(bag) << bag.error().message;
+  ASSERT_EQ(bag->messages.size(), 6U);
+  for (std::size_t m = 0; m < 6; ++m) {
+    EXPECT_EQ(bag->topics.at(bag->messages[m].topic).name, format("/odom_{}", m / 3));
+    EXPECT_EQ(bag->read(bag->messages[m]).value(), format("message {} {}", m / 3, m % 3));
+  }
 }
 
 TEST(Ros1Bag, IsARecordingLikeAnyOther) {
@@ -145,6 +199,44 @@ TEST(Ros1Bag, EveryTruncationIsReadSoFarOrAnError) {
     ASSERT_FALSE(bag) << "the only chunk is cut at " << size;
     EXPECT_NE(bag.error().message.find("byte"), std::string::npos) << bag.error().message;
   }
+}
+
+TEST(Ros1Bag, ACutInTheListsAtItsEndCostsNoMessage) {
+  const IndexedBag whole = indexed_bag();
+  const Result<Bag> indexed = open_ros1_bag(memory_source(whole.bytes));
+  expect_six_messages(indexed);
+  EXPECT_TRUE(indexed->warnings.empty());
+  for (std::size_t size = whole.index_at; size < whole.bytes.size(); ++size) {
+    const Result<Bag> cut = open_ros1_bag(memory_source(whole.bytes.substr(0, size)));
+    ASSERT_NO_FATAL_FAILURE(expect_six_messages(cut)) << "cut at " << size;
+    ASSERT_EQ(cut->warnings.size(), 1U) << "cut at " << size;
+    EXPECT_NE(cut->warnings[0].find("6 messages"), std::string::npos) << cut->warnings[0];
+  }
+}
+
+TEST(Ros1Bag, AnIndexThatNamesAChunkTwiceIsNotTrusted) {
+  for (const std::uint32_t times : {2U, 1000U}) {
+    const Result<Bag> bag = open_ros1_bag(memory_source(indexed_bag(times).bytes));
+    expect_six_messages(bag);
+    ASSERT_EQ(bag->warnings.size(), 1U);
+    EXPECT_NE(bag->warnings[0].find("the index names a chunk twice"), std::string::npos) << bag->warnings[0];
+  }
+}
+
+TEST(Ros1Bag, MayHaveAnyNumberOfConnections) {
+  constexpr std::uint32_t kNum = 20'000;
+  std::string chunk;
+  for (std::uint32_t c = 0; c < kNum; ++c)
+    chunk += connection_record(c, format("/odom_{}", c % (kNum / 2)), "nav_msgs/Odometry");
+  for (const std::uint32_t c : {kNum - 1, kNum / 2 - 1, 7U}) chunk += message_record({c, {5}, "x"});
+  const Result<Bag> bag =
+      open_ros1_bag(memory_source("#ROSBAG V2.0\n" + bag_header(0, 0, 0) + chunk_record(chunk)));
+  ASSERT_TRUE(bag) << bag.error().message;
+  EXPECT_EQ(bag->topics.size(), kNum / 2) << "several connections have one topic";
+  ASSERT_EQ(bag->messages.size(), 3U);
+  EXPECT_EQ(bag->messages[0].topic, bag->messages[1].topic);
+  EXPECT_EQ(bag->topics[bag->messages[0].topic].name, format("/odom_{}", kNum / 2 - 1));
+  EXPECT_EQ(bag->topics[bag->messages[2].topic].name, "/odom_7");
 }
 
 TEST(Ros1Bag, DamagedBytesAreAnErrorOrHarmless) {

@@ -7,6 +7,7 @@
 
 #include "adit/core/format.hpp"
 #include "adit/io/cdr.hpp"
+#include "adit/io/far_out.hpp"
 #include "adit/io/packed_cloud.hpp"
 
 namespace adit::ros {
@@ -43,10 +44,10 @@ Result<Pose> read_pose(MessageReader& reader) {
   Eigen::Quaterniond q;
   for (double& value : q.coeffs()) value = reader.number<double>();  // stored as x y z w, in the file too
   if (!reader.ok()) return fail(format("byte {}: the message ends inside a pose", reader.offset()));
-  if (!t.allFinite() || !(std::abs(q.norm() - 1.0) < 0.01)) {
-    return fail(format("byte {}: the position is not finite or the quaternion does not have length 1",
-                       reader.offset()));
-  }
+  if (const Result<> checked = check_not_far_out(t); !checked)
+    return fail(format("byte {}", reader.offset()), checked.error());
+  if (!(std::abs(q.norm() - 1.0) < 0.01))
+    return fail(format("byte {}: the quaternion does not have length 1", reader.offset()));
   if (std::abs(q.norm() - 1.0) > 1e-12) q.normalize();
   return Pose(q, t);
 }
@@ -73,6 +74,7 @@ std::optional<ScalarType> scalar_type(std::uint8_t datatype) {
 }
 
 Result<CloudMessage> unpacked(const PackedCloud& packed, CloudMessage out) {
+  if (packed.num_points == 0) return out;  // nothing was in view; drivers then state no fields either
   return unpack(packed).map([&](CloudFile file) {
     out.scan.cloud = std::move(file.cloud);
     out.time_unit = file.time_unit;
@@ -263,9 +265,9 @@ std::string encode_transforms(const std::vector<TransformMessage>& transforms) {
   return writer.take();
 }
 
-Result<std::vector<TransformMessage>> decode_transforms(std::string_view message, MessageEncoding encoding) {
+Result<TransformsMessage> decode_transforms(std::string_view message, MessageEncoding encoding) {
   MessageReader reader(message, encoding);
-  std::vector<TransformMessage> transforms;
+  TransformsMessage transforms;
   const auto count = reader.number<std::uint32_t>();
   for (std::uint32_t i = 0; i < count; ++i) {
     TransformMessage transform;
@@ -273,9 +275,13 @@ Result<std::vector<TransformMessage>> decode_transforms(std::string_view message
     transform.frame = reader.text();
     transform.child = reader.text();
     const Result<Pose> pose = read_pose(reader);
-    if (!pose) return tl::unexpected(pose.error());
+    if (!reader.ok()) return fail("the TFMessage ends early");
+    if (!pose) {
+      transforms.left_out.push_back(pose.error());
+      continue;
+    }
     transform.pose.T_world_body = *pose;
-    transforms.push_back(std::move(transform));
+    transforms.links.push_back(std::move(transform));
   }
   if (!reader.ok()) return fail("the TFMessage ends early");
   return transforms;

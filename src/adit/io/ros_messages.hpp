@@ -68,14 +68,20 @@ struct OdometryMessage : TransformMessage {
 };
 /// In CDR. The stamp must fit: see `fits_ros`.
 [[nodiscard]] std::string encode_odometry(const OdometryMessage& odometry);
-/// Fails when the message ends early, or its pose is not finite or its quaternion not of length 1.
+/// Fails when the message ends early, or its pose is none: not finite, farther away than 1e9 m, or with a
+/// quaternion not of length 1.
 Result<OdometryMessage> decode_odometry(std::string_view message,
                                         MessageEncoding encoding = MessageEncoding::cdr);
 /// In CDR. The stamps must fit: see `fits_ros`.
 [[nodiscard]] std::string encode_transforms(const std::vector<TransformMessage>& transforms);
-/// Fails like decode_odometry, for any of the poses.
-Result<std::vector<TransformMessage>> decode_transforms(std::string_view message,
-                                                        MessageEncoding encoding = MessageEncoding::cdr);
+/// What a TFMessage links.
+struct TransformsMessage {
+  std::vector<TransformMessage> links;
+  std::vector<Error> left_out;  ///< Of each link whose pose is none (tf2 drops such links as well): why.
+};
+/// Fails when the message ends early.
+Result<TransformsMessage> decode_transforms(std::string_view message,
+                                            MessageEncoding encoding = MessageEncoding::cdr);
 
 /// A twist of the body in its own frame: metres per second, radians per second.
 struct TwistMessage {

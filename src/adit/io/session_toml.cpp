@@ -13,6 +13,7 @@
 
 #include "adit/core/format.hpp"
 #include "adit/core/version.hpp"
+#include "adit/io/toml_depth.hpp"
 
 namespace adit {
 namespace {
@@ -330,6 +331,7 @@ std::string session_toml(const Session& session) {
 }
 
 Result<SessionHeader> parse_session_toml(std::string_view text) {
+  if (const Result<> checked = check_toml_depth(text); !checked) return tl::unexpected(checked.error());
   try {
     const toml::table table = toml::parse(text);
     SessionHeader header;
@@ -345,6 +347,7 @@ Result<SessionHeader> parse_session_toml(std::string_view text) {
 }
 
 Result<std::vector<SavedMerge>> parse_session_merges(std::string_view text) {
+  if (const Result<> checked = check_toml_depth(text); !checked) return tl::unexpected(checked.error());
   try {
     const toml::table table = toml::parse(text);
     const std::vector<std::string> robots = strings_of(table["robots"].node());

@@ -5,10 +5,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
 
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
+#include "adit/io/far_out.hpp"
 #include "adit/io/text.hpp"
 
 namespace adit {
@@ -64,7 +64,9 @@ Result<StampedPose> parse_pose(const std::vector<std::string_view>& words) {
     return fail(format("{} words; a pose is 'stamp x y z qx qy qz qw'", words.size()));
   }
   const std::optional<Stamp> stamp = parse_stamp(words[0]);
-  if (!stamp) return fail(format("stamp '{}' is not a decimal number of seconds", words[0]));
+  if (!stamp)
+    return fail(format("stamp '{}' is not a decimal number of seconds, {} at most", words[0],
+                       kLargestStamp.ns / kNanosecondsPerSecond));
   std::array<double, 7> values{};
   for (std::size_t i = 0; i < values.size(); ++i) {
     const std::optional<double> value = parse_double(words[i + 1]);
@@ -78,7 +80,9 @@ Result<StampedPose> parse_pose(const std::vector<std::string_view>& words) {
   // A unit quaternion of full precision stays as it is, so that a trajectory survives reading and writing
   // unchanged.
   if (std::abs(rotation.norm() - 1.0) > 1e-12) rotation.normalize();
-  return StampedPose{*stamp, Pose(rotation, {values[0], values[1], values[2]})};
+  const Vector3 position(values[0], values[1], values[2]);
+  if (const Result<> checked = check_not_far_out(position); !checked) return tl::unexpected(checked.error());
+  return StampedPose{*stamp, Pose(rotation, position)};
 }
 
 }  // namespace
@@ -92,13 +96,14 @@ std::optional<Stamp> parse_stamp(std::string_view text) {
   const auto digit = [&](int i) {
     return i < num_digits ? decimal->digits[static_cast<std::size_t>(i)] - '0' : 0;
   };
-  constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max() / 10 - 1;
+  constexpr std::int64_t kLargest = kLargestStamp.ns / 10;
   std::int64_t ns = 0;
   for (int i = 0; i < num_taken; ++i) {
     if (ns > kLargest) return std::nullopt;
     ns = ns * 10 + digit(i);
   }
   if (num_taken >= 0 && digit(num_taken) >= 5) ++ns;
+  if (ns > kLargestStamp.ns) return std::nullopt;
   return Stamp{decimal->negative ? -ns : ns};
 }
 

@@ -36,7 +36,7 @@ TEST(Tum, StampTextReadsBack) {
   Rng rng(1);
   for (int i = 0; i < 1000; ++i) {
     const Stamp stamp{static_cast<std::int64_t>(rng()) >> rng.below(63)};
-    if (std::abs(stamp.ns / 10) > std::numeric_limits<std::int64_t>::max() / 10 - 20) continue;
+    if (stamp > kLargestStamp || stamp < Stamp{-kLargestStamp.ns}) continue;
     EXPECT_EQ(parse_stamp(stamp_text(stamp)), stamp) << stamp.ns;
   }
   EXPECT_EQ(stamp_text({-1}), "-0.000000001");
@@ -99,6 +99,19 @@ TEST(Tum, RealFile) {
   ASSERT_TRUE(truth) << truth.error().message;
   EXPECT_EQ(truth->size(), 300U);
   EXPECT_NEAR(path_length(*truth), 201.0, 1.0);
+}
+
+TEST(Tum, StampsAndPositionsThatOverflowAreRefused) {
+  // The difference of the two largest fits; beyond them it would not.
+  const Stamp largest = parse_stamp("4600000000").value();
+  EXPECT_EQ(largest - parse_stamp("-4600000000").value(), Duration(9'200'000'000'000'000'000));
+  EXPECT_FALSE(parse_stamp("4600000000.000000001"));
+  EXPECT_FALSE(parse_stamp("-9220000000"));
+  EXPECT_ERROR(parse_tum("9220000000 0 0 0 0 0 0 1\n"),
+               "line 1: stamp '9220000000' is not a decimal number of seconds, 4600000000 at most");
+  EXPECT_ERROR(parse_tum("1 0 0 0 0 0 0 1\n2 0 1.7e308 0 0 0 0 1\n"),
+               "line 2: 1.7e+308 is not a coordinate in metres");
+  EXPECT_TRUE(parse_tum("1 5e5 -6.3e6 1e9 0 0 0 1\n"));
 }
 
 }  // namespace

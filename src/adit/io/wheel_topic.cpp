@@ -8,26 +8,29 @@
 #include "adit/core/format.hpp"
 #include "adit/io/ascending.hpp"
 #include "adit/io/joint_odometry.hpp"
+#include "adit/io/left_out.hpp"
 #include "adit/io/ros_messages.hpp"
 #include "adit/robot/wheel_covariance.hpp"
 
 namespace adit {
 namespace {
 
-/// What all readers of wheels share: errors name the message, warnings the topic.
+/// What all readers of wheels share: what is left out is counted, errors and warnings name the topic.
 class TopicReader : public PoseReader {
  public:
   TopicReader(const Bag& bag, std::size_t topic) : bag_(bag), topic_(bag.topics[topic].name) {}
 
-  Result<> add(const BagMessage& message) final {
-    const std::size_t number = num_messages_++;
-    if (const Result<> taken = take(message); !taken)
-      return fail(format("{}, message {}", topic_, number), taken.error());
-    return {};
+  void add(const BagMessage& message) final {
+    if (const Result<> taken = take(message))
+      left_out_.take();
+    else
+      left_out_.leave(taken.error());
   }
   Result<PoseTrack> finish() final {
+    if (const Result<> any = left_out_.unless_all(); !any) return fail(topic_, any.error());
     Result<PoseTrack> track = take_track();
     if (!track) return fail(topic_, track.error());
+    if (const auto sentence = left_out_.sentence()) track->warnings.push_back(*sentence);
     for (std::string& warning : track->warnings) warning.insert(0, topic_ + ": ");
     return track;
   }
@@ -40,7 +43,7 @@ class TopicReader : public PoseReader {
  private:
   const Bag& bag_;
   std::string topic_;
-  std::size_t num_messages_ = 0;
+  LeftOut left_out_{"messages"};
 };
 
 /// Keeps the first covariances, or the first that cannot be.

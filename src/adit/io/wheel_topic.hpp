@@ -22,14 +22,13 @@ struct PoseTrack {
   std::vector<std::string> warnings = {};  ///< What was left out or bridged, a sentence each.
 };
 
-/// Takes the messages of one topic one by one. Messages whose stamps do not ascend with the others' are left
-/// out (longest_ascending), which a warning counts.
+/// Takes the messages of one topic one by one. Messages that are damaged, and those whose stamps do not
+/// ascend with the others' (longest_ascending), are left out, which warnings count.
 class PoseReader {
  public:
   virtual ~PoseReader() = default;
-  /// Fails when the message is damaged; the place is named.
-  virtual Result<> add(const BagMessage& message) = 0;
-  /// Once, after all messages.
+  virtual void add(const BagMessage& message) = 0;
+  /// Once, after all messages. Fails where all of them are damaged.
   virtual Result<PoseTrack> finish() = 0;
 };
 

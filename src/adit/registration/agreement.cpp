@@ -77,22 +77,19 @@ OrientedPoints every_nth(const OrientedPoints& all) {
 }
 
 // By the points around some of those within 10 m: on a plane without gaps about seven lie within 1.5 voxels.
-double thinness_of(const OrientedPoints& all, const Eigen::Vector3f& viewpoint, float voxel) {
+double thinness_of(const SearchableSurface& surface, float voxel) {
   constexpr float kNear = 10.0F;
   constexpr std::size_t kSamples = 64;
   constexpr float kRadiusVoxels = 1.5F;
   constexpr double kThinnest = 4.0;
   const float reach = kRadiusVoxels * voxel;
   const double without_gaps = std::numbers::pi * static_cast<double>(kRadiusVoxels * kRadiusVoxels);
+  const std::vector<Eigen::Vector3f>& all = surface.points().points;
   std::vector<std::size_t> counts;
   const std::size_t step = std::max<std::size_t>(all.size() / kSamples, 1);
   for (std::size_t i = 0; i < all.size(); i += step) {
-    const Eigen::Vector3f& p = all.points[i];
-    if ((p - viewpoint).norm() > kNear) continue;
-    counts.push_back(
-        static_cast<std::size_t>(std::ranges::count_if(all.points, [&](const Eigen::Vector3f& other) {
-          return (other - p).squaredNorm() < reach * reach;
-        })));
+    if ((all[i] - surface.viewpoint()).norm() > kNear) continue;
+    counts.push_back(surface.grid().num_nearer(all[i], reach * reach));
   }
   if (counts.empty()) return 1.0;
   const auto middle = counts.begin() + std::ssize(counts) / 2;
@@ -188,7 +185,7 @@ SeenSurface::SeenSurface(OrientedPoints points, const Vector3& viewpoint, double
     : SearchableSurface(std::move(points), viewpoint, voxel_m),
       some_(every_nth(this->points())),
       ranges_(std::size_t{kRows} * kColumns),
-      thinness_(thinness_of(this->points(), this->viewpoint(), static_cast<float>(voxel_m))) {
+      thinness_(thinness_of(*this, static_cast<float>(voxel_m))) {
   std::vector<Ranges> own(ranges_.size());
   for (const Eigen::Vector3f& p : this->points().points) {
     const Eigen::Vector3f ray = p - this->viewpoint();

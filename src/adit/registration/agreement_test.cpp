@@ -4,10 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
+#include <vector>
 
+#include "adit/core/rng.hpp"
 #include "adit/registration/features.hpp"
 #include "support/synthetic_scan.hpp"
 
@@ -160,6 +164,52 @@ TEST(AgreeingFit, IsTheFitFromTheGuessWhereThatAgrees) {
   EXPECT_LT(num_agreeing, 8U);
   constexpr double kAny = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(agreeing_fit(a, nothing, Pose(), kAny, {}).has_value());
+}
+
+// By the definition: about seven points lie within 1.5 voxels on a plane without gaps.
+double thinness_by_brute_force(const std::vector<Eigen::Vector3f>& points, float voxel) {
+  const float reach = 1.5F * voxel;
+  std::vector<std::ptrdiff_t> counts;
+  for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(points.size() / 64, 1)) {
+    if (points[i].norm() > 10.0F) continue;
+    counts.push_back(std::ranges::count_if(points, [&](const Eigen::Vector3f& other) {
+      return (other - points[i]).squaredNorm() < reach * reach;
+    }));
+  }
+  if (counts.empty()) return 1.0;
+  std::ranges::sort(counts);
+  const auto middle = static_cast<double>(counts[counts.size() / 2]);
+  return std::clamp(std::numbers::pi * 1.5 * 1.5 / middle, 1.0, 4.0);
+}
+
+// Around the sensor, on a tube: at random, or on 16 rings as a sparse LiDAR sees them.
+OrientedPoints on_a_tube(std::uint64_t seed, std::size_t num, bool on_rings) {
+  Rng rng(seed);
+  OrientedPoints out;
+  while (out.size() < num) {
+    const double angle = rng.uniform(-std::numbers::pi, std::numbers::pi);
+    const double ring = 0.035 * (static_cast<double>(rng.below(16)) - 7.5);
+    const double slope = on_rings ? std::abs(std::tan(ring) / std::sin(angle)) : 1.0;
+    const double along = on_rings ? 4.0 / std::max(slope, 0.1) : rng.uniform(-20.0, 20.0);
+    out.points.emplace_back(static_cast<float>(along), static_cast<float>(4.0 * std::cos(angle)),
+                            static_cast<float>(4.0 * std::sin(angle) + 0.01 * rng.normal()));
+    out.normals.push_back(-Eigen::Vector3f(0.0F, out.points.back().y(), out.points.back().z()).normalized());
+  }
+  return out;
+}
+
+TEST(SeenSurface, IsAsThinAsItsPointsAreFew) {
+  std::set<double> values;
+  for (const bool on_rings : {false, true})
+    for (const std::size_t num : {0U, 1U, 60U, 1000U, 6000U})
+      for (const float voxel : {0.1F, 0.2F, 0.3F, 0.5F}) {
+        const OrientedPoints points = on_a_tube(num + 1, num, on_rings);
+        const double expected = thinness_by_brute_force(points.points, voxel);
+        const SeenSurface seen(points, Vector3::Zero(), static_cast<double>(voxel));
+        EXPECT_EQ(seen.thinness(), expected) << on_rings << ' ' << num << ' ' << voxel;
+        values.insert(expected);
+      }
+  EXPECT_GT(values.size(), 4U);
 }
 
 TEST(SeenSurface, WasSeenInTheCellOfADirection) {

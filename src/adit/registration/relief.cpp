@@ -61,6 +61,12 @@ double sigma_of_share(const std::vector<StretchSigns>& stretches, double share) 
   return std::max(std::sqrt(squares) / num, 0.5 / std::sqrt(num));
 }
 
+/// The share of the sum of squares that the sensors explain.
+double sensors_in(const OffsetParts& found) {
+  const double whole = (found.by_sensors + found.left).squaredNorm();
+  return whole > 0.0 ? std::clamp(1.0 - found.left.squaredNorm() / whole, 0.0, 1.0) : 0.0;
+}
+
 float intensity_of(const OrientedPoints& points, std::size_t i) {
   return points.intensities.empty() ? 0.0F : points.intensities[i];
 }
@@ -147,23 +153,23 @@ OffsetParts WallOffsets::parts() const {
   return taken_apart(system, {});
 }
 
-double WallOffsets::share_of_sensors() const {
-  const OffsetParts found = parts();
-  const double whole = (found.by_sensors + found.left).squaredNorm();
-  return whole > 0.0 ? std::clamp(1.0 - found.left.squaredNorm() / whole, 0.0, 1.0) : 0.0;
-}
+double WallOffsets::share_of_sensors() const { return counted_once().share_of_sensors; }
 
-const EqualSignShare& WallOffsets::counted() const {
-  if (!counted_) counted_ = count();
+const EqualSignShare& WallOffsets::counted() const { return counted_once().signs; }
+
+const WallOffsets::Counted& WallOffsets::counted_once() const {
+  if (!counted_) {
+    const OffsetParts found = parts();
+    counted_ = {signs_of(found), sensors_in(found)};
+  }
   return *counted_;
 }
 
-EqualSignShare WallOffsets::count() const {
+EqualSignShare WallOffsets::signs_of(const OffsetParts& found) const {
   struct Sides {
     std::size_t num_in_front = 0;
     std::size_t num_behind = 0;
   };
-  const OffsetParts found = parts();
   std::map<WallPatch, Sides> patches;
   for (std::size_t i = 0; i < offsets_.size(); ++i) {
     const double metres = found.left[static_cast<Eigen::Index>(i)];

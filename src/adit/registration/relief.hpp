@@ -56,13 +56,19 @@ class WallOffsets {
   [[nodiscard]] double share_of_sensors() const;
 
  private:
-  [[nodiscard]] EqualSignShare count() const;
+  /// What one robust fit says of all offsets.
+  struct Counted {
+    EqualSignShare signs;
+    double share_of_sensors = 0.0;
+  };
+  [[nodiscard]] const Counted& counted_once() const;
+  [[nodiscard]] EqualSignShare signs_of(const OffsetParts& found) const;
   [[nodiscard]] OffsetParts parts() const;
 
   ReliefConfig config_;
   std::vector<PatchOffset> offsets_;
   std::vector<Eigen::Index> first_of_pair_;
-  mutable std::optional<EqualSignShare> counted_;
+  mutable std::optional<Counted> counted_;  ///< Until offsets are added: the fit takes milliseconds.
 };
 
 }  // namespace adit

@@ -115,6 +115,25 @@ TEST(Relief, SaysHowMuchOfTheOffsetsTheSensorsExplain) {
   }
 }
 
+TEST(WallOffsets, WhatWasCountedBeforeMoreIsAddedDoesNotStay) {
+  const auto all_at_once = [](std::size_t num_pairs) {
+    return driven(1, 11, static_cast<int>(num_pairs), 1.0, 0.03);
+  };
+  WallOffsets grown = all_at_once(6);
+  const WallOffsets whole = all_at_once(7);
+  const double before = grown.share_of_sensors();
+  EXPECT_EQ(grown.share_of_sensors(), before);
+  const WallOffsets copy = grown;
+  const double x = 3.0 * 6;
+  grown.add(patch_offsets(seen(1, x, 112), seen(11, x + 1.0, 113, 0.03), Pose::translation_of(1.0, 0.0, 0.0),
+                          Pose::translation_of(x, 0.0, 0.0), {}));
+  EXPECT_EQ(grown.share_of_sensors(), whole.share_of_sensors());
+  EXPECT_EQ(grown.counted(), whole.counted());
+  EXPECT_NE(grown.share_of_sensors(), before);
+  EXPECT_EQ(copy.share_of_sensors(), before);
+  EXPECT_EQ(copy.counted(), all_at_once(6).counted());
+}
+
 // The share does not depend on how many scans saw a patch, so short stretches compare with long ones.
 TEST(Relief, TheShareIsTheSameForFewPairsOfScansAndForMany) {
   const WallOffsets few = driven(1, 11, 3);

@@ -145,10 +145,20 @@ double log_of_other(const std::vector<StretchSigns>& stretches, const OtherWalls
 
 }  // namespace
 
-void EqualSignShares::set_same(const EqualSignShare& share) { same_ = share; }
+void EqualSignShares::set_same(const EqualSignShare& share) {
+  same_ = share;
+  forget_what_follows();
+}
 
 void EqualSignShares::add_other(const EqualSignShare& share) {
-  if (share.num_patches >= static_cast<std::size_t>(model_.few_patches)) others_.push_back(share);
+  if (share.num_patches < static_cast<std::size_t>(model_.few_patches)) return;
+  others_.push_back(share);
+  forget_what_follows();
+}
+
+void EqualSignShares::forget_what_follows() {
+  chances_.reset();
+  answers_.clear();
 }
 
 SameWalls EqualSignShares::same() const {
@@ -158,7 +168,12 @@ SameWalls EqualSignShares::same() const {
   return walls;
 }
 
-std::vector<double> EqualSignShares::chances_to_be_the_same() const {
+const std::vector<double>& EqualSignShares::chances_to_be_the_same() const {
+  if (!chances_) chances_ = estimated_chances();
+  return *chances_;
+}
+
+std::vector<double> EqualSignShares::estimated_chances() const {
   constexpr int kRounds = 50;  // of expectation and maximisation, which settle within ten or so
   std::vector<double> ratios;  // of likelihoods, the same walls to others
   for (const EqualSignShare& one : others_) {
@@ -181,13 +196,22 @@ std::vector<double> EqualSignShares::chances_to_be_the_same() const {
 
 double EqualSignShares::chance_of_one_mould() const {
   if (others_.empty()) return model_.prior_moulded;
-  const std::vector<double> chances = chances_to_be_the_same();
+  const std::vector<double>& chances = chances_to_be_the_same();
   const double num_same = std::accumulate(chances.begin(), chances.end(), 0.0);
   return std::min(1.0, model_.moulded + num_same / (1.0 + static_cast<double>(chances.size())));
 }
 
 double EqualSignShares::evidence(const EqualSignShare& found, double times) const {
+  constexpr std::size_t kKept = 8;
   if (times * static_cast<double>(found.num_patches) < model_.min_patches) return 0.0;
+  const auto known = std::ranges::find_if(
+      answers_, [&](const Answer& one) { return one.times == times && one.found == found; });
+  if (known != answers_.end()) return known->evidence;
+  if (answers_.size() == kKept) answers_.erase(answers_.begin());
+  return answers_.emplace_back(Answer{found, times, weighed(found, times)}).evidence;
+}
+
+double EqualSignShares::weighed(const EqualSignShare& found, double times) const {
   const double of_same = log_of_same(found.stretches, same(), model_, times);
   const double of_other = log_of_other(
       found.stretches, other(found.noise_m).value_or(believed(found.noise_m)), model_.stretch_sigma, times);
@@ -217,7 +241,7 @@ std::optional<OtherWalls> EqualSignShares::other(double noise_m) const {
   std::vector<Beyond> all;
   double num = 0.0;
   double mean = 0.0;
-  const std::vector<double> chances = chances_to_be_the_same();
+  const std::vector<double>& chances = chances_to_be_the_same();
   for (std::size_t i = 0; i < others_.size(); ++i) {
     const EqualSignShare& one = others_[i];
     // No share is known to be nearer to one half than its error.

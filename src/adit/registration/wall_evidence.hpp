@@ -19,6 +19,7 @@ struct StretchSigns {
   double equal = 0.0;  ///< Of these, by which the wall is on the same side.
   /// Of equal signs, 0 to 1; `num` is not 0.
   [[nodiscard]] double share() const { return equal / num; }
+  bool operator==(const StretchSigns&) const = default;
 };
 
 /// The share of equal signs: how often two pairs of scans that saw a patch put the wall on the same side.
@@ -29,6 +30,7 @@ struct EqualSignShare {
   double sigma = 0.5;           ///< Standard deviation of that share.
   double noise_m = 0.0;  ///< Of the offset of one pair of scans, about its patch: one standard deviation.
   std::vector<StretchSigns> stretches = {};  ///< What the share is made of.
+  bool operator==(const EqualSignShare&) const = default;
 };
 
 /// The distribution of the share over stretches of one wall: normal, beside the error of counting.
@@ -44,7 +46,8 @@ struct OtherWalls {
   double sigma_log = 0.0;  ///< Its standard deviation from tunnel to tunnel.
 };
 
-/// The shares that a robot found in its own map.
+/// The shares that a robot found in its own map. What follows from them is computed when it is first asked
+/// for and kept, so that no two threads may ask one object at the same time.
 class EqualSignShares {
  public:
   EqualSignShares() = default;
@@ -85,11 +88,25 @@ class EqualSignShares {
   /// `prior_moulded` worth one look-alike: a mixture, by expectation and maximisation (Dempster, Laird,
   /// Rubin, "Maximum likelihood from incomplete data via the EM algorithm", 1977). Many that may be the same
   /// are.
-  [[nodiscard]] std::vector<double> chances_to_be_the_same() const;
+  [[nodiscard]] std::vector<double> estimated_chances() const;
+  /// The same, estimated once.
+  [[nodiscard]] const std::vector<double>& chances_to_be_the_same() const;
+  [[nodiscard]] double weighed(const EqualSignShare& found, double times) const;
+  void forget_what_follows();
+
+  /// An answer of `evidence`.
+  struct Answer {
+    EqualSignShare found;
+    double times = 1.0;
+    double evidence = 0.0;
+  };
 
   ReliefModel model_;
   EqualSignShare same_;
-  std::vector<EqualSignShare> others_;  ///< Of each look-alike that was seen well.
+  std::vector<EqualSignShare> others_;                  ///< Of each look-alike that was seen well.
+  mutable std::optional<std::vector<double>> chances_;  ///< Until a share is set or added, as the next.
+  /// The last few, oldest first: a check of a merge weighs the walls of few hypotheses again and again.
+  mutable std::vector<Answer> answers_;
 };
 
 }  // namespace adit

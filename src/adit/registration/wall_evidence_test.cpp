@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "adit/core/rng.hpp"
 
@@ -160,6 +161,43 @@ TEST(EqualSignShares, TheMoreLookAlikesHaveTheSameWallsTheLessSpeaksForAMerge) {
   EXPECT_LT(evidence(found(0.65), shares), -1.0) << "other walls still speak against";
   for (int i = 0; i < 20; ++i) shares.add_other(found(0.51));
   EXPECT_LT(evidence(found(0.5), shares), 0.5);
+}
+
+TEST(EqualSignShares, AnswerAsIfAskedForTheFirstTime) {
+  EqualSignShares asked;
+  std::vector<EqualSignShare> added;
+  const auto expect_same_as_anew = [&](const EqualSignShare& same) {
+    EqualSignShares anew;
+    anew.set_same(same);
+    for (const EqualSignShare& one : added) anew.add_other(one);
+    EXPECT_EQ(asked.chance_of_one_mould(), anew.chance_of_one_mould());
+    for (int round = 0; round < 2; ++round)
+      for (int i = 0; i < 12; ++i) {
+        const EqualSignShare walls = with_moved(i % 6, 0.5 + 0.01 * i);
+        for (const double times : {1.0, 2.5}) {
+          const EqualSignShares unasked = anew;
+          EXPECT_EQ(asked.evidence(walls, times), unasked.evidence(walls, times)) << i;
+        }
+      }
+  };
+  expect_same_as_anew({});
+  for (const double share : {0.65, 0.51, 0.7}) {
+    added.push_back(found(share));
+    asked.add_other(added.back());
+    expect_same_as_anew({});
+  }
+  asked.set_same(found(0.56));
+  expect_same_as_anew(found(0.56));
+}
+
+TEST(EqualSignShares, TellApartWallsThatDifferInOneStretchOnly) {
+  const EqualSignShares shares = where_others_agree(0.65);
+  EqualSignShare walls = found(0.55);
+  const double before = shares.evidence(walls);
+  walls.stretches.back().equal = walls.stretches.back().num;
+  EXPECT_LT(shares.evidence(walls), before);
+  EXPECT_EQ(shares.evidence(walls), where_others_agree(0.65).evidence(walls));
+  EXPECT_EQ(shares.evidence(found(0.55)), before);
 }
 
 TEST(EqualSignShares, ALookAlikeSeenTooShortlyToTellHardlyCounts) {

@@ -277,6 +277,7 @@ Result<ScansSeen> look_at_scans(const Recording& recording, std::size_t num) {
   });
   for (const std::string& failure : failures)
     if (!failure.empty()) return fail(failure);
+  std::erase_if(scans, [](const OfScan& scan) { return scan.ranges.empty(); });  // nothing was in view
   ScansSeen seen;
   seen.num_scans = scans.size();
   std::vector<double> ranges;

@@ -162,5 +162,28 @@ TEST(MarkSlips, MarksThePathFromTheKeyframeBeforeToTheOneAfter) {
   EXPECT_EQ(drawn.robots[1].slips[1].size(), 1U);
 }
 
+TEST(MergePictures, LoopsWhoseGraphHasNotComeAreNotDrawn) {
+  FleetGraph fleet;
+  fleet.robots[{0}] = {"ada", std::vector<GraphNode>(3)};
+  fleet.robots[{1}] = {"bo", std::vector<GraphNode>(3)};
+  MergeCheck& check = fleet.checks[{{0}, {1}}];
+  check.b = {1};
+  for (const auto& [from, to] :
+       std::vector<std::pair<std::uint32_t, std::uint32_t>>{{1, 2}, {1, 7}, {7, 1}}) {
+    LoopClosure loop;
+    loop.from = {{0}, from};
+    loop.to = {{1}, to};
+    fleet.loops[{loop.from, loop.to}] = loop;
+    check.loops.emplace_back(from, to);
+  }
+  check.hypotheses = {{HypothesisOutcome::unsure, 1.0, 4, 4, 0.0, check.loops}};
+  FleetSolution solution;
+  solution.pairs.emplace_back().b = {1};
+  const std::vector<MergePicture> pictures = merge_pictures(fleet, solution);
+  ASSERT_EQ(pictures.size(), 1U);
+  ASSERT_EQ(pictures[0].hypotheses.size(), 1U);
+  EXPECT_EQ(pictures[0].hypotheses[0].loops.size(), 1U);
+}
+
 }  // namespace
 }  // namespace adit

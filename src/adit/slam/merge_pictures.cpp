@@ -31,7 +31,10 @@ MergePicture::Hypothesis picture_of(const MergeHypothesis& h, const MergeCheck& 
   std::vector<const LoopClosure*> loops;
   for (const auto& [a, b] : h.loops) {
     const auto loop = fleet.loops.find({{check.a, a}, {check.b, b}});
-    if (loop != fleet.loops.end()) loops.push_back(&loop->second);
+    // Messages about a keyframe may come before the graph that it belongs to.
+    const bool is_known =
+        loop != fleet.loops.end() && fleet.knows(loop->second.from) && fleet.knows(loop->second.to);
+    if (is_known) loops.push_back(&loop->second);
   }
   if (loops.empty()) return out;
   out.path = odometry_of(fleet.robots.at(check.b), mean_frame(fleet, loops));

@@ -65,7 +65,7 @@ std::vector<ros::TransformMessage> transforms_of(const Bag& bag) {
   std::vector<ros::TransformMessage> out;
   for (const BagMessage& message : bag.messages) {
     if (bag.topics[message.topic].name != "/tf") continue;
-    const auto both = ros::decode_transforms(bag.read(message).value()).value();
+    const auto both = ros::decode_transforms(bag.read(message).value()).value().links;
     out.insert(out.end(), both.begin(), both.end());
   }
   return out;

@@ -17,6 +17,7 @@
 namespace adit {
 namespace wire {
 
+constexpr double kFarthest = 1e7;     // metres in each direction, a quarter of the Earth's circumference
 constexpr float kPointStep = 0.005F;  // metres
 constexpr float kPointReach = kPointStep * 32767.0F;
 // Intensities from 0.0011 to 93,000 in a byte, whatever their unit.
@@ -49,7 +50,9 @@ void get(Reader& in, Pose& pose) {
   Eigen::Quaterniond q;
   for (int i = 0; i < 3; ++i) t[i] = in.scalar<double>();
   for (int i = 0; i < 4; ++i) q.coeffs()[i] = in.scalar<double>();
-  const bool valid = in.ok() && t.allFinite() && q.coeffs().allFinite() && std::abs(q.norm() - 1.0) < 1e-6;
+  const bool is_finite = in.ok() && t.allFinite() && q.coeffs().allFinite();
+  // No robot was farther away, and sums of squares of such poses would not be finite.
+  const bool valid = is_finite && t.cwiseAbs().maxCoeff() <= kFarthest && std::abs(q.norm() - 1.0) < 1e-6;
   if (!valid) return in.refuse();
   pose = Pose(q, t);
 }

@@ -157,6 +157,17 @@ TEST(Wire, DecisionsThatCannotBeAreRefused) {
   }
 }
 
+TEST(Wire, PosesFartherAwayThanAnyRobotAreRefused) {
+  const auto is_refused = [](const Vector3& position) {
+    LoopClosure loop = a_loop();
+    loop.T_from_to = Pose(loop.T_from_to.rotation(), position);
+    return !decode(encode({{0}, {1}, Loops{{0}, 3, {loop}}})).has_value();
+  };
+  EXPECT_FALSE(is_refused({500'000.0, 9'999'000.0, -20.0})) << "UTM coordinates";
+  EXPECT_TRUE(is_refused({0.0, 1e300, 0.0}));
+  EXPECT_TRUE(is_refused({0.0, 0.0, -1.1e7}));
+}
+
 TEST(Wire, MessagesLargerThanTheProtocolAllowsAreRefused) {
   const Message largest{{0}, {1}, CloudRequest{std::vector<std::uint32_t>(kCloudsPerMessage, 1)}};
   EXPECT_TRUE(decode(encode(largest)).has_value());

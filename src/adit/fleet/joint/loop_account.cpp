@@ -44,9 +44,12 @@ std::string finding(const MergeCheck& check, std::size_t index) {
     case HypothesisOutcome::unsure:
       return format("hypothesis {} has evidence {:.1f} of {:.1f} needed", number, h.evidence, check.needed);
     case HypothesisOutcome::rival:
-      return index == 0
+      if (index > 0)
+        return format("hypothesis {} rivals hypothesis 1 from {:.0f} m away", number, h.from_best_m);
+      // A check that a message brought may name no other one.
+      return check.hypotheses.size() > 1
                  ? format("hypothesis 1 has a rival {:.0f} m away", check.hypotheses[1].from_best_m)
-                 : format("hypothesis {} rivals hypothesis 1 from {:.0f} m away", number, h.from_best_m);
+                 : std::string("hypothesis 1 has a rival");
     case HypothesisOutcome::behind:
       return format("hypothesis {} is far less likely than hypothesis 1", number);
   }

@@ -108,5 +108,13 @@ TEST(LoopAccount, WithoutATestPcmAndTooFewLoopsDecide) {
   expect_reason(account_of(outcome_of(0, 0, false, 0.0), {}, pair_with(0, "")), "not known yet");
 }
 
+TEST(LoopAccount, ARivalThatAMessageDoesNotNameIsNotLookedFor) {
+  FleetGraph fleet = tested(HypothesisOutcome::rival);
+  fleet.checks.at({{0}, {1}}).hypotheses.resize(1);
+  fleet.checks.at({{0}, {1}}).hypotheses.shrink_to_fit();
+  const LoopAccount account = account_of(outcome_of(0, 0, false, 0.0), fleet, pair_with(0, "rivals"));
+  EXPECT_EQ(account.reason, "not in use: hypothesis 1 has a rival");
+}
+
 }  // namespace
 }  // namespace adit

@@ -116,12 +116,14 @@ std::string taken_back(const FleetGraph& fleet, const std::vector<Merge>& merges
       has_least_evidence ? "has the least evidence of them" : "without it the others agree best");
 }
 
-/// The hypothesis with those of its loops that are known, as are their keyframes.
+/// The hypothesis with those of its loops that are known and were accepted, as are their keyframes. What
+/// others say of a rejected one has no information that could be inverted.
 Merge merge_of(const FleetGraph& fleet, const MergeCheck& check, const MergeHypothesis& hypothesis) {
   Merge merge{check.a, check.b, hypothesis.evidence, {}};
   for (const auto& [a, b] : hypothesis.loops) {
     const auto loop = fleet.loops.find({{check.a, a}, {check.b, b}});
-    if (loop != fleet.loops.end() && fleet.knows({check.a, a}) && fleet.knows({check.b, b}))
+    if (loop != fleet.loops.end() && loop->second.verdict == LoopVerdict::accepted &&
+        fleet.knows({check.a, a}) && fleet.knows({check.b, b}))
       merge.loops.push_back(pcm_loop_of(loop->second));
   }
   return merge;

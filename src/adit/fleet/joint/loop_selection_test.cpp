@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "adit/core/rng.hpp"
 #include "support/circling_fleet.hpp"
 
@@ -127,6 +129,27 @@ TEST(LoopSelection, OfTwoMapsThatOneTakenBackMergeJoinedBothStayAsTheyWere) {
   fleet.checks.at({{0}, {2}}).accepted = false;
   fleet.checks.at({{1}, {3}}).accepted = false;
   expect_same_poses(apart, solve(fleet, config));
+}
+
+// They align the maps as the merges do: accepted loops of hypotheses that scans refute would speak against
+// them.
+TEST(LoopSelection, LoopsThatRegistrationRejectedRefuteNothing) {
+  const auto num_merged = [](LoopVerdict verdict) {
+    FleetGraph fleet = robots_without_loops(4);
+    add_merge(fleet, {0}, {1}, 20.0);
+    add_merge(fleet, {2}, {3}, 20.0);
+    add_merge(fleet, {0}, {3}, 10.0);
+    for (const auto& [a, b] : std::vector<RobotPair>{{{0}, {2}}, {{1}, {2}}, {{1}, {3}}}) {
+      add_loop(fleet, {a, 20}, {b, 20});
+      fleet.loops.at({{a, 20}, {b, 20}}).verdict = verdict;
+      MergeCheck check{a, b, -9.0, 9.0, 8, 4, false, {{20, 20}}, "scans differ at 4 of 8 places"};
+      check.hypotheses = {{HypothesisOutcome::refuted, -9.0, 8, 4, 0.0, {{20, 20}}}};
+      fleet.checks[{a, b}] = check;
+    }
+    return std::ranges::count_if(solve(fleet, {}).pairs, &PairOutcome::merged);
+  };
+  EXPECT_EQ(num_merged(LoopVerdict::accepted), 2);
+  EXPECT_EQ(num_merged(LoopVerdict::rejected), 3);
 }
 
 TEST(LoopSelection, LoopsWithinARobotCountWhereAnAcceptedCheckSpeaksOfThem) {

@@ -70,7 +70,8 @@ struct Refuting {
       std::vector<const Merge*> legs;
       for (const std::size_t m : merged) legs.push_back(&merges[m]);
       legs.push_back(&hypothesis);  // from a, the last of the path, back to b
-      if (Cycle(path, legs, chains, scale, config).best().contradicts()) continue;
+      // What cannot be computed says nothing: NaN is not counted against a merge.
+      if (!(Cycle(path, legs, chains, scale, config).best().log_ratio >= 0.0)) continue;
       for (const std::size_t m : merged) against[m].insert({hypothesis.a, hypothesis.b});
     }
     return against;

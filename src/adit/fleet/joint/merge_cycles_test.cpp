@@ -230,5 +230,17 @@ TEST(MergeCycles, ASlipOfTenSigmasIsDrift) {
   }
 }
 
+TEST(MergeCycles, ARefutationThatCannotBeComputedTakesNothingBack) {
+  RandomFleet fleet(1, 4);
+  fleet.merge({0, 1}, 20.0);
+  fleet.merge({2, 3}, 20.0);
+  fleet.merge({0, 3}, 10.0);
+  for (const Pair& pair : {Pair{0, 2}, Pair{1, 2}, Pair{1, 3}}) fleet.refute(pair);
+  EXPECT_FALSE(fleet.taken_back().empty());
+  for (Merge& hypothesis : fleet.refuted)
+    for (PcmLoop& loop : hypothesis.loops) loop.information.setZero();
+  EXPECT_TRUE(fleet.taken_back().empty());
+}
+
 }  // namespace
 }  // namespace adit

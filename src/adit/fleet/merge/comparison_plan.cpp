@@ -74,7 +74,8 @@ std::vector<PlannedComparison> ComparisonPlanner::plan(std::size_t max_places) c
 std::optional<PlannedComparison> ComparisonPlanner::second_look(const PlannedComparison& first) const {
   for (const double metres : {spacing_.second_look_m, -spacing_.second_look_m})
     if (const auto j = keyframe_at(their_path_m_, their_path_m_[first.theirs] + metres))
-      if (const std::optional<PlannedComparison> other = at(*j)) return other;
+      // The pair itself, where keyframes are farther apart, would confirm whatever it showed.
+      if (const auto other = *j == first.theirs ? std::nullopt : at(*j)) return other;
   return {};
 }
 

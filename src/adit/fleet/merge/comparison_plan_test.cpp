@@ -98,5 +98,21 @@ TEST(ComparisonPlanner, TheSecondLookIsAMetreOnAndAtTheEndAMetreBack) {
   }
 }
 
+TEST(ComparisonPlanner, NoPairIsItsOwnSecondLook) {
+  std::vector<Pose> poses;  // farther apart than a second look is
+  for (int k = 0; k < 20; ++k) poses.push_back(Pose::planar(1.5 * k, 0.0, 0.0));
+  const OdometryChain drive(poses, std::vector<Matrix6>(19, random_walk({}, 1.5)));
+  const OdometryChain other = drive;
+  const std::vector<PcmLoop> loops = {{10, 10, Pose(), Matrix6::Identity()}};
+  const ComparisonPlanner planner(drive, other, loops, {.spacing_m = 1.0, .reach_m = 50.0});
+  const std::vector<PlannedComparison> plan = planner.plan(200);
+  ASSERT_EQ(plan.size(), 20U);
+  for (const PlannedComparison& place : plan) {
+    const auto again = planner.second_look(place);
+    ASSERT_EQ(again.has_value(), place.theirs != 19U);
+    EXPECT_EQ(again ? again->theirs : 20U, place.theirs + 1);
+  }
+}
+
 }  // namespace
 }  // namespace adit

@@ -23,10 +23,11 @@ Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryCha
       features_(std::move(features)),
       views_(map, config.registration, config.view),
       scans_(map, config.registration) {
-  const double usual = config_.merge_check.evidence.allowance * usual_difference();
+  const EvidenceModel& model = config_.merge_check.evidence;
   const double voxel = config_.registration.voxel_size;
-  if (usual > 0.0)
-    limit_ = std::max(usual, config_.merge_check.evidence.least_difference_m2 / (voxel * voxel));
+  // Neighbours that agree perfectly have a usual difference, too: none.
+  if (const std::optional<double> usual = usual_difference())
+    limit_ = std::max(model.allowance * *usual, model.least_difference_m2 / (voxel * voxel));
 }
 
 const Measured& Discernment::measured() {
@@ -68,7 +69,7 @@ std::vector<std::uint32_t> Discernment::sampled() const {
   return evenly_spread(path_m_.size(), static_cast<std::size_t>(config_.merge_check.discernment.samples));
 }
 
-double Discernment::usual_difference() {
+std::optional<double> Discernment::usual_difference() {
   std::vector<OwnComparison> pairs;
   for (const std::uint32_t k : sampled())
     for (const double metres : kComparedApart)
@@ -77,7 +78,7 @@ double Discernment::usual_difference() {
   std::vector<double> differences;
   for (const LocalFit& fit : compare(pairs, FitFrom::guess, std::numeric_limits<double>::infinity()))
     if (fit.agreement.is_comparable()) differences.push_back(fit.agreement.largest_difference);
-  if (differences.empty()) return 0.0;
+  if (differences.empty()) return std::nullopt;
   const double share = config_.merge_check.evidence.usual_share;
   const auto usual = std::lround(share * static_cast<double>(differences.size() - 1));
   std::ranges::nth_element(differences, differences.begin() + usual);

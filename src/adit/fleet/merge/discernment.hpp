@@ -87,7 +87,8 @@ class Discernment {
                                               double good_enough);
   [[nodiscard]] std::vector<std::uint32_t> sampled() const;
   [[nodiscard]] std::vector<Vector3> differing(std::uint32_t keyframe, const Agreement& agreement) const;
-  [[nodiscard]] double usual_difference();
+  /// Of neighbouring keyframes; none where no two can be compared.
+  [[nodiscard]] std::optional<double> usual_difference();
   [[nodiscard]] WallOffsets compare_own_walls();
   [[nodiscard]] WallOffsets compare_displaced_walls();
   [[nodiscard]] WallOffsets offsets_between(const std::vector<OwnComparison>& pairs);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 
+#include "adit/fleet/merge/place_comparer.hpp"
 #include "adit/fleet/sync/fleet_graph.hpp"
 #include "support/tube_drive.hpp"
 
@@ -54,6 +55,18 @@ TEST(Discernment, ScansOfOnePlaceDoNotDifferAndThoseOfAnotherDo) {
   };
   EXPECT_FALSE(measured.discernment.differ(fit(56, 58, Pose::translation_of(1.0, 0, 0))));
   EXPECT_TRUE(measured.discernment.differ(fit(20, 56, Pose())));
+}
+
+// Wherever it stands it sees exactly the same.
+TEST(Discernment, WhereNeighboursAgreePerfectlyThereIsALimitStill) {
+  auto map = std::make_shared<RobotMap>(*in_a_tube({}));
+  for (Keyframe& keyframe : map->keyframes) keyframe.cloud = map->keyframes.front().cloud;
+  OnAMap measured(map);
+  const AdaptiveConfig config;
+  const double voxel = config.registration.voxel_size;
+  EXPECT_EQ(measured.discernment.limit(), config.merge_check.evidence.least_difference_m2 / (voxel * voxel));
+  PlaceComparer comparer(*map, measured.discernment, config.registration);
+  EXPECT_EQ(comparer.within_own_map({{30, 80, Pose()}}).front().difference, 0.0);
 }
 
 TEST(Discernment, BlocksThatRepeatGoOnLongerThanBlocksThatDoNot) {

@@ -47,9 +47,13 @@ class KeyframeStore {
       if (!entry.value && entry.last_used != now_) missing.push_back(i);
       entry.last_used = now_;
     }
-    parallel_for_each(missing.size(),
-                      [&](std::size_t i) { entries_[missing[i]].value = compute_(*map_, missing[i]); });
-    for (const std::uint32_t i : missing) num_bytes_ += bytes_of_(*entries_[i].value);
+    // Kept only once all are there: where one cannot be computed, the others would not be counted.
+    std::vector<std::optional<T>> computed(missing.size());
+    parallel_for_each(missing.size(), [&](std::size_t i) { computed[i] = compute_(*map_, missing[i]); });
+    for (std::size_t i = 0; i < missing.size(); ++i) {
+      num_bytes_ += bytes_of_(*computed[i]);
+      entries_[missing[i]].value = std::move(computed[i]);
+    }
     forget_oldest();
   }
   /// Valid until the next `prepare` or `forget_all`. Throws ContractViolation where it is not kept.

@@ -44,10 +44,12 @@ MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first, d
 
   // Against copies. Scans of one place seldom differ.
   if (differs_too_often(best)) return MergeDecision::scans_differ;
+  // What was known before is no reason to do without any comparison.
+  if (best.compared.empty()) return MergeDecision::nothing_distinctive;
 
   // Against chance. Only places where a displacement along the tunnel would show are evidence, by how seldom
   // look-alikes of the own map agree for as long (Wald's test).
-  if (evidence(best) + forgiven < needed()) {
+  if (!(evidence(best) + forgiven >= needed())) {  // NaN refuses, here and among rivals
     if (evidence(best) - evidence_of_walls(best) >= needed()) return MergeDecision::other_walls;
     return best.num_distinctive() == 0 ? MergeDecision::nothing_distinctive
                                        : MergeDecision::too_little_evidence;
@@ -90,7 +92,7 @@ double MergeChecker::compared_km(const Hypothesis& h) const {
 /// often.
 bool MergeChecker::are_rivals(const Hypothesis& best, const Hypothesis& other) const {
   const auto without_loops = [&](const Hypothesis& h) { return evidence(h) - evidence_of_few_loops(h); };
-  return !differs_too_often(other) && without_loops(best) - without_loops(other) < least_lead();
+  return !differs_too_often(other) && !(without_loops(best) - without_loops(other) >= least_lead());
 }
 
 double MergeChecker::needed() const { return std::log(1.0 / config_.evidence.error_rate); }
@@ -172,9 +174,12 @@ std::optional<std::size_t> MergeChecker::to_go_on_with() const {
   return found;
 }
 
-std::optional<std::size_t> MergeChecker::whose_walls_to_compare() const {
-  const std::vector<std::size_t> order = best_first();
-  if (!config_.relief || order.empty()) return {};
+bool MergeChecker::is_left_unfinished(const Hypothesis& best) const {
+  return !best.is_finished() && !differs_too_often(best);
+}
+
+std::optional<std::size_t> MergeChecker::whose_walls_to_compare(const std::vector<std::size_t>& order) const {
+  if (!config_.relief) return {};
   const Hypothesis& best = hypotheses_[order.front()];
   if (best.num_walls_compared == best.wall_plan.size()) return {};
   const MergeDecision decision = decide(order);
@@ -219,9 +224,8 @@ bool MergeChecker::has_places_to_find_again(const Hypothesis& h) const {
 }
 
 /// All places are looked for, also once enough have been found: to stop then would be to choose.
-std::optional<std::size_t> MergeChecker::whose_places_to_find_again() const {
-  const std::vector<std::size_t> order = best_first();
-  if (order.empty()) return {};
+std::optional<std::size_t> MergeChecker::whose_places_to_find_again(
+    const std::vector<std::size_t>& order) const {
   const Hypothesis& best = hypotheses_[order.front()];
   if (!has_places_to_find_again(best)) return {};
   const bool is_needed = best.num_looked_for > 0 || decide(order) != MergeDecision::accepted;
@@ -233,12 +237,16 @@ std::optional<MergeChecker::Step> MergeChecker::next_step() const {
   // At once, of refuted hypotheses too: all that is decided and told reads it.
   for (std::size_t i = 0; i < hypotheses_.size(); ++i)
     if (!hypotheses_[i].to_ask_for_signs().empty()) return Step{Stage::signs, i};
-  if (const auto which = to_go_on_with()) {
-    const Hypothesis& h = hypotheses_[*which];
-    return Step{h.compared.size() < h.plan.size() ? Stage::places : Stage::second_looks, *which};
-  }
-  if (const auto which = whose_walls_to_compare()) return Step{Stage::walls, *which};
-  if (const auto which = whose_places_to_find_again()) return Step{Stage::find_again, *which};
+  const auto going_on_with = [&](std::size_t which) {
+    const Hypothesis& h = hypotheses_[which];
+    return Step{h.compared.size() < h.plan.size() ? Stage::places : Stage::second_looks, which};
+  };
+  if (const auto which = to_go_on_with()) return going_on_with(*which);
+  const std::vector<std::size_t> order = best_first();
+  if (order.empty()) return std::nullopt;
+  if (is_left_unfinished(hypotheses_[order.front()])) return going_on_with(order.front());
+  if (const auto which = whose_walls_to_compare(order)) return Step{Stage::walls, *which};
+  if (const auto which = whose_places_to_find_again(order)) return Step{Stage::find_again, *which};
   return std::nullopt;
 }
 
@@ -312,14 +320,21 @@ double MergeChecker::apart_m(std::size_t one, std::size_t other) const {
 }
 
 std::vector<std::size_t> MergeChecker::best_first() const {
-  std::vector<std::size_t> order(hypotheses_.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::size_t> order;
+  std::vector<std::size_t> differing;
+  for (std::size_t h = 0; h < hypotheses_.size(); ++h)
+    (differs_too_often(hypotheses_[h]) ? differing : order).push_back(h);
+  std::vector<double> evidence_of(hypotheses_.size(), 0.0);
+  // The own map is not measured to rank a single one.
+  if (order.size() > 1)
+    for (const std::size_t h : order) evidence_of[h] = evidence(hypotheses_[h]);
+  // NaN, which has no place in an order, comes first, where it refuses.
   std::ranges::stable_sort(order, [&](std::size_t one, std::size_t other) {
-    const Hypothesis& a = hypotheses_[one];
-    const Hypothesis& b = hypotheses_[other];
-    if (differs_too_often(a) || differs_too_often(b)) return differs_too_often(a) < differs_too_often(b);
-    return evidence(a) > evidence(b);
+    const bool is_nan = std::isnan(evidence_of[one]);
+    const bool other_is = std::isnan(evidence_of[other]);
+    return is_nan || other_is ? is_nan && !other_is : evidence_of[one] > evidence_of[other];
   });
+  order.insert(order.end(), differing.begin(), differing.end());
   return order;
 }
 

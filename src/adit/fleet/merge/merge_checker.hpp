@@ -103,10 +103,15 @@ class MergeChecker {
   [[nodiscard]] ChancesToGoOn chances() const { return own_.measured().look_alikes.chances(); }
 
   [[nodiscard]] std::optional<std::size_t> to_go_on_with() const;
+  /// By its scans alone the best hypothesis was far behind, and the walls or things of those ahead put it in
+  /// front.
+  [[nodiscard]] bool is_left_unfinished(const Hypothesis& best) const;
   /// The best hypothesis, where all have been compared and more pairs of its walls could decide.
-  [[nodiscard]] std::optional<std::size_t> whose_walls_to_compare() const;
+  [[nodiscard]] std::optional<std::size_t> whose_walls_to_compare(
+      const std::vector<std::size_t>& best_first) const;
   /// The best hypothesis, where it lacks only what having few loops takes away.
-  [[nodiscard]] std::optional<std::size_t> whose_places_to_find_again() const;
+  [[nodiscard]] std::optional<std::size_t> whose_places_to_find_again(
+      const std::vector<std::size_t>& best_first) const;
   /// Distinctive places away from its loops, evenly spread; none where they could not make few loops many.
   [[nodiscard]] std::vector<PlannedComparison> to_find_again(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool has_places_to_find_again(const Hypothesis& hypothesis) const;

@@ -3,6 +3,7 @@
 // Alignments of two maps that compete with one another.
 #include <gtest/gtest.h>
 #include <cmath>
+#include <limits>
 
 #include "adit/fleet/merge/merge_checker.hpp"
 #include "support/merge_checks.hpp"
@@ -11,12 +12,16 @@ namespace adit {
 namespace {
 
 using test::a_check;
+using test::along_x;
 using test::by_places;
 using test::kAgrees;
 using test::kDiffers;
+using test::kNum;
 using test::kSilent;
 using test::kTrueLoops;
+using test::look_alikes;
 using test::loop_at;
+using test::measured;
 using test::run;
 using test::T_a_b_true;
 
@@ -107,6 +112,52 @@ TEST(MergeRival, AHypothesisFarBehindTheBestIsNoRival) {
   EXPECT_TRUE(check.accepted) << check.reason;
   ASSERT_EQ(check.hypotheses.size(), 2U);
   EXPECT_EQ(check.hypotheses[1].outcome, HypothesisOutcome::behind);
+}
+
+TEST(MergeRival, ALeadThatCannotBeComputedIsNone) {
+  const OdometryChain own = along_x(kNum);
+  const OdometryChain theirs = own;
+  AdaptiveConfig config;
+  config.merge_check = by_places();
+  const auto checked = [&](double of_first, double of_second) {
+    LoopsBetween between{own, theirs, kTrueLoops, std::vector<double>(3, of_first)};
+    between.loops.push_back(loop_at(120, 20.0));
+    between.known_before.push_back(of_second);
+    MergeChecker checker(between, {50.0, measured(look_alikes(0.5))}, config);
+    return run(checker, [](const PlannedComparison&) { return kAgrees; });
+  };
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(checked(20.0, 0.0).accepted);
+  EXPECT_FALSE(checked(kInfinite, kInfinite).accepted);
+  EXPECT_FALSE(checked(20.0, std::numeric_limits<double>::quiet_NaN()).accepted);
+}
+
+// By scans the first one is far ahead, and then its walls and things are those of another tunnel.
+TEST(MergeRival, OneThatWasLeftBehindIsComparedToTheEndWhereTheWallsPutItInFront) {
+  const OdometryChain own = along_x(kNum);
+  const OdometryChain theirs = own;
+  LoopsBetween between{own, theirs, kTrueLoops, {0.0, 0.0, 0.0, 3.0, 3.0, 3.0}};
+  for (const std::size_t a : {120U, 130U, 140U}) between.loops.push_back(loop_at(a, 60.0));
+  EqualSignShares shares;
+  for (int i = 0; i < 10; ++i) shares.add_other({1000, 0.65, 0.015});
+  MergeChecker checker{between, {50.0, measured(look_alikes(0.5), shares)}, {}};
+  const MergeCheck check = run(checker, [](const PlannedComparison& asked) {
+    const double off =
+        (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
+    if (off > 5.0) return kSilent;
+    ComparedPlace place = kAgrees;
+    place.things.emplace_back(9.0 * asked.theirs, 0.0, 0.0);
+    for (int i = 0; i < 100; ++i)
+      for (const double metres : {0.01, i % 10 * 10 + i / 10 < 80 ? 0.01 : -0.01})
+        place.offsets.push_back({{static_cast<int>(asked.theirs), i, 0, 0}, metres});
+    return place;
+  });
+  EXPECT_FALSE(check.accepted);
+  ASSERT_EQ(check.hypotheses.size(), 2U);
+  EXPECT_EQ(check.loops.size(), 3U);
+  EXPECT_EQ(check.loops.back().first, 140U) << "the second one is the best: " << check.reason << "; "
+                                            << check.evidence << " and " << check.hypotheses[1].evidence;
+  EXPECT_GT(check.num_checked, 8U) << "not only the first 8: " << check.reason;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <variant>
 
 #include "adit/core/check.hpp"
@@ -13,12 +14,18 @@
 namespace adit {
 namespace {
 
+/// A covariance or an information: each is turned into the other. Tiny ones pass Cholesky's decomposition and
+/// have an infinite inverse.
+bool is_usable(const Matrix6& covariance) {
+  if (!covariance.allFinite()) return false;
+  const std::optional<Matrix6> inverse = inverse_of_positive_definite(covariance);
+  return inverse && Matrix6(*inverse + inverse->transpose()).allFinite();
+}
+
 /// The solver inverts the covariance of each step; the first keyframe has none.
 bool has_usable_covariances(const GraphPart& part) {
-  for (std::size_t i = part.first_index == 0 ? 1 : 0; i < part.nodes.size(); ++i) {
-    const Matrix6& covariance = part.nodes[i].step_covariance;
-    if (!covariance.allFinite() || !is_positive_definite(covariance)) return false;
-  }
+  for (std::size_t i = part.first_index == 0 ? 1 : 0; i < part.nodes.size(); ++i)
+    if (!is_usable(part.nodes[i].step_covariance)) return false;
   return true;
 }
 
@@ -90,14 +97,15 @@ void FleetLedger::overrule(MergeCheck check) {
 
 bool FleetLedger::add(const Loops& part) {
   const auto is_authors = [&](const LoopClosure& loop) {
-    return loop.from.robot == part.author && loop.from.robot <= loop.to.robot && loop.from < loop.to;
+    return loop.from.robot == part.author && loop.from.robot <= loop.to.robot && loop.from < loop.to &&
+           (loop.verdict != LoopVerdict::accepted || is_usable(loop.information));
   };
   const std::size_t has = size_of(loops_by_, part.author);
   if (part.first > has || !std::ranges::all_of(part.loops, is_authors)) return false;
   for (std::size_t l = has - part.first; l < part.loops.size(); ++l) {
     const KeyframePair ends{part.loops[l].from, part.loops[l].to};
-    known_.loops.try_emplace(ends, part.loops[l]);
-    loops_by_[part.author].push_back(ends);
+    // Nobody registers a loop twice: repeated, it would grow the list for ever.
+    if (known_.loops.try_emplace(ends, part.loops[l]).second) loops_by_[part.author].push_back(ends);
   }
   return true;
 }

@@ -33,8 +33,9 @@ class FleetLedger {
   void add_own(MergeCheck check);
 
   /// What a message brought. Nothing changes, and false is returned, where a part before it was lost (the
-  /// next Hello asks for it) and where it makes no sense: news about this robot itself, covariances that are
-  /// not positive definite, loops or checks that are not their author's.
+  /// next Hello asks for it) and where it makes no sense: news about this robot itself, covariances of steps
+  /// or information of accepted loops that are not positive definite or have no finite inverse, loops or
+  /// checks that are not their author's.
   ///@{
   bool take(const GraphPart& part);
   bool take(const Loops& part);

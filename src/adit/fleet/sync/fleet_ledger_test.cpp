@@ -120,5 +120,37 @@ TEST(FleetLedger, RefusesWhatIsNotTheAuthorsAndWhatIsAboutItself) {
   EXPECT_EQ(ledger.num_own_loops(), 0U);
 }
 
+TEST(FleetLedger, RefusesWhatTheSolverCouldNotInvert) {
+  FleetLedger ledger(kSelf, graph_with(1), MergePolicy::adaptive);
+  Matrix6 indefinite = Matrix6::Identity();
+  indefinite(2, 2) = -1.0;
+  const Matrix6 tiny = Matrix6::Identity() * 1e-310;  // with an infinite inverse
+  for (const Matrix6& matrix : {Matrix6(Matrix6::Zero()), indefinite, tiny}) {
+    GraphNode node;
+    node.step_covariance = matrix;
+    EXPECT_FALSE(ledger.take(GraphPart{kOther, "odd", 0, {node, node}}));
+    LoopClosure odd = loop({kOther, 1}, {kSelf, 0});
+    odd.information = matrix;
+    odd.verdict = LoopVerdict::accepted;
+    EXPECT_FALSE(ledger.take(Loops{kOther, 0, {odd}}));
+    EXPECT_FALSE(ledger.restore(Loops{kOther, 0, {odd}}));
+  }
+  EXPECT_FALSE(ledger.known().robots.contains(kOther));
+  EXPECT_TRUE(ledger.known().loops.empty());
+  LoopClosure rejected = loop({kOther, 1}, {kSelf, 0});
+  rejected.information = Matrix6::Zero();
+  EXPECT_TRUE(ledger.take(Loops{kOther, 0, {rejected}})) << "that it was tried is told to all";
+}
+
+TEST(FleetLedger, ALoopThatIsRepeatedIsListedOnce) {
+  FleetLedger ledger(kSelf, graph_with(1), MergePolicy::adaptive);
+  const LoopClosure first = loop({kOther, 1}, {kSelf, 0});
+  const LoopClosure second = loop({kOther, 2}, {kSelf, 0});
+  EXPECT_TRUE(ledger.take(Loops{kOther, 0, {first, first}}));
+  EXPECT_TRUE(ledger.take(Loops{kOther, 1, {first, second}}));
+  EXPECT_EQ(ledger.known().loops.size(), 2U);
+  EXPECT_EQ(ledger.summary().at(kOther).num_loops, 2U);
+}
+
 }  // namespace
 }  // namespace adit

@@ -28,7 +28,7 @@ void PeerSession::restore_searched(std::uint32_t num) {
 }
 
 bool PeerSession::take(const Places& part) {
-  if (part.first > num_places_) return false;
+  if (part.first > num_places_ || part.first + part.places.size() > num_keyframes_) return false;
   for (std::size_t i = num_places_ - part.first; i < part.places.size(); ++i) {
     places_.push_back(part.places[i]);
     ++num_places_;

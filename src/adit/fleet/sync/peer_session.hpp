@@ -39,7 +39,8 @@ class PeerSession {
 
   /// Descriptors received so far, over all meetings.
   [[nodiscard]] std::uint32_t num_places() const { return num_places_; }
-  /// False where a part before it was lost; the next Hello asks for it.
+  /// False where a part before it was lost, and the next Hello asks for it, or where there would be more
+  /// places than the peer has keyframes.
   bool take(const Places& part);
   /// Forgets descriptors that no search has used; a later meeting sends them again.
   void forget_places();
@@ -47,6 +48,8 @@ class PeerSession {
   [[nodiscard]] bool has_all_places() const { return has_all_places_; }
   /// Whether all places lie on the first `num_nodes` nodes of the peer's graph.
   [[nodiscard]] bool lie_within(std::size_t num_nodes) const;
+  /// Whether `num_nodes` are all nodes of the peer's graph; false before its first Hello.
+  [[nodiscard]] bool is_whole(std::size_t num_nodes) const { return num_nodes >= num_keyframes_; }
   /// Hands the descriptors over to the search.
   [[nodiscard]] std::vector<Places::Place> take_places();
 

@@ -131,5 +131,18 @@ TEST(PeerSession, AsksForABoundedNumberOfCloudsAtATime) {
   EXPECT_EQ(session.request()->indices.size(), kCloudsPerMessage);
 }
 
+TEST(PeerSession, TakesNoMorePlacesThanThePeerHasKeyframes) {
+  PeerSession session;
+  EXPECT_FALSE(session.is_whole(1'000'000)) << "the peer has not said how many there are";
+  session.hear(hello_with(3), kPeer);
+  EXPECT_TRUE(session.is_whole(3));
+  EXPECT_FALSE(session.is_whole(2));
+  ASSERT_TRUE(session.take(part_of(0, {0, 1}, false)));
+  EXPECT_FALSE(session.take(part_of(2, {2, 2}, false)));
+  EXPECT_EQ(session.num_places(), 2U);
+  ASSERT_TRUE(session.take(part_of(2, {2}, true)));
+  EXPECT_EQ(session.take_places().size(), 3U);
+}
+
 }  // namespace
 }  // namespace adit

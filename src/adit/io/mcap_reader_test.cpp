@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/mcap_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "adit/core/format.hpp"
+#include "adit/io/bag.hpp"
+#include "adit/io/crc32.hpp"
+#include "support/files.hpp"
+#include "support/foreign_mcap.hpp"
+
+namespace adit {
+namespace {
+
+using mcap::Opcode;
+
+const std::string kSchema =
+    mcap::framed(Opcode::schema, mcap::encode(mcap::Schema{1, std::string(ros::kOdometry), "ros2msg", ""}));
+const std::string kChannel =
+    mcap::framed(Opcode::channel, mcap::encode(mcap::Channel{1, 1, "/odom", "cdr", {}}));
+
+/// A file whose summary has faults.
+struct Faults {
+  bool lacks_schemas = false;
+  int chunk_named = 1;               ///< So often.
+  int metadata_named = 1;            ///< So often.
+  std::uint64_t metadata_moved = 0;  ///< Bytes behind where it is.
+  std::uint64_t index_time = 1000;   ///< Of the first message, as the message index has it.
+  bool is_crc_wrong = false;         ///< Of the summary.
+  bool is_chunk_damaged = false;     ///< In the data section.
+};
+
+/// Two messages in a chunk with its index, a record of metadata, and the summary.
+std::string indexed_file(const Faults& faults = {}) {
+  std::string records = kSchema + kChannel;
+  mcap::MessageIndex index{1, {}};
+  for (std::int64_t m = 0; m < 2; ++m) {
+    const Stamp time{1000 + m};
+    index.entries.emplace_back(m == 0 ? faults.index_time : 1001, records.size());
+    records +=
+        mcap::framed(Opcode::message, mcap::encode(mcap::Message{1, 0, time, time, format("message {}", m)}));
+  }
+  std::string bytes(mcap::kMagic);
+  bytes += mcap::framed(Opcode::header, mcap::encode(mcap::Header{"ros2", "hand"}));
+  mcap::ChunkIndex in_summary{{1000}, {1001}, bytes.size(), 0, {}, 0, "", records.size(), records.size()};
+  const std::uint32_t crc = crc32(records) + (faults.is_chunk_damaged ? 1U : 0U);
+  bytes += mcap::framed(Opcode::chunk,
+                        mcap::encode(mcap::Chunk{{1000}, {1001}, records.size(), crc, "", records}));
+  in_summary.chunk_length = bytes.size() - in_summary.chunk_start;
+  bytes += mcap::framed(Opcode::message_index, mcap::encode(index));
+  in_summary.message_index_length = bytes.size() - in_summary.chunk_start - in_summary.chunk_length;
+  const std::uint64_t metadata_at = bytes.size();
+  bytes += mcap::framed(Opcode::metadata, mcap::encode(mcap::Metadata{"adit", {{"robot", "a"}}}));
+  const mcap::MetadataIndex of_metadata{metadata_at + faults.metadata_moved, bytes.size() - metadata_at,
+                                        "adit"};
+  bytes += mcap::framed(Opcode::data_end, std::string(4, '\0'));
+  mcap::Footer footer{bytes.size(), 0, 0};
+  std::string summary = (faults.lacks_schemas ? "" : kSchema) + kChannel;
+  for (int i = 0; i < faults.chunk_named; ++i)
+    summary += mcap::framed(Opcode::chunk_index, mcap::encode(in_summary));
+  for (int i = 0; i < faults.metadata_named; ++i)
+    summary += mcap::framed(Opcode::metadata_index, mcap::encode(of_metadata));
+  const std::string covered = summary + mcap::framed(Opcode::footer, mcap::encode(footer));
+  footer.summary_crc =
+      crc32(std::string_view(covered).substr(0, covered.size() - 4)) + (faults.is_crc_wrong ? 1U : 0U);
+  return bytes + summary + mcap::framed(Opcode::footer, mcap::encode(footer)) + std::string(mcap::kMagic);
+}
+
+void expect_both_messages(const Result<Bag>& bag) {
+  ASSERT_TRUE(bag) << bag.error().message;
+  ASSERT_EQ(bag->messages.size(), 2U);
+  ASSERT_EQ(bag->topics.size(), 1U);
+  EXPECT_EQ(bag->topics[0].type, ros::kOdometry);
+  for (std::size_t m = 0; m < 2; ++m) {
+    EXPECT_EQ(bag->messages[m].log_time.ns, 1000 + static_cast<std::int64_t>(m));
+    EXPECT_EQ(bag->read(bag->messages[m]).value(), format("message {}", m));
+  }
+  EXPECT_EQ(bag->own, (std::map<std::string, std::string>{{"robot", "a"}}));
+}
+
+TEST(McapReader, ASummaryThatLeavesOutSchemasIsFilledUpFromTheData) {
+  const Result<Bag> whole = open_mcap_bag(memory_source(indexed_file()));
+  expect_both_messages(whole);
+  EXPECT_TRUE(whole->warnings.empty());
+  const Result<Bag> without = open_mcap_bag(memory_source(indexed_file({.lacks_schemas = true})));
+  expect_both_messages(without);
+  EXPECT_TRUE(without->warnings.empty()) << "the specification allows it";
+}
+
+TEST(McapReader, WhereTheSummaryIsDamagedTheDataAreGoneThrough) {
+  const std::uint64_t late = static_cast<std::uint64_t>(INT64_MAX) + 1;
+  const std::vector<std::pair<Faults, std::string>> cases = {
+      {{.is_crc_wrong = true}, "the checksum of the summary does not fit"},
+      {{.metadata_moved = 3}, "reaches past the end of the file"},
+      {{.chunk_named = 2}, "the summary names a chunk twice"},
+      {{.chunk_named = 10'000}, "the summary names a chunk twice"},
+      {{.metadata_named = 2}, "the index names this record twice"},
+      {{.index_time = late}, "a message index has the time 9223372036854775808 ns"}};
+  for (const auto& [faults, fault] : cases) {
+    const Result<Bag> bag = open_mcap_bag(memory_source(indexed_file(faults)));
+    expect_both_messages(bag);
+    ASSERT_EQ(bag->warnings.size(), 1U) << fault;
+    EXPECT_NE(bag->warnings[0].find(fault), std::string::npos) << bag->warnings[0];
+    EXPECT_NE(bag->warnings[0].find("its 2 messages are read"), std::string::npos) << bag->warnings[0];
+  }
+  EXPECT_ERROR(open_mcap_bag(memory_source(indexed_file({.is_crc_wrong = true, .is_chunk_damaged = true}))),
+               "its index cannot be used either (byte");
+}
+
+TEST(McapReader, NoFlippedByteBehindTheDataCostsAMessage) {
+  const std::string bytes = indexed_file();
+  const std::string end_of_data = mcap::framed(Opcode::data_end, std::string(4, '\0'));
+  const std::size_t summary = bytes.find(end_of_data) + end_of_data.size();
+  for (std::size_t at = summary; at < bytes.size(); ++at) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(~damaged[at]);
+    const Result<Bag> bag = open_mcap_bag(memory_source(damaged));
+    ASSERT_NO_FATAL_FAILURE(expect_both_messages(bag)) << "byte " << at;
+    EXPECT_EQ(bag->warnings.size(), 1U) << "byte " << at;
+  }
+}
+
+TEST(McapReader, AttachmentsAreSteppedOverUnread) {
+  const auto attachment = static_cast<Opcode>(0x09);
+  const std::string message = mcap::framed(Opcode::message, mcap::encode(mcap::Message{1, 0, {5}, {5}, "x"}));
+  const auto bytes = std::make_shared<const std::string>(
+      test::plain_file({kSchema, kChannel, mcap::framed(attachment, std::string(100'000, 'a')), message}));
+  ByteSource source = memory_source(bytes);
+  const auto most = std::make_shared<std::uint64_t>(0);
+  source.read = [most, read = source.read](std::uint64_t offset, std::uint64_t size) {
+    *most = std::max(*most, size);
+    return read(offset, size);
+  };
+  const Result<Bag> bag = open_mcap_bag(source);
+  ASSERT_TRUE(bag) << bag.error().message;
+  EXPECT_EQ(bag->messages.size(), 1U);
+  EXPECT_LT(*most, 1000U);
+  const std::size_t inside = bytes->find("aaa") + 100;
+  EXPECT_ERROR(open_mcap_bag(memory_source(bytes->substr(0, inside))),
+               "a record of 100000 bytes reaches past the end of the file");
+}
+
+TEST(McapReader, LogTimesStayWithinWhatDifferencesCanHold) {
+  const std::string message =
+      mcap::framed(Opcode::message, mcap::encode(mcap::Message{1, 0, {INT64_MAX}, {5}, "x"}));
+  const Result<Bag> bag = open_mcap_bag(memory_source(test::plain_file({kSchema, kChannel, message})));
+  ASSERT_TRUE(bag) << bag.error().message;
+  EXPECT_EQ(bag->messages.at(0).log_time.ns, std::int64_t{1} << 62U);
+  EXPECT_EQ(bag->read(bag->messages[0]).value(), "x");
+}
+
+}  // namespace
+}  // namespace adit
