@@ -27,6 +27,7 @@ class ImuReader {
  public:
   /// `bag` must outlive it.
   explicit ImuReader(const Bag& bag) : bag_(bag) {}
+  /// The next message of the topic.
   void add(const BagMessage& message);
   /// Once, after all messages.
   [[nodiscard]] ImuTrack finish();

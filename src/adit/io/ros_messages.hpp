@@ -76,7 +76,7 @@ Result<OdometryMessage> decode_odometry(std::string_view message,
 [[nodiscard]] std::string encode_transforms(const std::vector<TransformMessage>& transforms);
 /// What a TFMessage links.
 struct TransformsMessage {
-  std::vector<TransformMessage> links;
+  std::vector<TransformMessage> links;  ///< Those that are poses.
   std::vector<Error> left_out;  ///< Of each link whose pose is none (tf2 drops such links as well): why.
 };
 /// Fails when the message ends early.

@@ -27,6 +27,7 @@ struct PoseTrack {
 class PoseReader {
  public:
   virtual ~PoseReader() = default;
+  /// The next message of the topic.
   virtual void add(const BagMessage& message) = 0;
   /// Once, after all messages. Fails where all of them are damaged.
   virtual Result<PoseTrack> finish() = 0;

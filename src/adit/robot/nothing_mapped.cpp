@@ -57,7 +57,6 @@ std::string why_nothing_mapped(const Recording& recording) {
   const Result<Scan> first = recording.read_scan(0);
   if (!first) return format("{}: {}", all, first.error().message);
   const View view = view_of(first->cloud);
-  if (view.num_points == 0) return all + ": the first has no points";
   const std::string seen = format("{}: the first has {} points, {:.1f} to {:.1f} m away", all,
                                   view.num_points, view.nearest_m, view.farthest_m);
   if (view.num_points >= kEnough && view.width_deg < kNarrow)
