@@ -9,6 +9,7 @@
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
 #include "adit/io/mcap_reader.hpp"
+#include "adit/io/tum.hpp"
 
 namespace adit {
 namespace {
@@ -60,10 +61,7 @@ std::size_t TopicIndex::of(const BagTopic& topic, std::vector<BagTopic>& topics)
   return known->second;
 }
 
-Stamp usable_log_time(Stamp time) {
-  constexpr std::int64_t kMost = std::int64_t{1} << 62U;
-  return {std::clamp(time.ns, -kMost, kMost)};
-}
+Stamp usable_log_time(Stamp time) { return {std::clamp(time.ns, -kLargestStamp.ns, kLargestStamp.ns)}; }
 
 Result<Bag> open_mcap_bag(ByteSource source) {
   const std::uint64_t num_bytes = source.size;

@@ -69,8 +69,8 @@ class TopicIndex {
   std::map<std::pair<std::string, std::string>, std::size_t> known_;
 };
 
-/// The time itself between the years 1824 and 2116; beyond them, where only damaged files have one, the
-/// nearest. Differences of log times and of stamps of ROS then fit into 64 bits.
+/// The time itself within kLargestStamp (tum.hpp); beyond it, where only damaged files have one, the nearest.
+/// Differences then fit into 64 bits.
 [[nodiscard]] Stamp usable_log_time(Stamp time);
 
 /// Opens

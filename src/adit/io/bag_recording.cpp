@@ -24,27 +24,33 @@
 namespace adit {
 namespace {
 
-/// The first message of these topics, if there is one.
-std::optional<BagMessage> first_of(const Bag& bag, const TopicIndices& topics) {
-  const auto first = std::ranges::find_if(bag.messages, [&](const BagMessage& message) {
-    return std::ranges::find(topics, message.topic) != topics.end();
-  });
-  return first == bag.messages.end() ? std::nullopt : std::optional(*first);
+/// What `decode` makes of the first message of these topics that is not damaged, if there is one.
+template <class Decode>
+auto first_decoded(const Bag& bag, const TopicIndices& topics, const Decode& decode) {
+  auto first = std::optional<typename decltype(decoded(bag, bag.messages.front(), decode))::value_type>();
+  for (const BagMessage& message : bag.messages) {
+    if (std::ranges::find(topics, message.topic) == topics.end()) continue;
+    if (auto read = decoded(bag, message, decode)) {
+      first = *std::move(read);
+      break;
+    }
+  }
+  return first;
 }
 
 /// The robot's frame as the first messages of wheels name it; "" where they differ, or do not.
-Result<std::string> body_frame(const Bag& bag, const TopicIndices& topics) {
+std::string body_frame(const Bag& bag, const TopicIndices& topics) {
   std::string body;
   for (const std::size_t topic : topics) {
-    const std::optional<BagMessage> first = first_of(bag, {topic});
-    if (!first || bag.topics[topic].type == ros::kJointState) continue;
-    const auto frame = [&]() -> Result<std::string> {
-      if (bag.topics[topic].type == ros::kTwist)
-        return decoded(bag, *first, ros::decode_header).map([](auto&& header) { return header.frame; });
-      return decoded(bag, *first, ros::decode_odometry).map([](auto&& odometry) { return odometry.child; });
-    }();
-    if (!frame) return fail(format("{}, message 0", bag.topics[topic].name), frame.error());
-    if (!body.empty() && FrameTree::bare(body) != FrameTree::bare(*frame)) return std::string();
+    if (bag.topics[topic].type == ros::kJointState) continue;
+    std::optional<std::string> frame;
+    if (bag.topics[topic].type == ros::kTwist) {
+      if (const auto header = first_decoded(bag, {topic}, ros::decode_header)) frame = header->frame;
+    } else if (const auto odometry = first_decoded(bag, {topic}, ros::decode_odometry)) {
+      frame = odometry->child;
+    }
+    if (!frame) continue;
+    if (!body.empty() && FrameTree::bare(body) != FrameTree::bare(*frame)) return "";
     body = *frame;
   }
   return body;
@@ -111,7 +117,7 @@ Result<ros::CloudMessage> first_cloud(const Bag& bag, const TopicIndices& topics
     if (!cloud && first_fault.empty()) first_fault = format("scan {}: {}", num, cloud.error().message);
     ++num;
   }
-  if (!first_fault.empty()) return fail(first_fault);
+  if (!first_fault.empty()) return fail(names_of(bag, topics) + ", " + first_fault);
   if (num == 0) return fail(format("{}: no message; there are no scans to read", names_of(bag, topics)));
   return fail(format("{}: none of {} clouds has a point; look at the driver", names_of(bag, topics), num));
 }
@@ -229,17 +235,10 @@ void note_other_wheels(Recording& recording, const Bag& bag, const BagTopics& to
   }
 }
 
-Result<FrameNames> frame_names(const Bag& bag, const BagTopics& topics, const std::string& lidar) {
-  FrameNames names{{}, lidar, {}};
-  if (const std::optional<BagMessage> imu = first_of(bag, topics.imu)) {
-    const auto header = decoded(bag, *imu, ros::decode_header);
-    if (!header) return fail("IMU, message 0", header.error());
-    names.imu = header->frame;
-  }
-  return body_frame(bag, topics.wheel).map([&](std::string&& base) {
-    names.base = std::move(base);
-    return std::move(names);
-  });
+FrameNames frame_names(const Bag& bag, const BagTopics& topics, const std::string& lidar) {
+  FrameNames names{body_frame(bag, topics.wheel), lidar, {}};
+  if (const auto imu = first_decoded(bag, topics.imu, ros::decode_header)) names.imu = imu->frame;
+  return names;
 }
 
 /// Adds the links of some topics. Static ones go first, wherever they stand.
@@ -294,10 +293,11 @@ Result<Tracks> read_tracks(const Bag& bag, const BagTopics& topics, const Record
                            const FrameNames& names) {
   Tracks tracks;
   tracks.frames = FrameTracks(names.base, {names.lidar, names.imu});
-  LeftOut links("links");
+  LeftOut static_links("links");
   BagPass first_pass(bag);
-  first_pass.add(topics.static_transforms, into(bag, tracks.frames, links, &FrameTracks::add_static));
+  first_pass.add(topics.static_transforms, into(bag, tracks.frames, static_links, &FrameTracks::add_static));
   first_pass.run(bag);
+  LeftOut links("links");
   BagPass pass(bag);
   if (config.mount.empty() || config.imu_mount.empty())
     pass.add(topics.transforms, into(bag, tracks.frames, links, &FrameTracks::add));
@@ -312,9 +312,13 @@ Result<Tracks> read_tracks(const Bag& bag, const BagTopics& topics, const Record
   if (!truth) return tl::unexpected(truth.error());
   pass.run(bag);
   if (const Result<> any = scans.unless_all(); !any) return fail(names_of(bag, topics.points), any.error());
-  if (const auto sentence = scans.sentence())
-    tracks.warnings.push_back(names_of(bag, topics.points) + ": " + *sentence);
-  if (const auto sentence = links.sentence()) tracks.warnings.push_back("/tf: " + *sentence);
+  const auto warn = [&](const TopicIndices& of, const LeftOut& left_out) {
+    if (const auto sentence = left_out.sentence())
+      tracks.warnings.push_back(names_of(bag, of) + ": " + *sentence);
+  };
+  warn(topics.points, scans);
+  warn(topics.static_transforms, static_links);
+  warn(topics.transforms, links);
   if (Result<> done = put_in_order(tracks, names_of(bag, topics.points)); !done)
     return tl::unexpected(done.error());
   Result<PoseTrack> wheels = finished(*wheel);
@@ -356,20 +360,18 @@ Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, RecordingC
   if (!time_unit) return tl::unexpected(time_unit.error());
   const Result<ros::CloudMessage> first = first_cloud(*bag, topics->points, *time_unit);
   if (!first) return tl::unexpected(first.error());
-  const Result<FrameNames> names = frame_names(*bag, *topics, first->frame);
-  if (!names) return tl::unexpected(names.error());
-  Result<Tracks> tracks = read_tracks(*bag, *topics, config, *names);
+  const FrameNames names = frame_names(*bag, *topics, first->frame);
+  Result<Tracks> tracks = read_tracks(*bag, *topics, config, names);
   if (!tracks) return tl::unexpected(tracks.error());
   Recording recording = recording_of(*tracks, *bag, *topics, config);
   if (!bag->own) note_point_times(recording, *first);
-  const Result<std::optional<MovingPose>> moving =
-      take_lidar_mount(recording, tracks->frames, *names, config);
+  const Result<std::optional<MovingPose>> moving = take_lidar_mount(recording, tracks->frames, names, config);
   if (!moving) return tl::unexpected(moving.error());
   if (*moving) {
     if (Result<> left = leave_scans_with_pose(recording, *tracks, **moving); !left)
       return tl::unexpected(left.error());
   }
-  if (Result<> taken = take_imu_mount(recording, tracks->frames, *names, config); !taken)
+  if (Result<> taken = take_imu_mount(recording, tracks->frames, names, config); !taken)
     return tl::unexpected(taken.error());
   recording.scan_stamps = tracks->stamps;
   if (Result<> checked = check_fits_mcap(recording); !checked) return tl::unexpected(checked.error());

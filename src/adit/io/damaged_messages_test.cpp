@@ -69,7 +69,8 @@ TEST(DamagedMessages, ALinkThatIsNoPoseIsLeftOutAndTheOthersAreNot) {
   ASSERT_TRUE(recording) << recording.error().message;
   EXPECT_EQ(recording->T_base_lidar.translation(), test::T_base_ouster.translation());
   ASSERT_EQ(recording->warnings.size(), 1U);
-  EXPECT_TRUE(recording->warnings[0].starts_with("/tf: 1 of 2 links are left out; the first, 0: byte "))
+  EXPECT_TRUE(
+      recording->warnings[0].starts_with("/tf_static: 1 of 2 links are left out; the first, 0: byte "))
       << recording->warnings[0];
 }
 
@@ -79,12 +80,12 @@ TEST(DamagedMessages, OdometryThatIsNoPoseIsLeftOutUnlessAllIs) {
     return ros::encode_odometry({{"odom", "base_link", {stamp(i), Pose()}}, {}});
   };
   ForeignFile file = with_mount().clouds("/points");
-  file.messages_of(ros::kOdometry, "/odom", {sound(0), odometry_without_rotation(stamp(1)), sound(2)});
+  file.messages_of(ros::kOdometry, "/odom", {odometry_without_rotation(stamp(0)), sound(1), sound(2)});
   const Result<Recording> recording = file.read();
   ASSERT_TRUE(recording) << recording.error().message;
   EXPECT_EQ(recording->wheel.size(), 2U);
   ASSERT_EQ(recording->warnings.size(), 1U);
-  EXPECT_TRUE(recording->warnings[0].starts_with("/odom: 1 of 3 messages are left out; the first, 1: byte "))
+  EXPECT_TRUE(recording->warnings[0].starts_with("/odom: 1 of 3 messages are left out; the first, 0: byte "))
       << recording->warnings[0];
 }
 

@@ -11,7 +11,8 @@
 
 namespace adit {
 
-/// Metres: beyond the earth and all its map grids. Numbers without a bound may be finite each and overflow
+/// Metres: beyond the earth and all its map grids. Between robots 1e7 m are the most (transport/wire.cpp), as
+/// maps are in the frames of their odometries. Numbers without a bound may be finite each and overflow
 /// when two poses are composed.
 inline constexpr double kFarthestCoordinate = 1e9;
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "adit/io/imu_topic.hpp"
 
+#include <utility>
+
 #include "adit/core/format.hpp"
 #include "adit/io/ascending.hpp"
 #include "adit/io/ros_messages.hpp"
@@ -22,16 +24,13 @@ std::string_view missing_in(const ImuCovariance& covariance) {
 void ImuReader::add(const BagMessage& message) {
   const Result<ros::ImuMessage> imu = decoded(bag_, message, ros::decode_imu);
   if (!imu) return left_out_.leave(imu.error());
-  left_out_.take();
-  if (num_messages_++ == 0) {
-    track_.covariance = imu->covariance;
-  }
+  if (std::exchange(is_first_, false)) track_.covariance = imu->covariance;
   const ImuSample& sample = imu->sample;
-  if (!sample.angular_velocity.allFinite() || !sample.specific_force.allFinite()) {
-    if (num_not_finite_++ == 0) first_not_finite_ = sample.stamp;
-  } else {
-    track_.samples.push_back(sample);
-  }
+  if (!sample.angular_velocity.allFinite() || !sample.specific_force.allFinite())
+    return left_out_.leave(
+        {format("at {} s its numbers are not finite; check the driver", stamp_text(sample.stamp))});
+  left_out_.take();
+  track_.samples.push_back(sample);
 }
 
 ImuTrack ImuReader::finish() {
@@ -40,11 +39,6 @@ ImuTrack ImuReader::finish() {
   track_.samples = taken(std::move(track_.samples), kept);
   if (const auto note = note_of_left_out("samples", stamps, kept)) track_.remarks.push_back("imu: " + *note);
   if (const auto sentence = left_out_.sentence()) track_.remarks.push_back("imu: " + *sentence);
-  if (num_not_finite_ > 0)
-    track_.remarks.push_back(
-        format("imu: {} of {} samples are left out, whose numbers are not finite (check the driver); the "
-               "first is at {} s",
-               num_not_finite_, num_messages_, stamp_text(first_not_finite_)));
   if (const std::string_view missing = missing_in(track_.covariance); !missing.empty()) {
     track_.samples.clear();
     track_.remarks = {format(

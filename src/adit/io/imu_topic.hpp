@@ -35,10 +35,8 @@ class ImuReader {
  private:
   const Bag& bag_;
   ImuTrack track_;
-  LeftOut left_out_{"messages"};
-  std::size_t num_messages_ = 0;
-  std::size_t num_not_finite_ = 0;
-  Stamp first_not_finite_;
+  LeftOut left_out_{"samples"};
+  bool is_first_ = true;
 };
 
 }  // namespace adit

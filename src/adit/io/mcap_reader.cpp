@@ -349,6 +349,10 @@ Result<Contents> read_contents(const ByteSource& source, const Result<std::optio
   }
   Contents contents;
   Result<> read = scan_data(source, contents).and_then([&] { return check_channels(contents); });
+  if (!read && !summary && !contents.messages.empty() && check_channels(contents)) {
+    contents.torn = read.error().message;  // as of a file that was cut there
+    return contents;
+  }
   if (!read && !summary)
     return fail(
         format("{}; its index cannot be used either ({})", read.error().message, summary.error().message));

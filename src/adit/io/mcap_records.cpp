@@ -79,8 +79,8 @@ class Decoder {
   void get(Stamp& stamp) {
     std::uint64_t raw = 0;
     get(raw);
-    ok_ = ok_ && raw <= static_cast<std::uint64_t>(INT64_MAX);
-    stamp.ns = static_cast<std::int64_t>(raw);
+    // A clock that is beyond is damaged, which must not cost the message.
+    stamp.ns = static_cast<std::int64_t>(std::min(raw, static_cast<std::uint64_t>(INT64_MAX)));
   }
   void get(std::string& text) {
     std::uint32_t size = 0;

@@ -28,7 +28,7 @@ struct WholePages : sqlite3_io_methods {
     xFileSize = [](sqlite3_file* file, sqlite3_int64* size) {
       const auto* self = static_cast<const WholePages*>(file->pMethods);
       const int code = self->original->xFileSize(file, size);
-      *size -= *size % self->page_size;
+      if (code == SQLITE_OK) *size -= *size % self->page_size;
       return code;
     };
   }
@@ -77,7 +77,7 @@ Pages pages_of(const std::filesystem::path& path) {
 }
 
 /// Ends a query whose caller wants to stop, however long it goes without a row.
-int is_cancelled(void* /*unused*/) {
+int is_cancelled(void* /*unused*/) noexcept {
   const ProgressObserver* observer = progress_context().observer;
   return observer != nullptr && observer->cancelled() ? 1 : 0;
 }
@@ -122,11 +122,12 @@ std::string text_of(sqlite3_stmt* row, int column) {
 }
 
 /// A view or a virtual table of the name would run a program that the file brings along, which may never end.
+/// What sqlite has made of the schema is asked, as the table that holds it may say anything.
 Result<> check_tables(sqlite3* database) {
   const Result<Statement> others =
       prepare(database,
-              "SELECT name FROM sqlite_master WHERE lower(name) IN ('topics', 'messages') "
-              "AND type IN ('table', 'view') AND (type <> 'table' OR rootpage = 0)");
+              "SELECT name FROM pragma_table_list WHERE lower(name) IN ('topics', 'messages') "
+              "AND type <> 'table'");
   if (!others) return tl::unexpected(others.error());
   const int code = sqlite3_step(others->get());
   if (code == SQLITE_ROW)

@@ -195,6 +195,8 @@ void get(Reader& in, LoopClosure& loop) {
   loop.num_inliers = in.scalar<int>();
   loop.overlap = in.scalar<double>();
   loop.weak_axis = in.scalar<double>();
+  for (const double value : {loop.place_distance, loop.overlap, loop.weak_axis})
+    if (!std::isfinite(value)) in.refuse();
   loop.verdict = in.scalar<std::uint8_t>() == 0 ? LoopVerdict::accepted : LoopVerdict::rejected;
   get(in, loop.reason);
 }
