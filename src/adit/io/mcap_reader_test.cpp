@@ -146,13 +146,15 @@ TEST(McapReader, AttachmentsAreSteppedOverUnread) {
 }
 
 TEST(McapReader, LogTimesStayWithinWhatDifferencesCanHold) {
-  const std::string message =
-      mcap::framed(Opcode::message, mcap::encode(mcap::Message{1, 0, {-1}, {5}, "x"}));
-  // Written as 2^64 - 1 ns.
-  const Result<Bag> bag = open_mcap_bag(memory_source(test::plain_file({kSchema, kChannel, message})));
-  ASSERT_TRUE(bag) << bag.error().message;
-  EXPECT_EQ(bag->messages.at(0).log_time, kLargestStamp);
-  EXPECT_EQ(bag->read(bag->messages[0]).value(), "x");
+  const std::string sound = mcap::framed(Opcode::message, mcap::encode(mcap::Message{1, 0, {}, {5}, "x"}));
+  constexpr std::size_t kLogTime = 15;  // behind opcode, length, channel and number
+  for (const std::string& time : {std::string("\xff\xff\xff\xff\xff\xff\xff\x7f"), std::string(8, '\xff')}) {
+    const std::string message = std::string(sound).replace(kLogTime, time.size(), time);
+    const Result<Bag> bag = open_mcap_bag(memory_source(test::plain_file({kSchema, kChannel, message})));
+    ASSERT_TRUE(bag) << bag.error().message;
+    EXPECT_EQ(bag->messages.at(0).log_time, kLargestStamp);
+    EXPECT_EQ(bag->read(bag->messages[0]).value(), "x");
+  }
 }
 
 }  // namespace
