@@ -316,7 +316,7 @@ Result<CloudFile> unpack(PackedCloud packed) {
 
 Result<CloudFile> unpack_file(PackedCloud packed) {
   const std::size_t num_points = packed.num_points;
-  return unpack(std::move(packed)).and_then([&](CloudFile file) -> Result<CloudFile> {
+  return unpack(packed).and_then([&](CloudFile file) -> Result<CloudFile> {
     if (file.cloud.empty()) return fail(format("none of the {} points is finite", num_points));
     return file;
   });
