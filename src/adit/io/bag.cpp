@@ -31,9 +31,7 @@ Bag bag_of(const std::shared_ptr<const mcap::Reader>& reader) {
     bag.warnings.push_back(
         format("{}; {} messages in front of that are read", contents.torn, contents.messages.size()));
   if (!contents.summary_fault.empty())
-    bag.warnings.push_back(format(
-        "its index cannot be used ({}); the file was gone through instead, and its {} messages are read",
-        contents.summary_fault, contents.messages.size()));
+    bag.warnings.push_back(index_warning(contents.summary_fault, contents.messages.size(), "mcap recover"));
   TopicIndex topics;
   std::map<std::uint16_t, std::size_t> topic_of_channel;
   for (const auto& [id, channel] : contents.channels) {
@@ -59,6 +57,13 @@ std::size_t TopicIndex::of(const BagTopic& topic, std::vector<BagTopic>& topics)
   const auto [known, is_new] = known_.emplace(std::pair(topic.name, topic.type), topics.size());
   if (is_new) topics.push_back(topic);
   return known->second;
+}
+
+std::string index_warning(std::string_view fault, std::size_t num_messages, std::string_view tool) {
+  return format(
+      "its index cannot be used ({}); the file was gone through instead, and its {} messages are read; '{}' "
+      "writes a new index",
+      fault, num_messages, tool);
 }
 
 Stamp usable_log_time(Stamp time) { return {std::clamp(time.ns, -kLargestStamp.ns, kLargestStamp.ns)}; }

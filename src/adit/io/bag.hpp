@@ -69,6 +69,11 @@ class TopicIndex {
   std::map<std::pair<std::string, std::string>, std::size_t> known_;
 };
 
+/// What to tell where the data of a bag were read without its index. `fault`: of the index; `tool`: the
+/// command that writes a new one.
+[[nodiscard]] std::string index_warning(std::string_view fault, std::size_t num_messages,
+                                        std::string_view tool);
+
 /// The time itself within kLargestStamp (tum.hpp); beyond it, where only damaged files have one, the nearest.
 /// Differences then fit into 64 bits.
 [[nodiscard]] Stamp usable_log_time(Stamp time);

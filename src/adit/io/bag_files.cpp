@@ -77,8 +77,7 @@ Result<FolderFiles> files_of_metadata(const fs::path& folder) {
       FolderFiles found = files_by_name(folder);
       found.warnings.push_back(
           format("{}: has no {}, as after an interrupted recording; the files of the folder are read by "
-                 "their names, "
-                 "and 'ros2 bag reindex' writes it anew",
+                 "their names, and 'ros2 bag reindex' writes it anew",
                  file.string(), kInformation));
       return found;
     }

@@ -296,9 +296,7 @@ Result<Contents> read_contents(const ByteSource& source) {
     contents.bag.warnings.push_back(format("the file breaks off: {}; {} messages in front of that are read",
                                            scanned.error().message, num_messages));
   else if (!listed)
-    contents.bag.warnings.push_back(format(
-        "its index cannot be used ({}); the file was gone through instead, and its {} messages are read",
-        listed.error().message, num_messages));
+    contents.bag.warnings.push_back(index_warning(listed.error().message, num_messages, "rosbag reindex"));
   return contents;
 }
 

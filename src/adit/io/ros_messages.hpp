@@ -68,8 +68,8 @@ struct OdometryMessage : TransformMessage {
 };
 /// In CDR. The stamp must fit: see `fits_ros`.
 [[nodiscard]] std::string encode_odometry(const OdometryMessage& odometry);
-/// Fails when the message ends early, or its pose is none: not finite, farther away than 1e9 m, or with a
-/// quaternion not of length 1.
+/// Fails when the message ends early, or its pose is not valid: not finite, farther away than 1e9 m, or with
+/// a quaternion not of length 1.
 Result<OdometryMessage> decode_odometry(std::string_view message,
                                         MessageEncoding encoding = MessageEncoding::cdr);
 /// In CDR. The stamps must fit: see `fits_ros`.
@@ -77,7 +77,7 @@ Result<OdometryMessage> decode_odometry(std::string_view message,
 /// What a TFMessage links.
 struct TransformsMessage {
   std::vector<TransformMessage> links;  ///< Those that are poses.
-  std::vector<Error> left_out;  ///< Of each link whose pose is none (tf2 drops such links as well): why.
+  std::vector<Error> left_out;  ///< Why, for each link whose pose is not valid (tf2 drops these, too).
 };
 /// Fails when the message ends early.
 Result<TransformsMessage> decode_transforms(std::string_view message,
