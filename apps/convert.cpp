@@ -23,6 +23,7 @@
 #include "adit/io/trajectory_files.hpp"
 #include "adit/io/tum.hpp"
 #include "adit/robot/full_rate.hpp"
+#include "adit/robot/scan_loop.hpp"
 #include "adit/slam/georeference.hpp"
 #include "adit/slam/joint_map.hpp"
 #include "adit/slam/map_covariance.hpp"
@@ -123,8 +124,14 @@ Result<> convert_recording(const ConvertOptions& options, const RecordingConfig&
   const fs::path out = options.out;
   return open_input(options.in, config).and_then([&](const Recording& recording) -> Result<> {
     if (kind_of(options.out) == Kind::trajectory) return convert_poses(recording, options.in, out);
-    return extension_of(out) == ".mcap" ? write_recording(out, recording)
-                                        : write_scan_folder(out, recording, kCloudFormats.at(options.clouds));
+    LeftOut left_out("scans");
+    const Recording readable = with_damaged_scans_empty(recording, left_out);
+    const Result<> written = extension_of(out) == ".mcap"
+                                 ? write_recording(out, readable)
+                                 : write_scan_folder(out, readable, kCloudFormats.at(options.clouds));
+    if (const auto sentence = left_out.sentence())
+      print_notes("convert", {*sentence + "; they are written without points"});
+    return written;
   });
 }
 

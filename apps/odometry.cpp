@@ -17,6 +17,7 @@
 #include "adit/odometry/methods.hpp"
 #include "adit/robot/nothing_mapped.hpp"
 #include "adit/robot/robot_slam.hpp"
+#include "adit/robot/scan_loop.hpp"
 #include "adit/robot/sensor_checks.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
@@ -54,7 +55,11 @@ Result<Run> run(const Recording& recording, const OdometryConfig& config) {
     phase.advance();
     return true;
   };
-  if (const Result<> done = for_each_scan(recording, take); !done) return tl::unexpected(done.error());
+  LeftOut left_out("scans");
+  const Result<> done = for_each_scan(with_damaged_scans_empty(recording, left_out), take);
+  if (!done) return tl::unexpected(done.error());
+  if (const Result<> any = left_out.unless_all(); !any) return fail(recording.name, any.error());
+  if (const auto sentence = left_out.sentence()) print_notes("odometry", {*sentence});
   return out;
 }
 

@@ -37,7 +37,11 @@ Result<OdometryRun> run_odometry(Recording recording, const RunConfig& config) {
     out.statuses.emplace_back(to_string(step.status));
     return true;
   };
-  if (const Result<> done = for_each_scan(recording, take); !done) return tl::unexpected(done.error());
+  LeftOut left_out("scans");
+  const Result<> done = for_each_scan(with_damaged_scans_empty(recording, left_out), take);
+  if (!done) return tl::unexpected(done.error());
+  if (const Result<> any = left_out.unless_all(); !any) return fail(recording.name, any.error());
+  if (const auto sentence = left_out.sentence()) out.notes.push_back(*sentence);
   if (!anything) return fail(why_nothing_mapped(recording));
   return out;
 }

@@ -114,6 +114,24 @@ TEST_F(BadInput, Recordings) {
   expect_refused("slam " + path("bad.mcap") + " --out " + out(), 1, "bad.mcap");
 }
 
+TEST_F(BadInput, ADamagedCloudCostsItself) {
+  std::filesystem::create_directories(path("drive"));
+  for (const char* name : {"0.pcd", "1.pcd", "2.pcd"})
+    ASSERT_TRUE(write_cloud(path(std::string("drive/") + name), wall()));
+  const std::string whole = test::get_file(path("drive/1.pcd"));
+  put_file(path("drive/1.pcd"), whole.substr(0, whole.size() / 2));
+  const test::ProgramRun run = test::run_adit("convert " + path("drive") + " " + path("drive.mcap"));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.err.find("1 of 3 scans are left out; the first, 1: "), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("drive/1.pcd"), std::string::npos) << run.err;
+  const test::ProgramRun info = test::run_adit("info " + path("drive.mcap"));
+  EXPECT_NE(info.out.find("scans: 3"), std::string::npos) << info.out;
+  for (const char* name : {"drive/0.pcd", "drive/2.pcd"})
+    put_file(path(name), whole.substr(0, whole.size() / 2));
+  expect_refused("convert " + path("drive") + " " + path("none.mcap"), 1, "drive/0.pcd");
+  EXPECT_FALSE(std::filesystem::exists(path("none.mcap")));
+}
+
 TEST_F(BadInput, UnorderedStampsInATrajectory) {
   put_file(path("back.tum"), "1 0 0 0 0 0 0 1\n3 1 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n");
   expect_refused("info " + path("back.tum"), 1, "back.tum: line 3");

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "adit/core/format.hpp"
+#include "adit/core/left_out.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/io/ascending.hpp"
 #include "adit/io/bag_mounts.hpp"
@@ -15,7 +16,6 @@
 #include "adit/io/frame_tracks.hpp"
 #include "adit/io/imu_topic.hpp"
 #include "adit/io/joint_odometry.hpp"
-#include "adit/io/left_out.hpp"
 #include "adit/io/moving_lidar.hpp"
 #include "adit/io/ros_messages.hpp"
 #include "adit/io/text.hpp"

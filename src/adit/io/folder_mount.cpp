@@ -25,17 +25,21 @@ FolderMount stated(const Pose& T_base_lidar, CloudFrame frame, std::string sourc
   return mount;
 }
 
-/// The first cloud, the last, and some between.
+/// The first cloud, the last, and some between, without those that cannot be read; fails where none can.
 Result<std::vector<CloudFile>> read_samples(const std::vector<fs::path>& clouds,
                                             std::optional<TimeUnit> time_unit) {
   std::vector<CloudFile> samples;
+  std::optional<Error> failure;
   const std::size_t count = std::min(kNumSamples, clouds.size());
   for (std::size_t k = 0; k < count; ++k) {
     Result<CloudFile> sample =
         read_cloud_file(clouds[count < 2 ? 0 : k * (clouds.size() - 1) / (count - 1)], time_unit);
-    if (!sample) return tl::unexpected(sample.error());
-    samples.push_back(std::move(*sample));
+    if (sample)
+      samples.push_back(std::move(*sample));
+    else if (!failure)
+      failure = sample.error();
   }
+  if (samples.empty() && failure) return tl::unexpected(*failure);
   return samples;
 }
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "adit/core/left_out.hpp"
 #include "adit/core/records.hpp"
 #include "adit/core/result.hpp"
 #include "adit/io/bag.hpp"
-#include "adit/io/left_out.hpp"
 
 namespace adit {
 

@@ -278,6 +278,16 @@ Result<PointCloud> read_points(const fs::path& path, std::optional<TimeUnit> tim
   return read_offsets(offsets, *file, cloud).map([&] { return std::move(cloud); });
 }
 
+/// The first cloud that can be read; fails as the first of all does where none can.
+Result<CloudFile> first_readable(const std::vector<fs::path>& clouds, std::optional<TimeUnit> time_unit) {
+  Result<CloudFile> first = read_cloud_file(clouds.front(), time_unit);
+  for (std::size_t i = 1; !first && i < clouds.size(); ++i) {
+    Result<CloudFile> next = read_cloud_file(clouds[i], time_unit);
+    if (next) return next;
+  }
+  return first;
+}
+
 /// Reads scan i in the LiDAR's frame. Clouds that are in it already keep every bit.
 std::function<Result<Scan>(std::size_t)> scan_reader(std::vector<fs::path> files, std::vector<Stamp> stamps,
                                                      const Pose& T_lidar_cloud,
@@ -344,7 +354,7 @@ Result<Recording> read_scan_folder(const fs::path& given, ScanSelection selectio
   recording->mount_source = mount->source;
   take_kitti_truth(*recording, sequence_of(folder), scans->size(), selection);
   // What the first cloud shows of the times holds for all.
-  const Result<CloudFile> first = read_cloud_file(clouds.front(), reading.time_unit);
+  const Result<CloudFile> first = first_readable(clouds, reading.time_unit);
   if (!first) return tl::unexpected(first.error());
   if (!first->has_usual_time_unit) recording->assumptions.push_back(point_times_note(*first->time_unit));
   recording->read_scan =

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "adit/core/format.hpp"
+#include "adit/core/left_out.hpp"
 #include "adit/io/ascending.hpp"
 #include "adit/io/joint_odometry.hpp"
-#include "adit/io/left_out.hpp"
 #include "adit/io/ros_messages.hpp"
 #include "adit/robot/wheel_covariance.hpp"
 

@@ -8,6 +8,8 @@
 
 #include "adit/core/decompositions.hpp"
 #include "adit/core/rng.hpp"
+#include "adit/robot/scan_loop.hpp"
+#include "support/files.hpp"
 #include "support/synthetic_scan.hpp"
 
 namespace adit {
@@ -164,6 +166,23 @@ TEST(RobotSlam, WheelsThatCountTwiceAreOneStretchOfSlip) {
   EXPECT_NEAR(slip.counted_m, 20 * 0.125, 1.0);  // the drive is 7.5 m in 60 scans
   // One prediction per scan but the first was tested, those of the burst's beginning badly.
   EXPECT_GT(map->innovations.size(), 50U);
+}
+
+TEST(RobotSlam, DamagedScansAreMappedAsScansWithoutPoints) {
+  const Recording recording = room_recording(true);
+  Recording damaged = recording;
+  damaged.read_scan = [read = recording.read_scan](std::size_t i) -> Result<Scan> {
+    if (i == 20 || i == 21) return fail("a byte has flipped");
+    return read(i);
+  };
+  EXPECT_ERROR(map_recording(damaged, {7}, config_of(OdometryMethod::plane_icp)), "a byte has flipped");
+  LeftOut left_out("scans");
+  const Result<RobotMap> map =
+      map_recording(with_damaged_scans_empty(damaged, left_out), {7}, config_of(OdometryMethod::plane_icp));
+  ASSERT_TRUE(map) << map.error().message;
+  EXPECT_EQ(left_out.sentence(), "2 of 60 scans are left out; the first, 20: a byte has flipped");
+  EXPECT_EQ(map->num_refused, 2);
+  expect_sound(*map, recording);
 }
 
 TEST(RobotSlam, KeyframeCloudsLieInTheBaseFrame) {

@@ -11,6 +11,7 @@
 
 #include "adit/core/angles.hpp"
 #include "adit/core/decompositions.hpp"
+#include "adit/core/left_out.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/rng.hpp"
 #include "adit/evaluation/statistics.hpp"
@@ -267,19 +268,21 @@ ScanTiming timing_of(const std::vector<Stamp>& stamps) {
 Result<ScansSeen> look_at_scans(const Recording& recording, std::size_t num) {
   const std::vector<std::size_t> chosen = spread_over(recording.num_scans(), num);
   std::vector<OfScan> scans(chosen.size());
-  std::vector<std::string> failures(chosen.size());
+  std::vector<std::optional<Error>> failures(chosen.size());
   parallel_for_each(chosen.size(), [&](std::size_t i) {
     const Result<Scan> scan = recording.read_scan(chosen[i]);
     if (scan)
       scans[i] = look_at(*scan, recording.T_base_lidar);
     else
-      failures[i] = scan.error().message;
+      failures[i] = scan.error();
   });
-  for (const std::string& failure : failures)
-    if (!failure.empty()) return fail(failure);
+  LeftOut left_out("scans looked at");
+  for (const std::optional<Error>& failure : failures) failure ? left_out.leave(*failure) : left_out.take();
+  if (const Result<> any = left_out.unless_all(); !any) return fail(recording.name, any.error());
   std::erase_if(scans, [](const OfScan& scan) { return scan.ranges.empty(); });  // nothing was in view
   ScansSeen seen;
   seen.num_scans = scans.size();
+  seen.left_out = left_out.sentence();
   std::vector<double> ranges;
   std::vector<double> points;
   std::vector<double> sweeps;

@@ -55,8 +55,10 @@ struct ScansSeen {
   std::optional<FloorSeen> floor;     ///< None where too few scans show one.
   std::optional<SelfHits> self_hits;  ///< None where there are none; not looked for while the robot stands.
   bool has_moved = false;             ///< By the wheels, 5 m or more between the scans.
+  std::optional<std::string>
+      left_out;  ///< How many of those looked at cannot be read, and why the first cannot.
 };
-/// Reads up to `num` scans. Fails where one cannot be read and where all are empty.
+/// Reads up to `num` scans. Fails where none can be read and where all are empty.
 [[nodiscard]] Result<ScansSeen> look_at_scans(const Recording& recording, std::size_t num = 40);
 
 }  // namespace adit

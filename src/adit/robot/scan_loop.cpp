@@ -3,6 +3,7 @@
 #include "adit/robot/scan_loop.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace adit {
 
@@ -44,6 +45,21 @@ SensedMotion sensed_before(const Recording& recording, std::size_t index) {
   motion.imu = imu_between(recording.imu, begin, end, kImuSilence);
   motion.T_base_imu = recording.T_base_imu;
   return motion;
+}
+
+Recording with_damaged_scans_empty(Recording recording, LeftOut& left_out) {
+  recording.read_scan = [read = std::move(recording.read_scan), stamps = recording.scan_stamps, &left_out,
+                         next = std::size_t{0}](std::size_t i) mutable -> Result<Scan> {
+    Result<Scan> scan = read(i);
+    const bool is_new = i == next;  // not one that is looked at again
+    if (is_new) {
+      ++next;
+      scan ? left_out.take() : left_out.leave(scan.error());
+    }
+    if (!scan) return Scan{stamps[i], {}};
+    return scan;
+  };
+  return recording;
 }
 
 Result<> for_each_scan(const Recording& recording, const ScanVisitor& visit) {

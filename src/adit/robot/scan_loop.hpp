@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "adit/core/left_out.hpp"
 #include "adit/core/records.hpp"
 
 namespace adit {
@@ -20,6 +21,11 @@ inline constexpr Duration kWheelSilence = std::chrono::seconds(1);
 
 /// Takes a scan and what was measured since the scan before (as `sensed_before`); returns false to stop.
 using ScanVisitor = std::function<bool(const Scan& scan, const SensedMotion& motion)>;
+
+/// The recording with a scan without points in place of each that cannot be read: one damaged message must
+/// not cost the drive. `left_out` counts as scans are read in their order, by one thread, and has to live as
+/// long.
+[[nodiscard]] Recording with_damaged_scans_empty(Recording recording, LeftOut& left_out);
 
 /// Hands every scan of the recording to `visit`, in order; each is read once. Fails, naming the recording,
 /// when a scan cannot be read, and when `visit` stops it.

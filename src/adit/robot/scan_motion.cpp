@@ -77,8 +77,7 @@ ScanMotion motion_of_scans(const Recording& recording, std::span<const std::size
   std::vector<Scan> scans;
   for (const std::size_t i : indices) {
     const Result<Scan> scan = recording.read_scan(i);
-    if (!scan) break;
-    if (scan->cloud.empty()) continue;  // nothing was in view
+    if (!scan || scan->cloud.empty()) continue;  // damaged, or nothing was in view
     motion.has_times = motion.has_times && scan->cloud.has_times();
     scans.push_back({scan->stamp, thinned(scan->cloud)});
   }

@@ -9,6 +9,7 @@
 #include "adit/core/parallel.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/core/robot_ids.hpp"
+#include "adit/robot/scan_loop.hpp"
 #include "adit/robot/sensor_checks.hpp"
 
 namespace adit {
@@ -56,12 +57,15 @@ void note_quality(const RobotMap& map, std::vector<std::string>& notes) {
 
 /// Turns whatever goes wrong into an error of this robot, so that the others go on.
 Result<RobotMap> map_one(const Recording& recording, RobotId id, const RobotSlamConfig& config,
-                         const Phase& phase) {
+                         const Phase& phase, LeftOut& left_out) {
   try {
-    return map_recording(recording, id, config, [&](std::size_t) {
-      phase.advance();
-      return true;
-    });
+    Result<RobotMap> map =
+        map_recording(with_damaged_scans_empty(recording, left_out), id, config, [&](std::size_t) {
+          phase.advance();
+          return true;
+        });
+    if (const Result<> any = left_out.unless_all(); !any) return fail(recording.name, any.error());
+    return map;
   } catch (const std::exception& error) {
     return fail(recording.name + ": " + error.what());
   }
@@ -86,10 +90,11 @@ Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig
   for (const Recording& recording : recordings)
     configs.push_back(config_for(recording, config.robot, mapping.notes));
   std::vector<Result<RobotMap>> maps(recordings.size(), fail("not run"));
+  std::vector<LeftOut> left_out(recordings.size(), LeftOut("scans"));
   {
     const Phase phase("mapping", num_scans(recordings));
     parallel_for_each(recordings.size(), [&](std::size_t i) {
-      maps[i] = map_one(recordings[i], (*ids)[num_before + i], configs[i], phase);
+      maps[i] = map_one(recordings[i], (*ids)[num_before + i], configs[i], phase, left_out[i]);
     });
   }
   for (std::size_t i = 0; i < maps.size(); ++i) {
@@ -97,6 +102,8 @@ Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig
       mapping.failed.push_back({recordings[i].name, maps[i].error().message});
       continue;
     }
+    if (const auto sentence = left_out[i].sentence())
+      mapping.notes.push_back(format("{}: {}", recordings[i].name, *sentence));
     note_quality(*maps[i], mapping.notes);
     mapping.robots.push_back({std::make_shared<const RobotMap>(select_keyframes(*maps[i], config.keyframes)),
                               std::string(to_string(configs[i].odometry.method)), recordings[i].lidar});

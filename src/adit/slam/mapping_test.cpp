@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "adit/slam/merge_pictures.hpp"
 #include "adit/slam/naming.hpp"
 #include "adit/slam/slam.hpp"
@@ -52,7 +54,21 @@ TEST(Mapping, ARobotThatCannotBeMappedStopsNoOther) {
   EXPECT_EQ(mapping->robots[1].map->id, (RobotId{2}));
   ASSERT_EQ(mapping->failed.size(), 1U);
   EXPECT_EQ(mapping->failed[0].name, "bo");
-  EXPECT_EQ(mapping->failed[0].reason, "bo: scan 3 is damaged");
+  EXPECT_EQ(mapping->failed[0].reason, "bo: 6 of 6 scans are left out; the first, 0: scan 3 is damaged");
+}
+
+TEST(Mapping, ADamagedScanCostsItself) {
+  Recording recording = drive("ada");
+  recording.read_scan = [read = recording.read_scan](std::size_t i) -> Result<Scan> {
+    if (i == 3) return fail("a byte has flipped");
+    return read(i);
+  };
+  const Result<Mapping> mapping = map_robots({recording}, SlamConfig{});
+  ASSERT_TRUE(mapping) << mapping.error().message;
+  EXPECT_EQ(
+      std::ranges::count(mapping->notes, "ada: 1 of 6 scans are left out; the first, 3: a byte has flipped"),
+      1);
+  EXPECT_EQ(mapping->robots.at(0).map->odometry.size(), kNumScans);
 }
 
 TEST(Mapping, ASensorThatWouldSpoilTheMapIsNotedUnlessChecksAreOff) {
@@ -73,7 +89,7 @@ TEST(Mapping, ASensorThatWouldSpoilTheMapIsNotedUnlessChecksAreOff) {
 }
 
 TEST(Mapping, WhereNoRobotIsLeftThereIsNoMap) {
-  EXPECT_ERROR(map_robots({broken("bo")}, SlamConfig{}), "bo: scan 3 is damaged");
+  EXPECT_ERROR(map_robots({broken("bo")}, SlamConfig{}), "scan 3 is damaged");
   EXPECT_ERROR(map_robots({}, SlamConfig{}), "no recording");
 }
 
@@ -137,7 +153,8 @@ TEST(Slam, ASessionStaysInItsFolderWhateverRobotsAreCalled) {
   EXPECT_EQ(saved->provenance.robots[0].odometry, "kiss-icp");
   EXPECT_EQ(saved->provenance.robots[0].scans, kNumScans);
   EXPECT_EQ(saved->provenance.robots[2].name, "a__b__");
-  EXPECT_EQ(saved->provenance.robots[2].failure, "a__b__: scan 3 is damaged");
+  EXPECT_EQ(saved->provenance.robots[2].failure,
+            "a__b__: 6 of 6 scans are left out; the first, 0: scan 3 is damaged");
   const std::string metrics = test::get_file(folder / "out/metrics.json");
   EXPECT_NE(metrics.find("\"odometry\": \"kiss-icp\""), std::string::npos) << metrics;
   EXPECT_NE(test::get_file(folder / "out/report.html").find("odometry kiss-icp"), std::string::npos);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-#include "adit/io/left_out.hpp"
+#include "adit/core/left_out.hpp"
 
 #include "adit/core/format.hpp"
 
