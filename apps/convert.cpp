@@ -129,7 +129,7 @@ Result<> convert_recording(const ConvertOptions& options, const RecordingConfig&
     const Result<> written = extension_of(out) == ".mcap"
                                  ? write_recording(out, readable)
                                  : write_scan_folder(out, readable, kCloudFormats.at(options.clouds));
-    if (const auto sentence = left_out.sentence())
+    if (const auto sentence = left_out.sentence(); written && sentence)
       print_notes("convert", {*sentence + "; they are written without points"});
     return written;
   });

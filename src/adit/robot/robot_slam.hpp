@@ -88,9 +88,9 @@ class RobotSlam {
 /// Called after each scan with the number done; returns false to stop early.
 using ScanObserver = std::function<bool(std::size_t num_done)>;
 
-/// The whole recording through RobotSlam. Fails when a scan cannot be read (with_damaged_scans_empty does
-/// without those), when the odometry needs wheels and there is no wheel odometry, or when the observer stops
-/// it.
+/// The whole recording through RobotSlam. Fails when a scan cannot be read (of damaged
+/// recordings, give it what with_damaged_scans_empty returns), when the odometry needs wheels and there is no
+/// wheel odometry, or when the observer stops it.
 [[nodiscard]] Result<RobotMap> map_recording(const Recording& recording, RobotId id,
                                              const RobotSlamConfig& config,
                                              const ScanObserver& observer = {});

@@ -8,6 +8,7 @@
 
 #include "adit/core/decompositions.hpp"
 #include "adit/core/rng.hpp"
+#include "adit/robot/scan_checks.hpp"
 #include "adit/robot/scan_loop.hpp"
 #include "support/files.hpp"
 #include "support/synthetic_scan.hpp"
@@ -183,6 +184,20 @@ TEST(RobotSlam, DamagedScansAreMappedAsScansWithoutPoints) {
   EXPECT_EQ(left_out.sentence(), "2 of 60 scans are left out; the first, 20: a byte has flipped");
   EXPECT_EQ(map->num_refused, 2);
   expect_sound(*map, recording);
+}
+
+TEST(ScanChecks, DamagedScansAreCountedUnlessAllAre) {
+  Recording recording = room_recording(true);
+  EXPECT_FALSE(look_at_scans(recording, 20).value().damaged);
+  recording.read_scan = [read = recording.read_scan](std::size_t i) -> Result<Scan> {
+    if (i == 21 || i == 30) return fail("a byte has flipped");
+    return read(i);
+  };
+  const ScansSeen seen = look_at_scans(recording, 20).value();
+  EXPECT_EQ(seen.damaged, "2 of 20 scans looked at cannot be read; the first is scan 21: a byte has flipped");
+  EXPECT_EQ(seen.num_scans, 18U);
+  recording.read_scan = [](std::size_t) -> Result<Scan> { return fail("no disk"); };
+  EXPECT_ERROR(look_at_scans(recording, 20), "walker: 20 of 20 scans looked at cannot be read");
 }
 
 TEST(RobotSlam, KeyframeCloudsLieInTheBaseFrame) {

@@ -11,7 +11,7 @@
 
 #include "adit/core/angles.hpp"
 #include "adit/core/decompositions.hpp"
-#include "adit/core/left_out.hpp"
+#include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/rng.hpp"
 #include "adit/evaluation/statistics.hpp"
@@ -265,6 +265,22 @@ ScanTiming timing_of(const std::vector<Stamp>& stamps) {
   return timing;
 }
 
+namespace {
+
+bool has_failed(const std::optional<Error>& failure) { return failure.has_value(); }
+
+/// A sentence on the scans that could not be read; none where there are none.
+std::optional<std::string> damaged_of(const std::vector<std::size_t>& chosen,
+                                      const std::vector<std::optional<Error>>& failures) {
+  const auto first = std::ranges::find_if(failures, has_failed);
+  if (first == failures.end()) return std::nullopt;
+  return format("{} of {} scans looked at cannot be read; the first is scan {}: {}",
+                std::ranges::count_if(failures, has_failed), chosen.size(),
+                chosen[static_cast<std::size_t>(first - failures.begin())], (*first)->message);
+}
+
+}  // namespace
+
 Result<ScansSeen> look_at_scans(const Recording& recording, std::size_t num) {
   const std::vector<std::size_t> chosen = spread_over(recording.num_scans(), num);
   std::vector<OfScan> scans(chosen.size());
@@ -276,13 +292,13 @@ Result<ScansSeen> look_at_scans(const Recording& recording, std::size_t num) {
     else
       failures[i] = scan.error();
   });
-  LeftOut left_out("scans looked at");
-  for (const std::optional<Error>& failure : failures) failure ? left_out.leave(*failure) : left_out.take();
-  if (const Result<> any = left_out.unless_all(); !any) return fail(recording.name, any.error());
+  const std::optional<std::string> damaged = damaged_of(chosen, failures);
+  if (damaged && std::ranges::all_of(failures, has_failed))
+    return fail(format("{}: {}", recording.name, *damaged));
   std::erase_if(scans, [](const OfScan& scan) { return scan.ranges.empty(); });  // nothing was in view
   ScansSeen seen;
   seen.num_scans = scans.size();
-  seen.left_out = left_out.sentence();
+  seen.damaged = damaged;
   std::vector<double> ranges;
   std::vector<double> points;
   std::vector<double> sweeps;

@@ -51,12 +51,11 @@ struct ScansSeen {
   double cone_deg = 180.0;         ///< Half the opening of the cone in which 99 of 100 returns lie.
   double field_of_view_deg = 0.0;  ///< Azimuths in which at least one scan in ten has a return.
   std::vector<std::pair<double, double>>
-      blind_deg;                      ///< Sectors without, from and to, anticlockwise, LiDAR frame.
-  std::optional<FloorSeen> floor;     ///< None where too few scans show one.
-  std::optional<SelfHits> self_hits;  ///< None where there are none; not looked for while the robot stands.
-  bool has_moved = false;             ///< By the wheels, 5 m or more between the scans.
-  std::optional<std::string>
-      left_out;  ///< How many of those looked at cannot be read, and why the first cannot.
+      blind_deg;                       ///< Sectors without, from and to, anticlockwise, LiDAR frame.
+  std::optional<FloorSeen> floor;      ///< None where too few scans show one.
+  std::optional<SelfHits> self_hits;   ///< None where there are none; not looked for while the robot stands.
+  bool has_moved = false;              ///< By the wheels, 5 m or more between the scans.
+  std::optional<std::string> damaged;  ///< How many scans cannot be read, and why the first cannot.
 };
 /// Reads up to `num` scans. Fails where none can be read and where all are empty.
 [[nodiscard]] Result<ScansSeen> look_at_scans(const Recording& recording, std::size_t num = 40);

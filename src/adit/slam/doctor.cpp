@@ -236,7 +236,7 @@ Result<std::vector<Diagnosis>> diagnose(const Recording& recording) {
   for (const std::string& warning : recording.warnings) out.push_back({"file", Health::noted, warning});
   for (const std::string& assumption : recording.assumptions)
     out.push_back({"file", Health::noted, "assumed " + assumption});
-  if (seen->left_out) out.push_back({"file", Health::noted, *seen->left_out});
+  if (seen->damaged) out.push_back({"file", Health::noted, *seen->damaged});
   out.push_back(scans_missing(recording));
   out.push_back(point_times(recording, *seen));
   out.push_back(ranges(*seen));
