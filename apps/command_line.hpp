@@ -117,6 +117,9 @@ struct SimulationOptions {
 /// --lidar and --conditions.
 void add_simulation_options(const Command& command, SimulationOptions& options);
 
+/// Sets fields by "key=value"; a wrong one is wrong usage.
+void set_fields(const std::vector<std::string>& sets, const Fields& fields);
+
 /// The configuration of a command, the one tree of keys that `adit config` prints: the profile, then
 /// --config, then what `simulation` names, then --set. A file with an unknown key or a bad value is an error;
 /// a wrong --set, profile, LiDAR, IMU or condition is wrong usage.

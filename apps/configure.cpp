@@ -22,6 +22,15 @@ void add_simulation_options(const Command& command, SimulationOptions& options) 
   if (!options.conditions.empty()) conditions.default_shown();
 }
 
+void set_fields(const std::vector<std::string>& sets, const Fields& fields) {
+  for (const std::string& entry : sets) {
+    const std::size_t equals = entry.find('=');
+    if (equals == std::string::npos) usage_error("--set " + entry + ": key=value is needed");
+    const Result<> set = set_field(fields, entry.substr(0, equals), entry.substr(equals + 1));
+    if (!set) usage_error("--set " + entry + ": " + set.error().message);
+  }
+}
+
 Result<RunConfig> configured(const Common& common, const SimulationOptions& simulation) {
   RunConfig config = config_of(common.profile);
   const Fields fields = fields_of(config);
@@ -39,12 +48,7 @@ Result<RunConfig> configured(const Common& common, const SimulationOptions& simu
   }
   for (const Conditions conditions : kConditions)
     if (simulation.conditions == to_string(conditions)) set_conditions(conditions, config.simulation);
-  for (const std::string& entry : common.sets) {
-    const std::size_t equals = entry.find('=');
-    if (equals == std::string::npos) usage_error("--set " + entry + ": key=value is needed");
-    const Result<> set = set_field(fields, entry.substr(0, equals), entry.substr(equals + 1));
-    if (!set) usage_error("--set " + entry + ": " + set.error().message);
-  }
+  set_fields(common.sets, fields);
   return config;
 }
 

@@ -120,17 +120,27 @@ struct ConvertOptions {
 const std::map<std::string, CloudFormat> kCloudFormats = {
     {"pcd", CloudFormat::pcd}, {"ply", CloudFormat::ply}, {"bin", CloudFormat::kitti}};
 
+/// Says how many scans a folder of clouds lacks.
+Result<> write_folder(const fs::path& out, const Recording& recording, CloudFormat format) {
+  return write_scan_folder(out, recording, format).map([](std::size_t num_empty) {
+    if (num_empty > 0)
+      print_notes("convert", {adit::format("{} scans have no points and are left out", num_empty)});
+  });
+}
+
 Result<> convert_recording(const ConvertOptions& options, const RecordingConfig& config) {
   const fs::path out = options.out;
   return open_input(options.in, config).and_then([&](const Recording& recording) -> Result<> {
     if (kind_of(options.out) == Kind::trajectory) return convert_poses(recording, options.in, out);
+    if (is_bag_file(out) && extension_of(out) != ".mcap")
+      return fail(options.out + ": recordings are written as .mcap, or as a folder of clouds");
     LeftOut left_out("scans");
     const Recording readable = with_damaged_scans_empty(recording, left_out);
-    const Result<> written = extension_of(out) == ".mcap"
-                                 ? write_recording(out, readable)
-                                 : write_scan_folder(out, readable, kCloudFormats.at(options.clouds));
+    const bool to_folder = extension_of(out) != ".mcap";
+    const Result<> written = to_folder ? write_folder(out, readable, kCloudFormats.at(options.clouds))
+                                       : write_recording(out, readable);
     if (const auto sentence = left_out.sentence(); written && sentence)
-      print_notes("convert", {*sentence + "; they are written without points"});
+      print_notes("convert", {*sentence + (to_folder ? "" : "; they are written without points")});
     return written;
   });
 }
@@ -304,7 +314,8 @@ void add_convert(Program& program) {
   add_recording_options(command, options->recording);
   add_truth_topic(command, options->recording);
   command.footer(
-      "session -> its joint map: .las, .pcd, .ply, or .pgm with .yaml (occupancy grid); .mcap with a layout "
+      "session -> its joint map: .las, .pcd, .ply, .bt (OctoMap), or .pgm with .yaml (occupancy grid); .mcap "
+      "with a layout "
       "for "
       "Foxglove; poses at every scan: NAME_ROBOT.tum (.csv .kitti); all its loops: .jrl, .g2o; fields "
       "maps.*\n"
@@ -312,7 +323,7 @@ void add_convert(Program& program) {
       "poses (.tum .csv .kitti)\n"
       "cloud (.pcd .ply .bin) -> cloud; mesh (.obj .stl .dae .glb .ply) -> .ply, and of a .ply the vertices "
       "-> cloud\n"
-      "trajectory (.tum .csv) -> .tum .csv .kitti; graph (.g2o .jrl) -> .g2o .jrl");
+      "trajectory (.tum .csv) -> .tum .csv .kitti; graph (.g2o .jrl .cbor) -> .g2o .jrl");
 }
 
 }  // namespace adit::app

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <utility>
 
 #include "adit/io/bag_topics.hpp"
@@ -37,7 +38,7 @@ void print_remarks(const std::string& input, const Recording& recording) {
 }
 
 /// One recording of each robot in a bag.
-Result<std::vector<Recording>> open_robots(const std::string& path, RecordingConfig config) {
+Result<Inputs> open_robots(const std::string& path, RecordingConfig config) {
   if (!config.topics_under.empty())
     return fail("recording.topics_under names one robot, and --namespaces asks for all; give one of them");
   if (!is_bag_file(path) && !is_bag_folder(path))
@@ -47,20 +48,24 @@ Result<std::vector<Recording>> open_robots(const std::string& path, RecordingCon
   const std::vector<std::string> robots = namespaces_of(*bag);
   if (robots.empty())
     return fail(path + ": no topic of clouds lies in a namespace (/ROBOT/points); leave --namespaces out");
-  std::vector<Recording> recordings;
+  Inputs opened;
   const std::string of_bag = path + ": ";
   for (const std::string& robot : robots) {
     config.topics_under = robot;
     Result<Recording> recording = open_recording(path, config);
-    if (!recording) return fail(robot, recording.error());
-    if (!recordings.empty())  // those of the file are said of the first
+    if (!recording) {
+      opened.failed.push_back({robot, robot + ": " + recording.error().message});
+      continue;
+    }
+    if (!opened.recordings.empty())  // those of the file are said of the first
       std::erase_if(recording->warnings, [&](const std::string& warning) {
         return std::ranges::find(bag->warnings, warning) != bag->warnings.end();
       });
     print_remarks(of_bag + robot, *recording);
-    recordings.push_back(std::move(*recording));
+    opened.recordings.push_back(std::move(*recording));
   }
-  return recordings;
+  if (opened.recordings.empty()) return fail(opened.failed.front().reason);
+  return opened;
 }
 
 std::string mount_fault(const std::string& text) {
@@ -130,9 +135,10 @@ Result<Inputs> open_inputs(const std::vector<std::string>& inputs, const RunConf
       return fail(input + ": a routes file names all robots; give no other input with it");
     const auto [name, path] = name_and_path(input);
     if (config.recording.namespaces) {
-      Result<std::vector<Recording>> robots = open_robots(path, config.recording);
+      Result<Inputs> robots = open_robots(path, config.recording);
       if (!robots) return tl::unexpected(robots.error());
-      for (Recording& robot : *robots) {
+      std::ranges::move(robots->failed, std::back_inserter(opened.failed));
+      for (Recording& robot : robots->recordings) {
         if (!name.empty()) robot.name = name + "_" + robot.name;
         opened.recordings.push_back(std::move(robot));
       }

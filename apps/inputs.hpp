@@ -11,6 +11,7 @@
 #include "adit/core/records.hpp"
 #include "adit/io/mount.hpp"
 #include "adit/simulation/scenario.hpp"
+#include "adit/slam/mapping.hpp"
 #include "command_line.hpp"
 
 namespace adit::app {
@@ -30,14 +31,15 @@ Result<Recording> open_input(const std::string& input, const RecordingConfig& co
 
 /// The recordings to map, and where they come from.
 struct Inputs {
-  std::vector<Recording> recordings;  ///< In the order given.
-  std::string world;                  ///< The mesh that they are simulated in; "" for recordings.
+  std::vector<Recording> recordings;     ///< In the order given.
+  std::string world;                     ///< The mesh that they are simulated in; "" for recordings.
+  std::vector<FailedRobot> failed = {};  ///< Robots of a bag that cannot be opened; others of it can.
 };
 
 /// Recordings and folders of scans, or one routes.yaml that is simulated on the fly. NAME=INPUT gives the
 /// robot of a recording another name; with `recording.namespaces` a bag is one recording of each robot in it,
-/// and NAME stands before their names. Fails on an input that cannot be read and on a routes.yaml among
-/// others.
+/// and NAME stands before their names. Fails on an input that cannot be read, of a bag with several robots
+/// where none can, and on a routes.yaml among others.
 Result<Inputs> open_inputs(const std::vector<std::string>& inputs, const RunConfig& config);
 
 /// NAME and PATH of NAME=PATH; without a name, or where a file of that very name exists, "" and the whole.

@@ -36,13 +36,11 @@ std::vector<std::string> refusals(const Session& session, RobotId robot) {
 }
 
 Result<> localize_command(const LocalizeOptions& options, const Common& common) {
-  refuse_configuration(common);
+  const RecordingConfig reading = reading_of_new(common, options.recording);
   Result<SavedSessions> saved = open_sessions({options.session});
   if (!saved) return tl::unexpected(saved.error());
-  RunConfig reading = saved->job.config;
-  reading.recording = recording_config(reading.recording, options.recording);
   const auto [name, path] = name_and_path(options.input);
-  Result<Recording> recording = open_input(path, reading.recording);
+  Result<Recording> recording = open_input(path, reading);
   if (!recording) return tl::unexpected(recording.error());
   if (!name.empty()) recording->name = name;
   const Result<SlamRun> run =

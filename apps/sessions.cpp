@@ -16,6 +16,7 @@
 #include "adit/io/tum.hpp"
 #include "adit/slam/georeference.hpp"
 #include "adit/slam/session_pages.hpp"
+#include "inputs.hpp"
 
 namespace adit::app {
 namespace {
@@ -121,6 +122,18 @@ Ruling ruling_of(const std::string& pair, Ruling::Kind kind) {
 void refuse_configuration(const Common& common) {
   if (!common.sets.empty() || !common.config_file.empty() || common.profile != Profile::standard)
     usage_error("a session goes on with the configuration that it began with; give none");
+}
+
+RecordingConfig reading_of_new(const Common& common, const RecordingConfig& options) {
+  const bool are_all_of_reading = std::ranges::all_of(
+      common.sets, [](const std::string& entry) { return entry.starts_with("recording."); });
+  if (!are_all_of_reading || !common.config_file.empty() || common.profile != Profile::standard)
+    usage_error(
+        "a session goes on with the configuration that it began with; --set takes recording.* alone, "
+        "how the new recording is read");
+  RunConfig config;
+  set_fields(common.sets, fields_of(config));
+  return recording_config(config.recording, options);
 }
 
 void add_ruling_options(const Command& command, RulingOptions& options) {

@@ -16,6 +16,9 @@ namespace adit::app {
 
 /// Ends the command where it was given a configuration: a session goes on with its own.
 void refuse_configuration(const Common& common);
+/// How recordings are read that join a session: as this command says, not as those were that it has. Ends the
+/// command where it was given another configuration than `recording.*`.
+[[nodiscard]] RecordingConfig reading_of_new(const Common& common, const RecordingConfig& options);
 
 /// Pairs "A,B" of robots.
 struct RulingOptions {

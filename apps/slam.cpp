@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "adit/slam/slam.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -100,12 +102,14 @@ Result<> run_job(Job job, const RunConfig& reading, const std::vector<std::strin
   Result<SlamRun> run =
       slam_on(std::move(saved), std::move(inputs->recordings), job.config.slam, rulings_of(options.rulings));
   if (!run) return tl::unexpected(run.error());
+  std::ranges::move(inputs->failed, std::back_inserter(run->failed));
   print_notes("slam", run->notes);
   return finish_session(std::move(*run), std::move(job), *out, to, json, *control, "slam");
 }
 
 Result<> go_on(const SlamOptions& options, const Common& common) {
-  refuse_configuration(common);
+  // How the new recordings are read is their own matter.
+  const RecordingConfig recording = reading_of_new(common, options.recording);
   if (is_changed(options) || !options.rerun.empty())
     usage_error("a session goes on as it began; give recordings and how to read them, nothing else");
   if (options.inputs.empty() && options.rulings.vetoes.empty() && options.rulings.confirmed.empty())
@@ -115,9 +119,8 @@ Result<> go_on(const SlamOptions& options, const Common& common) {
   Job& job = saved->job;
   job.provenance.command = common.command;
   job.provenance.inputs.insert(job.provenance.inputs.end(), options.inputs.begin(), options.inputs.end());
-  // How the new recordings are read is their own matter.
   RunConfig reading = job.config;
-  reading.recording = recording_config(reading.recording, options.recording);
+  reading.recording = recording;
   return run_job(std::move(job), reading, options.inputs, std::move(saved->fleets), options, common.json);
 }
 

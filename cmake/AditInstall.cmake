@@ -26,7 +26,7 @@ if(NOT CMAKE_CROSSCOMPILING)
 endif()
 install(DIRECTORY src/adit DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN "*.hpp"
         PATTERN "test_*.hpp" EXCLUDE PATTERN "made_up_*.hpp" EXCLUDE  # those serve tests alone
-        PATTERN "format.hpp" EXCLUDE PATTERN "gnc_search.hpp" EXCLUDE PATTERN "loop_trials.hpp" EXCLUDE)  # and those .cpp files
+        PATTERN "format.hpp" EXCLUDE PATTERN "far_out.hpp" EXCLUDE PATTERN "gnc_search.hpp" EXCLUDE PATTERN "loop_trials.hpp" EXCLUDE)  # and those .cpp files
 install(EXPORT aditTargets NAMESPACE adit:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adit COMPONENT development)
 configure_package_config_file(cmake/aditConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/aditConfig.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/adit)

@@ -32,7 +32,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libadit-dev)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Multi-robot LiDAR SLAM for tunnels, mines and caves (development files)")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # What its headers include.
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${same_library}, libeigen3-dev, libexpected-dev, libfmt-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${same_library}, libeigen3-dev, libexpected-dev")
 
 set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME adit)
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Multi-robot LiDAR SLAM for tunnels, mines and caves (program)")

@@ -1,17 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The adit authors
 # SPDX-License-Identifier: MIT
-# Compares adit's files and readers with readers that others wrote, message by message: @mcap/core, @foxglove/rosbag and
-# @foxglove/rosmsg2-serialization (from npm, so node and npm have to be there), and sqlite. What adit writes is decoded by the
-# definitions in the file and encoded again, to the same bytes.
+# Lets programs that others wrote read what adit reads and writes (from npm, so node, npm and chromium have to be there):
+# - bags, message by message: @mcap/core, @foxglove/rosbag, @foxglove/rosmsg2-serialization and sqlite. What adit wrote is
+#   decoded by the definitions in the file and encoded again, to the same bytes;
+# - one map as LAS, PCD and PLY: copc and loaders.gl;
+# - a session with its layout: Foxglove Studio, whose picture is then results/studio.png.
 #   tools/crosscheck.sh [BAG...]    besides the files of tests/conformance, what adit writes, and the shared data where present
 set -euo pipefail
 cd "$(dirname "$0")/.."
 command -v npm >/dev/null || { echo "crosscheck: npm is missing: install the Debian packages nodejs and npm" >&2; exit 1; }
+command -v chromium >/dev/null || { echo "crosscheck: chromium is missing: install the Debian package chromium" >&2; exit 1; }
 tools/build.sh release adit_program adit_dump_bag
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cp tests/crosscheck/package.json tests/crosscheck/dump.mjs "$work"
+cp tests/crosscheck/package.json tests/crosscheck/{dump.mjs,clouds.mjs,studio.mjs,studio.html} "$work"
 npm --prefix "$work" install --no-package-lock --no-audit --no-fund --silent
 failed=0
 same() {  # BAG [--written]
@@ -40,4 +43,9 @@ for bag in "$work/mine/robot_0.mcap" "$work/session.mcap"; do same "$bag" --writ
 for bag in tests/conformance/*.{mcap,bag,db3} ../shared/data/recordings/{*.bag,*.db3,*/*.mcap} "$@"; do
   [ ! -f "$bag" ] || same "$bag"
 done
+for format in las pcd ply; do "$adit" convert "$work/session" "$work/map.$format"; done
+node "$work/clouds.mjs" "$work"/map.{las,pcd,ply} || failed=1
+node "$work/studio.mjs" "$work/session.mcap" "$work/studio.png" || failed=1
+mkdir -p results
+[ ! -f "$work/studio.png" ] || cp "$work/studio.png" results/studio.png
 exit "$failed"

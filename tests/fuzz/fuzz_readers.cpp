@@ -8,16 +8,21 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <string>
 
+#include "adit/io/compression.hpp"
 #include "adit/io/config_toml.hpp"
+#include "adit/io/crc32.hpp"
 #include "adit/io/file_info.hpp"
 #include "adit/io/georeference.hpp"
 #include "adit/io/loops_csv.hpp"
 #include "adit/io/recording_files.hpp"
+#include "adit/io/robot_map_file.hpp"
 #include "adit/io/session_toml.hpp"
 #include "adit/io/trajectory_files.hpp"
 
@@ -79,7 +84,48 @@ const std::map<std::string, void (*)(std::string_view)> kTexts = {
      }},
 };
 
+// A map.adit: one line, the number of bytes and the checksum of the content, the content compressed.
+const std::size_t kMapLine = adit::robot_map_bytes({}).find('\n') + 1;
+constexpr std::size_t kSize = sizeof(std::uint64_t);
+constexpr std::size_t kSum = sizeof(std::uint32_t);
+
+std::optional<std::string> content_of_map(std::string_view file) {
+  if (file.size() < kMapLine + kSize + kSum) return {};
+  std::uint64_t size = 0;
+  std::memcpy(&size, file.data() + kMapLine, kSize);
+  adit::Result<std::string> content = adit::decompress(file.substr(kMapLine + kSize + kSum), "zstd", size);
+  return content ? std::optional(std::move(*content)) : std::nullopt;
+}
+
+std::string map_of(std::string_view line, std::string_view content) {
+  const std::uint64_t size = content.size();
+  const std::uint32_t sum = adit::crc32(content);
+  std::string file(line);
+  file.append(reinterpret_cast<const char*>(&size), kSize);
+  file.append(reinterpret_cast<const char*>(&sum), kSum);
+  return file + adit::compress_zstd(content);
+}
+
 }  // namespace
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* bytes, std::size_t size, std::size_t max_size);
+
+// Of maps the content is changed, mostly: its checksum would refuse it before anything is read.
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* bytes, std::size_t size, std::size_t max_size,
+                                               unsigned int seed) {
+  const std::string file(reinterpret_cast<const char*>(bytes), size);
+  std::optional<std::string> content;
+  if (extension() == "adit" && seed % 8 != 0) content = content_of_map(file);
+  if (!content) return LLVMFuzzerMutate(bytes, size, max_size);
+  const std::size_t before = content->size();
+  content->resize(before + 64);
+  content->resize(
+      LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(content->data()), before, content->size()));
+  const std::string changed = map_of(std::string_view(file).substr(0, kMapLine), *content);
+  if (changed.size() > max_size) return LLVMFuzzerMutate(bytes, size, max_size);
+  std::memcpy(bytes, changed.data(), changed.size());
+  return changed.size();
+}
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   static const Folder folder;

@@ -156,6 +156,12 @@ TEST_F(Doctor, FindsWhatStandsInTheView) {
       with([&](PointCloud& cloud) { keep(cloud, [](const Eigen::Vector3f& p) { return p.norm() < 8.0F; }); });
   EXPECT_NE(of(found_in(cut), "scans: range").sentence.find("as if cut off"), std::string::npos);
 
+  const Recording pixels = with([](PointCloud& cloud) {  // that met nothing, as drivers of images send them
+    for (std::size_t i = 0; i < cloud.size(); i += 20) cloud.points[i].setZero();
+  });
+  EXPECT_EQ(of(found_in(pixels), "scans: the robot itself").health, Health::good);
+  EXPECT_EQ(of(found_in(pixels), "scans: range").sentence.find("from 0.0 m"), std::string::npos);
+
   const Recording mast = with([](PointCloud& cloud) {  // a mast at 0.5 m to the left behind
     for (std::size_t i = 0; i < cloud.size(); i += 100) cloud.points[i] = {-0.35F, 0.35F, 0.1F};
   });

@@ -8,6 +8,7 @@
 
 #include "adit/core/format.hpp"
 #include "adit/evaluation/ate.hpp"
+#include "adit/io/robot_map_file.hpp"
 #include "adit/io/session_dir.hpp"
 #include "adit/io/tum.hpp"
 #include "adit/slam/saved_fleet.hpp"
@@ -201,6 +202,19 @@ TEST_F(Growing, APersonLeavesOutALoop) {
                  "belongs to no alignment");
   expect_refused("slam --session " + in("s") + " --veto ahead:0,behind", 2, "a keyframe of both robots");
   expect_refused("slam --session " + in("s") + " --veto ahead:x,behind:1", 2, "the number of a keyframe");
+}
+
+TEST_F(Growing, NewRecordingsAreReadAsTheCommandSays) {
+  const std::string grow = "slam --session " + in("s") + " " + drive("later") + " --out " + in("grown");
+  expect_done("slam " + drive("far") + " --mount 0.5,0,1.5 --out " + in("s"));
+  const test::ProgramRun run = run_adit(grow + " --set recording.wheel=none");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.err.find("later: no wheel odometry"), std::string::npos) << run.err;
+  const Vector3 told(0.5, 0.0, 1.5);
+  EXPECT_EQ(read_robot_map(in("grown/far/map.adit"))->viewpoint, told);
+  EXPECT_NE(read_robot_map(in("grown/later/map.adit"))->viewpoint, told);
+  expect_refused(grow + " --set loops.place.k=3", 2, "recording.* alone");
+  expect_refused(grow + " --profile paper", 2, "recording.* alone");
 }
 
 TEST_F(Growing, WhatIsDamagedIsNamedAndNothingIsLost) {

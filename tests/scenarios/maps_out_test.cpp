@@ -302,8 +302,8 @@ TEST(MapsOut, ASessionPlaysAsRosMessages) {
   const auto count_of = [](std::string_view message, MessageEncoding) -> Result<std::uint32_t> {
     return MessageReader(message).number<std::uint32_t>();
   };
-  EXPECT_EQ(messages_of(bag, "/graph", count_of), std::vector<std::uint32_t>{2})
-      << "loops in use, loops not used";
+  EXPECT_EQ(messages_of(bag, "/graph", count_of), std::vector<std::uint32_t>{4})
+      << "lines and their ends, of loops in use and of those not used";
   std::vector<std::int64_t> starts;
   for (const std::string robot : {"ahead", "behind"}) {
     const ShownRobot shown = shown_robot(bag, folder.path(), robot);

@@ -263,6 +263,51 @@ TEST(SensorChecks, JumpsAreTakenOut) {
   EXPECT_LT(error.translation().norm(), 0.05);
 }
 
+// Messages in pairs, each pair stamped as it arrives.
+TEST(SensorChecks, StampsThatCrowdAreNoJumps) {
+  Recording recording = clean_drive();
+  for (std::size_t i = 1; i < recording.wheel.size(); i += 8)
+    recording.wheel[i].stamp = recording.wheel[i - 1].stamp + std::chrono::microseconds(500);
+  const Pose last = recording.wheel.back().T_world_body;
+  EXPECT_TRUE(use_sound_sensors(recording).empty());
+  EXPECT_EQ(recording.wheel.back().T_world_body.matrix(), last.matrix());
+}
+
+/// A scan every 0.1 s, by a clock that is `apart` from that of wheels and IMU.
+Recording scanned(double apart) {
+  Recording recording = clean_drive();
+  for (Stamp stamp = recording.wheel.front().stamp; stamp < recording.wheel.back().stamp;
+       stamp = stamp + std::chrono::milliseconds(100))
+    recording.scan_stamps.push_back(stamp + from_seconds(apart));
+  return recording;
+}
+
+TEST(SensorChecks, SensorsThatMeasuredAtNoScanAreLeftOut) {
+  Recording recording = scanned(0.0);
+  EXPECT_TRUE(use_sound_sensors(recording).empty());
+  recording = scanned(1.7e9);
+  const std::vector<SensorFinding> findings = use_sound_sensors(recording);
+  ASSERT_EQ(findings.size(), 2U);
+  EXPECT_EQ(findings[0].finding, Finding::imu_silent);
+  EXPECT_EQ(findings[1].finding, Finding::wheels_silent);
+  for (const SensorFinding& finding : findings) {
+    EXPECT_EQ(finding.consequence, Consequence::left_out);
+    EXPECT_NE(finding.sentence.find("one clock"), std::string::npos) << finding.sentence;
+  }
+  EXPECT_TRUE(recording.imu.empty());
+  EXPECT_TRUE(recording.wheel.empty());
+}
+
+TEST(SensorChecks, SensorsThatMeasuredAtFewScansAreNoted) {
+  const Recording all = scanned(0.0);
+  Recording recording = scanned(0.7 * to_seconds(all.scan_stamps.back() - all.scan_stamps.front()));
+  const std::vector<SensorFinding> findings = use_sound_sensors(recording);
+  ASSERT_EQ(findings.size(), 2U);
+  for (const SensorFinding& finding : findings) EXPECT_EQ(finding.consequence, Consequence::noted);
+  EXPECT_EQ(recording.imu.size(), all.imu.size());
+  EXPECT_EQ(recording.wheel.size(), all.wheel.size());
+}
+
 TEST(SensorChecks, SilenceAndSlipOfWheelsAreLeftToTheOdometry) {
   Recording recording = drive_with_faults("silent 10:20, slip 30:33 1.0");
   const std::size_t num_poses = recording.wheel.size();

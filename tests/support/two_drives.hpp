@@ -15,14 +15,14 @@
 namespace adit::test {
 
 /// A robot that drives the waypoints `begin` to `end` of a route.
-struct Drive {
+struct RoutePart {
   std::ptrdiff_t begin;
   std::ptrdiff_t end;
   std::string name;
 };
 
 /// world.ply and routes.yaml: a mine, and robots along one route through it.
-inline void put_drives(const std::filesystem::path& folder, const std::vector<Drive>& drives) {
+inline void put_drives(const std::filesystem::path& folder, const std::vector<RoutePart>& drives) {
   WorldConfig config;
   config.preset = "mine";
   config.facet_factor = 4.0;
@@ -31,7 +31,7 @@ inline void put_drives(const std::filesystem::path& folder, const std::vector<Dr
   ASSERT_TRUE(write_mesh(folder / "world.ply", world->mesh));
   const Route& route = world->routes[0];
   std::vector<Route> routes;
-  for (const Drive& drive : drives) {
+  for (const RoutePart& drive : drives) {
     ASSERT_LE(drive.end, std::ssize(route.waypoints));
     routes.push_back({drive.name,
                       route.speed_mps,

@@ -7,12 +7,14 @@
 
 #include <array>
 #include <cstdio>
+#include <set>
 #include <system_error>
 #include <utility>
 
 #include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/io/disk_sync.hpp"
+#include "adit/io/text.hpp"
 
 namespace adit {
 namespace {
@@ -79,6 +81,42 @@ Result<fs::path> swap_in(const fs::path& partial, const fs::path& target) {
   }
   if (error) return fail(format("{}: cannot be put in place: {}", target.string(), error.message()));
   return old;
+}
+
+/// The names of what a folder holds, one a line, in order: what is there beside them later is the user's.
+std::string names_in(const fs::path& folder) {
+  std::set<std::string> names;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
+    names.insert(entry.path().filename().string());
+  std::string text;
+  for (const std::string& name : names) text += name + '\n';
+  return text;
+}
+
+/// Moves what the user put into `old` to `target`. Folders of earlier versions, which do not list what was
+/// written, hold nothing of the user's.
+Result<> keep_users_files(const fs::path& old, const fs::path& target, const std::string& marker) {
+  const std::set<std::string> written_later = {"georeference.toml"};
+  const Result<std::string> text = read_bytes(old / marker);
+  std::error_code ignored;
+  if (!text || text->empty()) return {};
+  const std::vector<std::string> lines = lines_of(*text);
+  const std::set<std::string> written(lines.begin(), lines.end());
+  std::vector<fs::path> entries;
+  for (const fs::directory_entry& entry : fs::directory_iterator(old, ignored))
+    entries.push_back(entry.path());
+  for (const fs::path& entry : entries) {
+    const std::string name = entry.filename().string();
+    const bool is_users = !written.contains(name) && !written_later.contains(name);
+    if (!is_users || fs::exists(target / name, ignored)) continue;
+    std::error_code error;
+    fs::rename(entry, target / name, error);
+    if (error)
+      return fail(format("{}: is written; '{}', which you had put there, is left in {}: {}", target.string(),
+                         name, old.string(), error.message()));
+  }
+  return {};
 }
 
 }  // namespace
@@ -161,12 +199,14 @@ Result<OutputDir> OutputDir::create(const fs::path& path, const std::string& kin
   fs::remove_all(output.partial_, error);
   fs::create_directory(output.partial_, error);
   if (error) return fail(format("{}: cannot be made: {}", target.string(), error.message()));
-  return write_bytes(output.partial_ / (".adit-" + kind), "").map([&] { return std::move(output); });
+  output.marker_ = ".adit-" + kind;
+  return write_bytes(output.partial_ / output.marker_, "").map([&] { return std::move(output); });
 }
 
 OutputDir::OutputDir(OutputDir&& other) noexcept
     : target_(std::move(other.target_)),
       partial_(std::move(other.partial_)),
+      marker_(std::move(other.marker_)),
       committed_(std::exchange(other.committed_, true)) {}
 
 OutputDir::~OutputDir() {
@@ -176,15 +216,19 @@ OutputDir::~OutputDir() {
 }
 
 Result<> OutputDir::commit() {
+  if (Result<> listed = write_bytes(partial_ / marker_, names_in(partial_)); !listed) return listed;
   if (Result<> synced = sync_tree_to_disk(partial_); !synced) return synced;
   const Result<fs::path> old = swap_in(partial_, target_);
   if (!old) return tl::unexpected(old.error());
   committed_ = true;
   partial_ = target_;
   Result<> synced = sync_to_disk(folder_of(target_));
+  if (!synced) return synced;
+  // Not before the new name is on the disk.
+  if (Result<> kept = keep_users_files(*old, target_, marker_); !kept) return kept;
   std::error_code ignored;
-  if (synced) fs::remove_all(*old, ignored);  // not before the new name is on the disk
-  return synced;
+  fs::remove_all(*old, ignored);
+  return {};
 }
 
 }  // namespace adit

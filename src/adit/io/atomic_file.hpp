@@ -63,7 +63,8 @@ class OutputDir {
 
   /// Where to write until `commit`; sub-folders are the caller's business.
   [[nodiscard]] const std::filesystem::path& path() const { return partial_; }
-  /// Syncs all files to the disk and puts the directory in its place. After it, `path()` is the final path.
+  /// Syncs all files to the disk and puts the directory in its place, with what the user had added to the one
+  /// that stood there. After it, `path()` is the final path.
   Result<> commit();
 
  private:
@@ -72,6 +73,7 @@ class OutputDir {
 
   std::filesystem::path target_;
   std::filesystem::path partial_;
+  std::string marker_;  ///< The name of the file that says what kind of output it is.
   bool committed_ = false;
 };
 

@@ -143,6 +143,20 @@ TEST_F(OutputDirTest, LeavesTheUsersFilesAlone) {
   EXPECT_TRUE(OutputDir::create(at("mine") / ""));
 }
 
+TEST_F(OutputDirTest, KeepsWhatTheUserPutIntoIt) {
+  ASSERT_TRUE(write("session", "1"));
+  put_file(at("out/points.csv"), "surveyed");
+  put_file(at("out/georeference.toml"), "of the old maps");
+  for (const bool cannot_exchange : {false, true}) {
+    disk.cannot_exchange = cannot_exchange;
+    ASSERT_TRUE(write("session", "2"));
+    EXPECT_EQ(get_file(at("out/data")), "2");
+    EXPECT_EQ(get_file(at("out/points.csv")), "surveyed");
+  }
+  EXPECT_FALSE(std::filesystem::exists(at("out/georeference.toml")));
+  EXPECT_EQ(num_entries(folder()), 1U);
+}
+
 TEST_F(OutputDirTest, RemovesWhatWasNotCommitted) {
   put_file(at("neighbour"), "");
   {

@@ -111,6 +111,18 @@ Result<Bag> open_file(const fs::path& path) {
   return bag;
 }
 
+/// Of several files each says which it is.
+Bag naming(const fs::path& file, Bag bag) {
+  const std::string name = file.filename().string();
+  for (std::string& warning : bag.warnings)
+    if (warning.find(name) == std::string::npos) warning = name + ": " + warning;
+  bag.read = [name, read = std::move(bag.read)](const BagMessage& message) {
+    Result<std::string> content = read(message);
+    return content ? std::move(content) : fail(name, content.error());
+  };
+  return bag;
+}
+
 /// A file that cannot be read or found, as one that was opened when power was cut, costs what it holds alone.
 Result<Bag> open_files(FolderFiles folder) {
   const std::size_t num_files = folder.files.size() + folder.faults.size();
@@ -118,7 +130,7 @@ Result<Bag> open_files(FolderFiles folder) {
   for (const fs::path& file : folder.files) {
     Result<Bag> part = open_file(file);
     if (part)
-      parts.push_back(std::move(*part));
+      parts.push_back(num_files > 1 ? naming(file, std::move(*part)) : std::move(*part));
     else
       folder.faults.push_back(part.error());
   }

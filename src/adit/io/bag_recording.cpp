@@ -196,8 +196,7 @@ bool is_stamped_at_end(const Bag& bag, const Tracks& tracks, std::optional<TimeU
   bool any = false;
   for (const std::size_t i : {std::size_t{0}, tracks.scans.size() / 2, tracks.scans.size() - 1}) {
     const Result<ros::CloudMessage> message = read_cloud_message(bag, tracks.scans[i], time_unit);
-    if (!message) return false;
-    if (message->scan.cloud.empty()) continue;
+    if (!message || message->scan.cloud.empty()) continue;
     any = true;
     const std::optional<double> sweep = sweep_after_stamp(message->scan);
     const double recorded_after = to_seconds(tracks.scans[i].log_time - message->scan.stamp);

@@ -17,6 +17,7 @@ namespace adit {
 namespace {
 
 constexpr std::size_t kLargest = std::size_t{1} << 30U;
+constexpr std::size_t kUsualOfZstd = 64;  // larger ones, as maps of long drives, stand for no more a byte
 // Bytes that one compressed byte can stand for: a zstd block of 128 KiB that repeats one byte takes four, LZ4
 // counts runs in 255s, and a block of 900 kB of bzip2, in which five bytes stand for 259, takes some 32.
 constexpr std::size_t kMostOfZstd = 32768;
@@ -121,7 +122,9 @@ Result<std::string> decompress_zstd_frame(std::string_view bytes) {
 }
 
 Result<std::string> decompress(std::string_view bytes, std::string_view compression, std::size_t size) {
-  if (size > kLargest) return fail(format("{} uncompressed bytes are announced; 1 GiB is the most", size));
+  const bool is_large_zstd = compression == "zstd" && size / kUsualOfZstd <= bytes.size();
+  if (size > kLargest && !is_large_zstd)
+    return fail(format("{} uncompressed bytes are announced; 1 GiB is the most", size));
   if (compression == "zstd") return decompress_zstd(bytes, size);
   if (compression == "lz4") return decompress_lz4(bytes, size);
   if (compression == "bz2") return decompress_bz2(bytes, size);

@@ -40,6 +40,21 @@ TEST(Compression, AClaimThatSoFewBytesCannotHoldTakesNoMemory) {
   EXPECT_EQ(decompress(few + few, "zstd", 6U), "fewfew");
 }
 
+// As the map of some kilometres is.
+TEST(Compression, ZstdOfMoreThanAGibibyte) {
+  std::string content((std::size_t{1} << 30U) + 1000, '\0');
+  std::uint64_t state = 1;
+  for (std::size_t i = 0; i < content.size(); i += 8) {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    content[i] = static_cast<char>(state >> 56U);
+  }
+  const std::string packed = compress_zstd(content);
+  ASSERT_GT(packed.size(), content.size() / 64);
+  const Result<std::string> back = decompress(packed, "zstd", content.size());
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_TRUE(*back == content);
+}
+
 TEST(Compression, Bz2OfAnySizeAndItsDamage) {
   for (const std::size_t size : {0U, 1U, 100U, 1U << 20U, (1U << 20U) + 1U, 5'000'000U}) {
     std::string text;

@@ -24,10 +24,10 @@ bool is_same(const Pose& a, const Pose& b) {
   return a.translation() == b.translation() && a.rotation().coeffs() == b.rotation().coeffs();
 }
 
-/// A frame that does not move with the robot, also behind a prefix.
+/// A frame that does not move with the robot, also behind a prefix: robot1/odom, robot1_odom.
 bool is_world(const std::string& frame) {
   constexpr std::array kWorlds = {"odom", "map", "world", "earth"};
-  const std::string name = frame.substr(frame.rfind('/') + 1);  // npos + 1 = 0: the whole name
+  const std::string name = frame.substr(frame.find_last_of("/_") + 1);  // npos + 1 = 0: the whole name
   return std::ranges::find(kWorlds, name) != kWorlds.end();
 }
 

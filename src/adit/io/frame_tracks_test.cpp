@@ -86,6 +86,10 @@ TEST(FrameTracks, WhatCarriesTheRobotIsLeftOut) {
   unnamed.add({link_at("robot/odom", "robot/base_link", after_start(0), Pose()),
                link_at("robot/base_link", "lidar", after_start(0), Pose())});
   EXPECT_EQ(unnamed.tree().body_of("lidar"), "robot/base_link");
+  FrameTracks underscored("", {"lidar"});
+  underscored.add({link_at("robot_odom", "robot_base_link", after_start(0), Pose()),
+                   link_at("robot_base_link", "lidar", after_start(0), Pose())});
+  EXPECT_EQ(underscored.tree().body_of("lidar"), "robot_base_link");
   FrameTracks other("base", {"lidar"});
   other.add(
       {link_at("start", "base", after_start(0), Pose()), link_at("start", "lidar", after_start(0), Pose())});

@@ -342,6 +342,17 @@ TEST(Mcap, AScanThatWasSentTwiceCountsOnce) {
   EXPECT_ERROR(read({cloud(1), cloud(1), cloud(1)}), "/points: 2 of 3 scans are left out");
 }
 
+TEST(Mcap, OfASplitBagAWarningNamesTheFile) {
+  const test::TemporaryFolder folder;
+  const std::string bytes = bytes_of(make_recording(2, 3));
+  test::put_file(folder / "a_0.mcap", bytes);
+  test::put_file(folder / "a_1.mcap", bytes.substr(0, bytes.size() - 1));
+  const Result<Bag> bag = open_bag(folder.path());
+  ASSERT_TRUE(bag) << bag.error().message;
+  ASSERT_EQ(bag->warnings.size(), 1U);
+  EXPECT_TRUE(bag->warnings.front().starts_with("a_1.mcap: ")) << bag->warnings.front();
+}
+
 TEST(Mcap, RobotsOfOneBagAreTakenByTheirNamespaces) {
   ForeignFile file;
   file.clouds("/fleet/husky2/points", "husky2/lidar")

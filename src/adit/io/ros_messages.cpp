@@ -15,7 +15,9 @@ namespace {
 
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
-constexpr std::int32_t kLineList = 5;  // Marker::LINE_LIST
+// Of visualization_msgs/msg/Marker.
+constexpr std::int32_t kLineList = 5;
+constexpr std::int32_t kSphereList = 7;
 
 void write_header(CdrWriter& writer, Stamp stamp, std::string_view frame) {
   ADIT_CHECK(fits_ros(stamp), "a ROS stamp has 32 bits of seconds, from 0");
@@ -325,7 +327,7 @@ std::string encode_path(std::string_view frame, const Trajectory& poses) {
   return writer.take();
 }
 
-std::string encode_markers(const std::vector<LinesMarker>& markers) {
+std::string encode_markers(const std::vector<Marker>& markers) {
   CdrWriter writer;
   const auto zero = [&](std::size_t bytes_each, int count) {
     for (int i = 0; i < count; ++i)
@@ -333,11 +335,13 @@ std::string encode_markers(const std::vector<LinesMarker>& markers) {
   };
   writer.number(static_cast<std::uint32_t>(markers.size()));
   std::int32_t id = 0;
-  for (const LinesMarker& marker : markers) {
+  for (const Marker& marker : markers) {
+    const bool round = marker.shape == MarkerShape::spheres;
     write_header(writer, marker.stamp, marker.frame);
-    writer.text(marker.name).number(id++).number(kLineList).number(std::int32_t{0});
+    writer.text(marker.name).number(id++).number(round ? kSphereList : kLineList).number(std::int32_t{0});
     write_pose(writer, Pose());
-    for (const double scale : {marker.width, 0.0, 0.0}) writer.number(scale);
+    const double other_sides = round ? marker.width : 0.0;  // lines have none
+    for (const double scale : {marker.width, other_sides, other_sides}) writer.number(scale);
     for (const float channel : marker.color) writer.number(channel);
     zero(4, 2);  // for ever
     zero(1, 1);  // not locked to the frame

@@ -107,17 +107,20 @@ Result<JointStateMessage> decode_joint_state(std::string_view message,
 /// A nav_msgs/Path in CDR, of one pose or more in `frame`. The stamps must fit: see `fits_ros`.
 [[nodiscard]] std::string encode_path(std::string_view frame, const Trajectory& poses);
 
-/// Separate line segments: points 2i and 2i + 1 are the ends of one.
-struct LinesMarker {
+/// Separate lines, of which points 2i and 2i + 1 are the ends of one, or a sphere at every point.
+enum class MarkerShape { lines, spheres };
+/// Shapes of one colour that a viewer draws.
+struct Marker {
+  MarkerShape shape = MarkerShape::lines;
   std::string frame;                ///< Of the points.
   std::string name;                 ///< Namespace: viewers switch markers on and off by it.
   Stamp stamp;                      ///< Must fit: see `fits_ros`.
   std::array<float, 4> color = {};  ///< Red, green, blue, opacity; 0 to 1.
-  double width = 0.0;               ///< Metres.
+  double width = 0.0;               ///< Of lines; the diameter of spheres. Metres.
   std::vector<Vector3> points;      ///< Metres.
 };
 /// A MarkerArray in CDR, whose markers stay until others of their names and numbers replace them.
-[[nodiscard]] std::string encode_markers(const std::vector<LinesMarker>& markers);
+[[nodiscard]] std::string encode_markers(const std::vector<Marker>& markers);
 
 /// One measurement of an IMU, as sensor_msgs/msg/Imu defines it: a covariance of zeros is unknown, one whose
 /// first element is -1 says that its quantity was not measured.

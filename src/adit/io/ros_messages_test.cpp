@@ -191,9 +191,12 @@ TEST(RosMessages, PathsAreAsRosDefinesThem) {
 
 // visualization_msgs/MarkerArray from Humble on, field by field.
 TEST(RosMessages, MarkersAreAsRosDefinesThem) {
-  const ros::LinesMarker lines{
-      "map", "loops", Stamp{7'000'000'000}, {0.25F, 0.5F, 0.75F, 1.0F}, 0.1, {{1, 2, 3}, {4, 5, 6}}};
-  const std::string message = ros::encode_markers({lines, lines});
+  const ros::Marker lines{
+      ros::MarkerShape::lines, "map", "loops", Stamp{7'000'000'000}, {0.25F, 0.5F, 0.75F, 1.0F}, 0.1,
+      {{1, 2, 3}, {4, 5, 6}}};
+  ros::Marker spheres = lines;
+  spheres.shape = ros::MarkerShape::spheres;
+  const std::string message = ros::encode_markers({lines, spheres});
   MessageReader reader(message);
   ASSERT_EQ(reader.number<std::uint32_t>(), 2U);
   for (std::int32_t id = 0; id < 2; ++id) {
@@ -201,10 +204,11 @@ TEST(RosMessages, MarkersAreAsRosDefinesThem) {
     EXPECT_EQ(reader.number<std::uint32_t>(), 0U);
     EXPECT_EQ(reader.text(), "map");
     EXPECT_EQ(reader.text(), "loops");
-    for (const std::int32_t value : {id, 5, 0})
-      EXPECT_EQ(reader.number<std::int32_t>(), value);  // LINE_LIST, ADD
+    for (const std::int32_t value : {id, id == 0 ? 5 : 7, 0})
+      EXPECT_EQ(reader.number<std::int32_t>(), value);  // LINE_LIST or SPHERE_LIST, ADD
     expect_pose(reader, Pose());
-    for (const double scale : {0.1, 0.0, 0.0}) EXPECT_EQ(reader.number<double>(), scale);
+    const double other_sides = id == 0 ? 0.0 : 0.1;
+    for (const double scale : {0.1, other_sides, other_sides}) EXPECT_EQ(reader.number<double>(), scale);
     for (const float channel : lines.color) EXPECT_EQ(reader.number<float>(), channel);
     for (int i = 0; i < 2; ++i) EXPECT_EQ(reader.number<std::uint32_t>(), 0U);  // lifetime
     EXPECT_EQ(reader.number<std::uint8_t>(), 0);                                // frame_locked

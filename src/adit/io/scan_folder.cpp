@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 struct ScanFile {
   std::size_t number = 0;
   fs::path path;
+  std::optional<Stamp> stamp = {};  ///< Where the name ends in one.
 };
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -36,6 +37,19 @@ std::optional<std::size_t> last_number(const std::string& stem) {
   const auto end = std::find_if(stem.rbegin(), stem.rend(), is_digit);
   const auto begin = std::find_if_not(end, stem.rend(), is_digit);
   return parse_size(std::string(begin.base(), end.base()));
+}
+
+/// "1271124904.505012000.pcd", as programs write that take clouds out of bags: seconds since 1970, or with
+/// nanoseconds; "run2.0017.pcd" is none.
+std::optional<Stamp> stamp_in(const std::string& stem) {
+  const std::size_t point = stem.rfind('.');
+  if (point == std::string::npos) return std::nullopt;
+  const auto end = stem.rend() - static_cast<std::ptrdiff_t>(point);
+  const std::string seconds(std::find_if_not(end, stem.rend(), is_digit).base(), end.base());
+  const std::string fraction = stem.substr(point + 1);
+  const bool are_digits = !seconds.empty() && std::ranges::all_of(fraction, is_digit);
+  if (!are_digits || (seconds.size() < 9 && fraction.size() != 9)) return std::nullopt;
+  return parse_stamp(seconds + "." + fraction);
 }
 
 Result<std::vector<ScanFile>> list_scans(const fs::path& folder) {
@@ -49,10 +63,14 @@ Result<std::vector<ScanFile>> list_scans(const fs::path& folder) {
       return fail(format("{}: the name {} has no number to order it by", folder.string(),
                          entry.path().filename().string()));
     }
-    scans.push_back({*number, entry.path()});
+    scans.push_back({*number, entry.path(), stamp_in(entry.path().stem().string())});
   }
   if (error) return fail(format("{}: cannot be listed: {}", folder.string(), error.message()));
   if (scans.empty()) return fail(folder.string() + ": no clouds in it (.pcd, .ply, .bin)");
+  if (std::ranges::all_of(scans, [](const ScanFile& scan) { return scan.stamp.has_value(); }))
+    for (ScanFile& scan : scans) scan.number = static_cast<std::size_t>(scan.stamp->ns);
+  else
+    for (ScanFile& scan : scans) scan.stamp.reset();
   std::ranges::sort(scans, {}, [](const ScanFile& scan) { return std::pair(scan.number, scan.path); });
   return scans;
 }
@@ -97,6 +115,10 @@ Result<std::vector<Stamp>> stamps_from_numbers(const fs::path& folder, const std
   constexpr std::size_t kLargest = std::numeric_limits<std::int64_t>::max() / 1'000'000'000;
   std::vector<Stamp> stamps;
   for (const ScanFile& scan : scans) {
+    if (scan.stamp) {
+      stamps.push_back(*scan.stamp);
+      continue;
+    }
     if (scan.number > kLargest) {
       return fail(format("{}: the number in {} is too large for a stamp in seconds; add a stamps.txt",
                          folder.string(), scan.path.filename().string()));
@@ -185,7 +207,8 @@ Result<Recording> read_tracks(const fs::path& folder, const std::vector<ScanFile
   const std::optional<fs::path> file = stamp_file(folder);
   if (!file) {
     recording.assumptions.push_back(
-        "stamps: the number in each name counts as seconds, as neither stamps.txt nor times.txt is there");
+        format("stamps: the {} in each name counts as seconds, as neither stamps.txt nor times.txt is there",
+               scans.front().stamp ? "decimal number" : "number"));
   }
   const auto stamps = file ? read_stamps_for(*file, scans.size()) : stamps_from_numbers(folder, scans);
   if (!stamps) return tl::unexpected(stamps.error());
@@ -303,20 +326,24 @@ std::function<Result<Scan>(std::size_t)> scan_reader(std::vector<fs::path> files
 
 // Writing.
 
-Result<> write_scan(const fs::path& folder, const Recording& recording, CloudFormat format_of_clouds,
-                    std::size_t i) {
+/// Formats of clouds have none without points: false where the scan has none.
+Result<bool> write_scan(const fs::path& folder, const Recording& recording, CloudFormat format_of_clouds,
+                        std::size_t i) {
   const Result<Scan> scan = recording.read_scan(i);
   if (!scan) return fail(format("scan {}", i), scan.error());
+  if (scan->cloud.empty()) return false;
   const fs::path path = folder / format("{:06}{}", i, extension_of(format_of_clouds));
-  const Result<> written = write_cloud(path, scan->cloud, recording.T_base_lidar);
-  if (!written || format_of_clouds != CloudFormat::kitti || !scan->cloud.has_times()) return written;
-  return write_bytes(offsets_beside(path), offsets_text(scan->cloud));
+  Result<> written = write_cloud(path, scan->cloud, recording.T_base_lidar);
+  if (written && format_of_clouds == CloudFormat::kitti && scan->cloud.has_times())
+    written = write_bytes(offsets_beside(path), offsets_text(scan->cloud));
+  return written.map([] { return true; });
 }
 
-/// All but the clouds.
-Result<> write_tracks(const fs::path& folder, const Recording& recording) {
+/// All but the clouds, of which those of `scan_stamps` were written.
+Result<> write_tracks(const fs::path& folder, const Recording& recording,
+                      const std::vector<Stamp>& scan_stamps) {
   std::string stamps;
-  for (const Stamp stamp : recording.scan_stamps) stamps += stamp_text(stamp) + '\n';
+  for (const Stamp stamp : scan_stamps) stamps += stamp_text(stamp) + '\n';
   Result<> written = write_bytes(folder / "stamps.txt", stamps);
   if (written && !recording.wheel.empty()) written = write_tum(folder / "odometry.tum", recording.wheel);
   if (written && !recording.truth.empty()) written = write_tum(folder / "groundtruth.tum", recording.truth);
@@ -362,17 +389,24 @@ Result<Recording> read_scan_folder(const fs::path& given, ScanSelection selectio
   return recording;
 }
 
-Result<> write_scan_folder(const fs::path& folder, const Recording& recording, CloudFormat clouds) {
+Result<std::size_t> write_scan_folder(const fs::path& folder, const Recording& recording,
+                                      CloudFormat clouds) {
   if (recording.num_scans() == 0)
     return fail(folder.string() + ": the recording has no scans; nothing is written");
   Result<OutputDir> output = OutputDir::create(folder, "scans");
   if (!output) return tl::unexpected(output.error());
   const Phase phase("writing scans", recording.num_scans());
+  std::vector<Stamp> kept;
   for (std::size_t i = 0; i < recording.num_scans(); ++i) {
-    if (Result<> written = write_scan(output->path(), recording, clouds, i); !written) return written;
+    const Result<bool> written = write_scan(output->path(), recording, clouds, i);
+    if (!written) return tl::unexpected(written.error());
+    if (*written) kept.push_back(recording.scan_stamps[i]);
     phase.advance();
   }
-  return write_tracks(output->path(), recording).and_then([&] { return output->commit(); });
+  if (kept.empty()) return fail(folder.string() + ": no scan has a point; nothing is written");
+  return write_tracks(output->path(), recording, kept).and_then([&] { return output->commit(); }).map([&] {
+    return recording.num_scans() - kept.size();
+  });
 }
 
 }  // namespace adit

@@ -53,8 +53,9 @@ Result<Recording> read_scan_folder(const std::filesystem::path& folder, ScanSele
 
 /// Writes NNNNNN.pcd (.ply, .bin) in the LiDAR's frame, stamps.txt, recording.toml, and odometry.tum and
 /// groundtruth.tum where the recording has them: all that `read_scan_folder` takes, so that nothing is lost.
-/// The folder appears whole or not at all.
-Result<> write_scan_folder(const std::filesystem::path& folder, const Recording& recording,
-                           CloudFormat clouds = CloudFormat::pcd);
+/// The folder appears whole or not at all. Returns how many scans have no points and are left out, as formats
+/// of clouds have no empty ones; fails where no scan has any.
+Result<std::size_t> write_scan_folder(const std::filesystem::path& folder, const Recording& recording,
+                                      CloudFormat clouds = CloudFormat::pcd);
 
 }  // namespace adit

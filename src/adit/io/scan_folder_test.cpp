@@ -35,6 +35,20 @@ TEST(ScanFolder, OrderedByNumberAndStampedByIt) {
   EXPECT_EQ(scan->stamp, recording->scan_stamps[2]);
 }
 
+TEST(ScanFolder, StampsInNamesAreTaken) {
+  const TemporaryFolder folder;
+  for (const char* name : {"1271124904.905", "1271124905.004999999", "c_1271124906.000000001"})
+    ASSERT_TRUE(write_cloud(folder / (std::string(name) + ".pcd"), one_point(1.0F)));
+  const Result<Recording> recording = read_scan_folder(folder.path());
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->scan_stamps,
+            std::vector<Stamp>(
+                {{1'271'124'904'905'000'000}, {1'271'124'905'004'999'999}, {1'271'124'906'000'000'001}}));
+  // One of another kind: numbers order all, as ever.
+  ASSERT_TRUE(write_cloud(folder / "run2.0007.pcd", one_point(1.0F)));
+  EXPECT_EQ(read_scan_folder(folder.path())->scan_stamps[1], Stamp{7'000'000'000});
+}
+
 TEST(ScanFolder, ASequenceOfKittiHasItsTruth) {
   const TemporaryFolder folder;
   const auto sequence = folder / "07";
@@ -134,8 +148,9 @@ class ScanFolderFormats : public ::testing::TestWithParam<CloudFormat> {};
 TEST_P(ScanFolderFormats, LoseNothing) {
   const TemporaryFolder folder;
   const Recording recording = full_recording();
-  const Result<> written = write_scan_folder(folder / "out", recording, GetParam());
+  const Result<std::size_t> written = write_scan_folder(folder / "out", recording, GetParam());
   ASSERT_TRUE(written) << written.error().message;
+  EXPECT_EQ(*written, 0U);
   const Result<Recording> back = open_recording((folder / "out").string());
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(back->name, "robot_7");
@@ -155,6 +170,24 @@ TEST_P(ScanFolderFormats, LoseNothing) {
     EXPECT_EQ(scan->cloud.intensities, expected.intensities);
     EXPECT_EQ(scan->cloud.time_offsets_ns, expected.time_offsets_ns);
   }
+}
+
+TEST_P(ScanFolderFormats, ScansWithoutPointsAreLeftOut) {
+  const TemporaryFolder folder;
+  Recording recording = full_recording();
+  recording.scan_stamps.insert(recording.scan_stamps.begin(), Stamp{900'000'000});
+  recording.read_scan = [read = recording.read_scan](std::size_t i) -> Result<Scan> {
+    if (i > 0) return read(i - 1);
+    return Scan{{900'000'000}, {}};
+  };
+  EXPECT_EQ(write_scan_folder(folder / "out", recording, GetParam()), 1U);
+  const Result<Recording> back = open_recording((folder / "out").string());
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->scan_stamps, full_recording().scan_stamps);
+  EXPECT_EQ(back->read_scan(0)->cloud.points, full_recording().read_scan(0)->cloud.points);
+  recording.scan_stamps.resize(1);
+  EXPECT_ERROR(write_scan_folder(folder / "none", recording, GetParam()), "no scan has a point");
+  EXPECT_FALSE(std::filesystem::exists(folder / "none"));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ScanFolderFormats,

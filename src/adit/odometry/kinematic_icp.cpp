@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "adit/core/check.hpp"
 #include "adit/odometry/preprocess.hpp"
 
 namespace adit {
@@ -30,18 +29,22 @@ KinematicIcp::KinematicIcp(const KinematicIcpConfig& config, const Pose& T_base_
       map_(config.scan_to_map.voxel_size, config.scan_to_map.max_points_per_voxel) {}
 
 OdometryStep KinematicIcp::register_scan(const Scan& scan, const SensedMotion& motion) {
-  ADIT_CHECK(!started_ || motion.wheel, "this odometry needs the wheels' motion since the last scan");
-  const Pose T_last_now = started_ ? motion.wheel->T_base0_base1 : Pose();
-  const Pose T_prediction = T_odom_base_ * T_last_now;
+  const std::optional<WheelDelta> wheel = motion_.has_begun() ? motion.wheel : std::nullopt;
+  const Pose T_last_now = wheel ? wheel->T_base0_base1 : motion_.until(scan.stamp);
+  const Pose T_prediction = motion_.T_odom_base() * T_last_now;
   const ScanToMapConfig& config = config_.scan_to_map;
   std::optional<SweepMotion> sweep;
-  if (config.deskew && started_) sweep = sweep_of({T_last_now, motion.wheel->duration});
+  if (config.deskew && wheel)
+    sweep = sweep_of({T_last_now, wheel->duration});
+  else if (config.deskew && motion_.last())
+    sweep = sweep_of(*motion_.last());
   preprocess(scan.cloud, {config.min_range, config.max_range}, T_base_lidar_, sweep, cloud_);
-  started_ = true;
 
-  OdometryStep step = is_at_rest(T_prediction) ? resting(T_prediction) : moving(T_prediction);
+  // That the robot stood before wheels fell silent does not say that it stands.
+  OdometryStep step =
+      wheel && is_at_rest(T_prediction) ? resting(T_prediction) : moving(T_prediction, wheel.has_value());
   step.stamp = scan.stamp;
-  T_odom_base_ = step.T_odom_base;
+  motion_.arrive(scan.stamp, step.T_odom_base);
   return step;
 }
 
@@ -60,23 +63,24 @@ OdometryStep KinematicIcp::resting(const Pose& T_prediction) const {
   return step;
 }
 
-OdometryStep KinematicIcp::moving(const Pose& T_prediction) {
+OdometryStep KinematicIcp::moving(const Pose& T_prediction, bool by_wheels) {
   const ScanToMapConfig& config = config_.scan_to_map;
   const ThinnedScan thin = thinned_twice(cloud_.points, config.voxel_size, thinner_);
   const OdometryStep step =
-      map_.empty() ? first_step(thin, T_prediction, config) : registered(thin, T_prediction);
+      map_.empty() ? first_step(thin, T_prediction, config) : registered(thin, T_prediction, by_wheels);
   update_map(map_, thin, step, config);
   last_registered_ = enters_map(step.status) ? std::optional(step) : std::nullopt;
   return step;
 }
 
-OdometryStep KinematicIcp::registered(const ThinnedScan& scan, const Pose& T_prediction) {
+OdometryStep KinematicIcp::registered(const ThinnedScan& scan, const Pose& T_prediction, bool by_wheels) {
   // Section III-C: uncertainty from the spacing of the map's points and from the wheels.
   const ScanToMapConfig& config = config_.scan_to_map;
   const double sigma_map = config.voxel_size / std::sqrt(config.max_points_per_voxel);
   const double max_distance = 3.0 * (sigma_map + deviations_.sigma());
-  const Alignment alignment = align_unicycle(scan.source, map_, T_prediction, max_distance, config);
-  if (alignment.status == StepStatus::ok)
+  const Alignment alignment =
+      align_unicycle(scan.source, map_, T_prediction, max_distance, config, by_wheels);
+  if (by_wheels && alignment.status == StepStatus::ok)
     deviations_.add(point_deviation(T_prediction.inverse() * alignment.T_map_base, config.max_range));
   OdometryStep step = step_of(alignment, scan.source, map_, max_distance, config);
   step.correction = (T_prediction.inverse() * step.T_odom_base).log();

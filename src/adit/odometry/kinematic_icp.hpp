@@ -10,6 +10,7 @@
 #include "adit/odometry/local_map.hpp"
 #include "adit/odometry/odometry.hpp"
 #include "adit/odometry/scan_to_map.hpp"
+#include "adit/odometry/steady_motion.hpp"
 
 namespace adit {
 
@@ -37,12 +38,15 @@ struct KinematicIcpConfig {
 /// `degenerate` and enters the map like a good one (else the map would end with the first stretch of smooth
 /// tunnel). Steps that are `too_few_points` or `diverged` keep the wheels' prediction and stay out of the
 /// map.
+///
+/// Beyond the paper: where the wheels are silent the velocity so far predicts, and no scan counts as one at
+/// rest.
 class KinematicIcp : public Odometry {
  public:
   /// With an empty map; T_odom_base starts at identity. Ranges of the settings are not checked.
   KinematicIcp(const KinematicIcpConfig& config, const Pose& T_base_lidar);
 
-  /// Needs the wheels; their duration must be positive where the scan has per-point times.
+  /// The duration of the wheels' motion must be positive where the scan has per-point times.
   OdometryStep register_scan(const Scan& scan, const SensedMotion& motion) override;
   [[nodiscard]] const PointCloud& cloud_of_last_scan() const override { return cloud_; }
   /// In the frame odom; empty before the first scan.
@@ -51,16 +55,15 @@ class KinematicIcp : public Odometry {
  private:
   [[nodiscard]] bool is_at_rest(const Pose& T_prediction) const;
   [[nodiscard]] OdometryStep resting(const Pose& T_prediction) const;
-  [[nodiscard]] OdometryStep moving(const Pose& T_prediction);
-  [[nodiscard]] OdometryStep registered(const ThinnedScan& scan, const Pose& T_prediction);
+  [[nodiscard]] OdometryStep moving(const Pose& T_prediction, bool by_wheels);
+  [[nodiscard]] OdometryStep registered(const ThinnedScan& scan, const Pose& T_prediction, bool by_wheels);
 
   KinematicIcpConfig config_;
   Pose T_base_lidar_;
   LocalMap map_;
-  Pose T_odom_base_;
+  SteadyMotion motion_;
   DeviationStatistics deviations_;
   std::optional<OdometryStep> last_registered_;  ///< Of the last moving scan, if that entered the map.
-  bool started_ = false;
   PointCloud cloud_;
   VoxelThinner thinner_;
 };

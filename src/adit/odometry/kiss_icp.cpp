@@ -7,8 +7,6 @@
 namespace adit {
 namespace {
 
-constexpr Duration kHorizon = std::chrono::seconds(2);  // a velocity says little about what comes later
-
 // Sum of squared distances from the map, square metres; a point counts at most the square of a voxel.
 double misfit(const Alignment& alignment, const ThinnedScan& scan, const LocalMap& map) {
   const double reach = map.voxel_size();
@@ -55,26 +53,19 @@ KissIcp::KissIcp(const KissIcpConfig& config, const Pose& T_base_lidar)
       threshold_(config.initial_threshold, config.min_motion, config.scan_to_map.max_range) {}
 
 OdometryStep KissIcp::register_scan(const Scan& scan, const SensedMotion& /*motion*/) {
-  ADIT_CHECK(!stamp_ || *stamp_ < scan.stamp, "the stamps of scans ascend");
-  const Pose T_prediction = predicted(scan.stamp);
+  const Pose T_prediction = motion_.T_odom_base() * motion_.until(scan.stamp);
   const ScanToMapConfig& config = config_.scan_to_map;
   preprocess(scan.cloud, {config.min_range, config.max_range}, T_base_lidar_,
-             config.deskew && motion_ ? std::optional(sweep_of(*motion_)) : std::nullopt, cloud_);
+             config.deskew && motion_.last() ? std::optional(sweep_of(*motion_.last())) : std::nullopt,
+             cloud_);
   irregular_ = are_irregular(config_.irregular_steps, scan);
   const ThinnedScan thin = thinned_twice(cloud_.points, config.voxel_size, thinner_);
   OdometryStep step = map_.empty() ? first_step(thin, T_prediction, config) : registered(thin, T_prediction);
   step.stamp = scan.stamp;
   step.is_guess = irregular_;
   update_map(map_, thin, step, config);
-  if (stamp_) motion_ = {T_odom_base_.inverse() * step.T_odom_base, scan.stamp - *stamp_};
-  stamp_ = scan.stamp;
-  T_odom_base_ = step.T_odom_base;
+  motion_.arrive(scan.stamp, step.T_odom_base);
   return step;
-}
-
-Pose KissIcp::predicted(Stamp stamp) const {
-  if (!motion_) return T_odom_base_;
-  return T_odom_base_ * motion_->pose_after(std::min(stamp - *stamp_, std::max(motion_->duration, kHorizon)));
 }
 
 Alignment KissIcp::align(const ThinnedScan& scan, const Pose& T_prediction) const {
@@ -83,7 +74,7 @@ Alignment KissIcp::align(const ThinnedScan& scan, const Pose& T_prediction) cons
   };
   Alignment predicted = align_from(T_prediction);
   if (!irregular_) return predicted;
-  Alignment rival = align_from(T_odom_base_);
+  Alignment rival = align_from(motion_.T_odom_base());
   if (rival.status != StepStatus::ok) return predicted;
   if (predicted.status != StepStatus::ok) return rival;
   return misfit(rival, scan, map_) < misfit(predicted, scan, map_) ? rival : predicted;

@@ -8,11 +8,11 @@
 
 #include "adit/core/config.hpp"
 #include "adit/core/records.hpp"
-#include "adit/geometry/deskew.hpp"
 #include "adit/odometry/adaptive_threshold.hpp"
 #include "adit/odometry/local_map.hpp"
 #include "adit/odometry/odometry.hpp"
 #include "adit/odometry/scan_to_map.hpp"
+#include "adit/odometry/steady_motion.hpp"
 
 namespace adit {
 
@@ -60,7 +60,6 @@ class KissIcp : public Odometry {
   [[nodiscard]] double sigma() const { return threshold_.sigma(); }
 
  private:
-  [[nodiscard]] Pose predicted(Stamp stamp) const;
   [[nodiscard]] OdometryStep registered(const ThinnedScan& scan, const Pose& T_prediction);
   [[nodiscard]] Alignment align(const ThinnedScan& scan, const Pose& T_prediction) const;
 
@@ -68,10 +67,8 @@ class KissIcp : public Odometry {
   Pose T_base_lidar_;
   LocalMap map_;
   AdaptiveThreshold threshold_;
-  Pose T_odom_base_;
   bool irregular_ = false;  ///< The last scan is treated as one of irregular steps.
-  std::optional<Stamp> stamp_;
-  std::optional<ConstantVelocity> motion_;  ///< From the scan before the last to the last.
+  SteadyMotion motion_;
   PointCloud cloud_;
   VoxelThinner thinner_;
 };

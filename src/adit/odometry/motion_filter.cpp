@@ -166,7 +166,9 @@ std::optional<Vector3> MotionFilter::up() const {
 }
 
 void MotionFilter::predict_by_twist(double dt) {
-  const Vector6 motion = dt * twist_;
+  constexpr double kHorizon = 2.0;  // seconds; a velocity says little about what comes later
+  const Vector6 motion = std::min(dt, kHorizon) * twist_;
+  const Vector6 beyond = dt * twist_ - motion;
   T_last_now_ = Pose::exp(motion);
   Vector6 walk;
   walk << Vector3::Constant(motion_.speed), Vector3::Constant(motion_.turn_rate);
@@ -176,8 +178,8 @@ void MotionFilter::predict_by_twist(double dt) {
   const Covariance before = covariance_;
   covariance_.middleRows<6>(kMotion) = J * before.middleRows<6>(kTwist);
   covariance_.middleCols<6>(kMotion) = covariance_.middleRows<6>(kMotion).transpose();
-  covariance_.block<6, 6>(kMotion, kMotion) =
-      J * before.block<6, 6>(kTwist, kTwist) * J.transpose() + density * (dt * dt * dt / 3.0);
+  covariance_.block<6, 6>(kMotion, kMotion) = J * before.block<6, 6>(kTwist, kTwist) * J.transpose() +
+                                              density * (dt * dt * dt / 3.0) + beyond * beyond.transpose();
   covariance_.block<6, 6>(kTwist, kMotion) += density * (dt * dt / 2.0);
   covariance_.block<6, 6>(kMotion, kTwist) += density * (dt * dt / 2.0);
   covariance_.block<6, 6>(kTwist, kTwist) += density * dt;

@@ -168,6 +168,20 @@ TEST(MotionFilter, KeepsTheVelocityWithoutWheels) {
   EXPECT_LT((filter.prior().T_ref_now.inverse() * T_step * T_step * T_step).log().norm(), 0.005);
 }
 
+// A recorder that stalled: where the robot is after half a minute is not known, and that is said.
+TEST(MotionFilter, AVelocityIsNotKeptForEver) {
+  const Pose T_step = Pose::translation_of(0.1, 0, 0);
+  Filter filter;
+  for (int i = 0; i < 50; ++i) {
+    filter.predict(kScanPeriod);
+    filter.registered(T_step, Matrix6::Identity() * 1e-6);
+  }
+  filter.predict(std::chrono::seconds(30));
+  const MotionPrior prior = filter.prior();
+  EXPECT_NEAR(prior.T_ref_now.translation().x(), 2.0, 0.1);
+  EXPECT_GT(std::sqrt(prior.covariance(0, 0)), 25.0);
+}
+
 TEST(MotionFilter, FindsTheScaleOfTheWheels) {
   Filter filter({}, {.scale = 0.1, .slip_that_lasts = 0.02});
   const double before = filter.wheel_scale_sigma();

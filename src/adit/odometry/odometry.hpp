@@ -12,9 +12,8 @@ class Odometry {
  public:
   virtual ~Odometry() = default;
 
-  /// Stamps ascend strictly from scan to scan. `motion` is that since the scan before; of the first
-  /// scan's, only how the IMU stands to gravity counts. Throws ContractViolation where the method needs a
-  /// sensor that did not measure.
+  /// `motion` is that since the scan before; of the first scan's, only how the IMU stands to gravity counts.
+  /// Throws ContractViolation where the stamp is not after that of the scan before.
   virtual OdometryStep register_scan(const Scan& scan, const SensedMotion& motion) = 0;
   /// The last scan, deskewed and range-cropped at full density, in the base frame at its stamp.
   [[nodiscard]] virtual const PointCloud& cloud_of_last_scan() const = 0;

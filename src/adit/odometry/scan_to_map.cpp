@@ -214,9 +214,13 @@ Alignment align_point_to_point(std::span<const Eigen::Vector3f> source, const Lo
 }
 
 Alignment align_unicycle(std::span<const Eigen::Vector3f> source, const LocalMap& map,
-                         const Pose& T_prediction, double max_distance, const ScanToMapConfig& config) {
+                         const Pose& T_prediction, double max_distance, const ScanToMapConfig& config,
+                         bool by_wheels) {
+  constexpr double kDamping =
+      0.05;  // of the forward motion's share of H where the scene fixes it, 0.2 to 0.5
   Correspondences pairs(source, map, max_distance);
   std::optional<double> beta;
+  if (!by_wheels) beta = kDamping;
   return gauss_newton(
       T_prediction, config, [&](const Pose& T_map_base) { return linearize_unicycle(pairs, T_map_base); },
       [&](const ScanEquations<2>& equations) -> Vector6 {

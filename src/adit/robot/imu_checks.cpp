@@ -62,8 +62,8 @@ std::optional<SensorFinding> check_covariance(Matrix3& covariance, std::string_v
   covariance.setZero();
   return of(
       Finding::imu_bad_covariance, Consequence::repaired,
-      format("the covariance of its {} is {}, so the noise of a usual sensor is assumed; let the driver "
-             "state it",
+      format("the covariance of its {} is {}; it is taken as unknown. adit does not use it, but repair the "
+             "driver for programs that do",
              what, fault));
 }
 

@@ -12,10 +12,25 @@ constexpr std::ptrdiff_t kMostShift = 25;  // grid steps: half a second
 constexpr double kCurves = 0.03;           // rad/s: with less turning there is nothing to compare
 constexpr double kClearly = 0.7;           // correlation
 
-std::vector<double> rates_on_grid(const Growth& growth, Stamp begin, Stamp end, Duration half_window) {
-  std::vector<double> rates;
-  for (Stamp stamp = begin; stamp <= end; stamp = stamp + kRateGrid)
-    rates.push_back(growth.rate(stamp, half_window));
+/// Of both at the same stamps.
+struct Rates {
+  std::vector<double> a;
+  std::vector<double> b;
+};
+
+Rates rates_on_grid(const Growth& a, const Growth& b, Duration half_window) {
+  Rates rates;
+  const Stamp end = std::min(a.end(), b.end());
+  for (Stamp stamp = std::max(a.begin(), b.begin()); stamp <= end; stamp = stamp + kRateGrid) {
+    if (const Stamp next = beyond_gap(a, b, stamp); next != stamp) {
+      // As many as a shift of clocks may bridge: what was before a gap is not compared with what came after.
+      rates.a.insert(rates.a.end(), kMostShift, Growth::kNothing);
+      rates.b.insert(rates.b.end(), kMostShift, Growth::kNothing);
+      stamp = next;
+    }
+    rates.a.push_back(a.rate(stamp, half_window));
+    rates.b.push_back(b.rate(stamp, half_window));
+  }
   return rates;
 }
 
@@ -38,6 +53,13 @@ Growth::Value Growth::find(Stamp stamp) const {
   return {
       values_[i - 1] + (values_[i] - values_[i - 1]) * to_seconds(stamp - stamps_[i - 1]) / to_seconds(gap),
       pieces_[i]};
+}
+
+Stamp Growth::resumes(Stamp stamp) const {
+  const auto after = std::ranges::upper_bound(stamps_, stamp);
+  if (after == stamps_.begin() || after == stamps_.end() || *after - *(after - 1) <= longest_gap_)
+    return stamp;
+  return *after;
 }
 
 double Growth::rate(Stamp stamp, Duration half) const {
@@ -81,17 +103,20 @@ bool TurnComparison::has_curves() const { return best.num >= num_enough && best.
 
 bool TurnComparison::agrees() const { return has_curves() && std::abs(best.correlation) >= kClearly; }
 
+Stamp beyond_gap(const Growth& a, const Growth& b, Stamp stamp) {
+  const Stamp next = std::max(a.resumes(stamp), b.resumes(stamp));
+  return next - stamp > std::chrono::seconds(1) ? next : stamp;
+}
+
 TurnComparison compare_turns(const Growth& wheels, const Growth& other, Duration half_window) {
-  const Stamp begin = std::max(wheels.begin(), other.begin());
-  const Stamp end = std::min(wheels.end(), other.end());
-  const std::vector<double> w = rates_on_grid(wheels, begin, end, half_window);
-  const std::vector<double> o = rates_on_grid(other, begin, end, half_window);
-  const auto strength = [&](std::ptrdiff_t shift) { return std::abs(regress(w, o, shift).correlation); };
+  const Rates rates = rates_on_grid(wheels, other, half_window);
+  const auto compared = [&](std::ptrdiff_t shift) { return regress(rates.a, rates.b, shift); };
+  const auto strength = [&](std::ptrdiff_t shift) { return std::abs(compared(shift).correlation); };
   std::ptrdiff_t at = 0;
   for (std::ptrdiff_t shift = -kMostShift; shift <= kMostShift; ++shift)
     if (strength(shift) > strength(at) + 1e-12) at = shift;
   TurnComparison out;
-  out.best = regress(w, o, at);
+  out.best = compared(at);
   // The vertex of the parabola through the best shift and its neighbours.
   const double before = strength(at - 1);
   const double after = strength(at + 1);

@@ -34,6 +34,8 @@ class Growth {
 
   /// `kNothing` outside and in gaps.
   [[nodiscard]] double at(Stamp stamp) const { return find(stamp).value; }
+  /// Where `stamp` lies in a gap, the end of it; else `stamp`.
+  [[nodiscard]] Stamp resumes(Stamp stamp) const;
   /// The mean rate within `half` of `stamp`, per second; of one piece alone.
   [[nodiscard]] double rate(Stamp stamp, Duration half) const;
 
@@ -71,6 +73,9 @@ struct Regression {
 
 /// Comparisons look at rates at every so many seconds.
 inline constexpr Duration kRateGrid = std::chrono::milliseconds(20);
+/// Where to go on from `stamp`: at the end of a gap of more than a second in one of both, as a clock that
+/// jumps leaves one, else at `stamp`.
+[[nodiscard]] Stamp beyond_gap(const Growth& a, const Growth& b, Stamp stamp);
 
 /// The turning of wheels and of another sensor at the shift of clocks, up to half a second, at which they
 /// agree best.

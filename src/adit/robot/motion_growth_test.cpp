@@ -59,6 +59,23 @@ TEST(CompareTurns, FindsLagScaleAndSign) {
   }
 }
 
+// Both clocks are set forward by ten years in the middle, 0.1 s apart. A grid over all of that would not fit
+// into memory.
+TEST(CompareTurns, AClockThatJumpsIsNoSilenceToWalkThrough) {
+  constexpr double kYears = 3.2e8;
+  const auto jumping = [&](double interval, double late) {
+    Growth growth(milliseconds(300));
+    for (double t = 0.0; t < 24.0; t += interval)
+      growth.add(at(t + late + (t < 12.0 ? 1.0 : kYears)), std::sin(1.7 * t) + 0.5 * std::cos(2.9 * t));
+    return growth;
+  };
+  const TurnComparison turns = compare_turns(jumping(0.02, 0.1), jumping(0.1, 0.0), milliseconds(100));
+  EXPECT_NEAR(turns.late_s, 0.1, 0.002);
+  EXPECT_NEAR(turns.best.slope, 1.0, 0.02);
+  EXPECT_GT(turns.best.num, 1000U);
+  EXPECT_LT(turns.best.num, 1200U);
+}
+
 TEST(CompareTurns, LittleTurningSaysNothing) {
   const TurnComparison turns =
       compare_turns(swinging(0.02, 0.0, 0.005), swinging(0.1, 0.0, 0.005), milliseconds(100));

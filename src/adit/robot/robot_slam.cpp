@@ -148,10 +148,6 @@ Result<> check_wheels(const Recording& recording, const OdometryConfig& config,
   if (recording.wheel.empty())
     return fail(format("{}: {} needs wheel odometry and the recording has none; use {}", recording.name,
                        to_string(config.method), without_wheels));
-  for (std::size_t i = 1; i < recording.num_scans(); ++i)
-    if (!sensed_before(recording, i).wheel)
-      return fail(format("{}: {} needs wheel odometry, which is silent at {:.3f} s; use {}", recording.name,
-                         to_string(config.method), recording.scan_stamps[i].seconds(), without_wheels));
   return {};
 }
 

@@ -80,8 +80,8 @@ class RobotSlam {
   RobotMap map_;
 };
 
-/// Fails where the odometry needs wheels and the recording has none, or they were silent during the drive.
-/// The message recommends `without_wheels`, the option that selects an odometry without wheels.
+/// Fails where the odometry needs wheels and the recording has none. The message recommends `without_wheels`,
+/// the option that selects an odometry without wheels.
 [[nodiscard]] Result<> check_wheels(const Recording& recording, const OdometryConfig& config,
                                     std::string_view without_wheels);
 

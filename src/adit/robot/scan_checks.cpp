@@ -180,9 +180,11 @@ struct OfScan {
 OfScan look_at(const Scan& scan, const Pose& T_base_lidar) {
   constexpr std::size_t kEvery = 16;  // points
   OfScan out;
+  std::vector<Vector3> points;
   std::vector<Vector3> in_base;
   for (const Eigen::Vector3f& point : scan.cloud.points) {
-    const Vector3 p = point.cast<double>();
+    if (point.isZero()) continue;  // a pixel without a return
+    const Vector3& p = points.emplace_back(point.cast<double>());
     out.ranges.push_back(p.norm());
     if (out.ranges.size() % kEvery == 0 && out.ranges.back() > 0.0)
       out.some_directions.push_back(p / out.ranges.back());
@@ -194,7 +196,7 @@ OfScan look_at(const Scan& scan, const Pose& T_base_lidar) {
   for (std::size_t i = 0; i < in_base.size(); ++i) {
     if (out.ranges[i] > kSelfReach) continue;
     if (out.floor && std::abs(off_plane(*out.floor, in_base[i])) < kFloorMargin) continue;
-    const Vector3 p = scan.cloud.points[i].cast<double>();
+    const Vector3& p = points[i];
     ++out.near[{static_cast<int>(std::floor(kPerRadian * std::atan2(p.y(), p.x()) / kCellDeg)),
                 static_cast<int>(std::floor(kPerRadian * std::atan2(p.z(), p.head<2>().norm()) / kCellDeg)),
                 static_cast<int>(out.ranges[i] / kCellMetres)}];

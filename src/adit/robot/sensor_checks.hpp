@@ -26,9 +26,11 @@ enum class Finding {
   imu_wrong_axes,         ///< The mount does not agree with gravity.
   imu_saturated,          ///< Values are cut off at the end of the sensor's range.
   imu_gaps,               ///< Silent for more than 0.1 s.
+  imu_silent,             ///< Of most or of all motions from scan to scan nothing was measured.
   imu_bad_covariance,     ///< Zero, huge or not positive definite.
   wheels_reversed,        ///< Forward for backward, or left for right.
   wheels_wrong_scale,     ///< Of turns, or ahead.
+  wheels_silent,          ///< Of most or of all motions from scan to scan nothing was measured.
   wheels_frozen,          ///< Their value stops changing at full speed.
   wheels_jump,            ///< Their position changes faster than a robot drives.
   wheels_late,            ///< Or early.
@@ -56,6 +58,8 @@ struct SensorFinding {
 
 // The parts of it.
 
+/// Whether wheels and IMU measured while scans were taken, as they do not where clocks differ.
+[[nodiscard]] std::vector<SensorFinding> check_coverage(Recording& recording);
 /// The IMU alone: covariance, gravity, axes, range, gaps, and whether rates agree with how gravity turns.
 [[nodiscard]] std::vector<SensorFinding> check_imu_alone(Recording& recording);
 /// The wheels alone: values that stay, values that jump, and the covariances that they state.

@@ -28,8 +28,17 @@ double interval(const Trajectory& wheel, std::size_t i) {
 Pose motion(const Trajectory& wheel, std::size_t i) {
   return wheel[i - 1].T_world_body.inverse() * wheel[i].T_world_body;
 }
-double speed(const Trajectory& wheel, std::size_t i) {
-  return motion(wheel, i).translation().norm() / interval(wheel, i);
+double usual_interval(const Trajectory& wheel) {
+  if (wheel.size() < 2) return 0.0;
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < wheel.size(); ++i) intervals.push_back(interval(wheel, i));
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::ranges::nth_element(intervals, middle);
+  return *middle;
+}
+// Messages that were stamped as they arrived, two at a time, are no sign of speed: each took the usual time.
+double speed(const Trajectory& wheel, std::size_t i, double usual) {
+  return motion(wheel, i).translation().norm() / std::max(interval(wheel, i), usual);
 }
 
 // Wheels that drive and then stand from one value to the next, without braking, for a while: their value no
@@ -38,12 +47,13 @@ std::optional<SensorFinding> leave_out_frozen(Trajectory& wheel) {
   constexpr double kDriving = 0.3;   // m/s
   constexpr double kBraking = 10.0;  // m/s^2: tyres hold no more
   constexpr double kWhile = 0.3;     // seconds
+  const double usual = usual_interval(wheel);
   Trajectory kept;
   std::vector<Stamp> begins;
   double longest = 0.0;
   for (std::size_t i = 0; i < wheel.size(); ++i) {
     kept.push_back(wheel[i]);
-    if (i == 0 || speed(wheel, i) < std::max(kDriving, kBraking * interval(wheel, i))) continue;
+    if (i == 0 || speed(wheel, i, usual) < std::max(kDriving, kBraking * interval(wheel, i))) continue;
     std::size_t last = i;
     while (last + 1 < wheel.size() && is_same(wheel[last + 1].T_world_body, wheel[i].T_world_body)) ++last;
     const double lasting = to_seconds(wheel[last].stamp - wheel[i].stamp);
@@ -64,8 +74,9 @@ std::optional<SensorFinding> leave_out_frozen(Trajectory& wheel) {
 // A step that no robot makes is replaced by the one before it.
 std::optional<SensorFinding> take_out_jumps(Trajectory& wheel) {
   constexpr double kFast = 5.0;  // m/s
+  const double usual_s = usual_interval(wheel);
   std::vector<double> speeds;
-  for (std::size_t i = 1; i < wheel.size(); ++i) speeds.push_back(speed(wheel, i));
+  for (std::size_t i = 1; i < wheel.size(); ++i) speeds.push_back(speed(wheel, i, usual_s));
   if (speeds.empty()) return std::nullopt;
   const auto usual = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() * 9 / 10);
   std::ranges::nth_element(speeds, usual);
@@ -74,7 +85,7 @@ std::optional<SensorFinding> take_out_jumps(Trajectory& wheel) {
   std::vector<std::size_t> jumps;
   Vector6 twist = Vector6::Zero();
   for (std::size_t i = 1; i < wheel.size(); ++i) {
-    const bool is_jump = speed(wheel, i) > limit;
+    const bool is_jump = speed(wheel, i, usual_s) > limit;
     if (is_jump) jumps.push_back(i);
     const Pose step = is_jump ? Pose::exp(twist * interval(wheel, i)) : motion(wheel, i);
     if (!is_jump) twist = step.log() / interval(wheel, i);
@@ -120,7 +131,7 @@ double forward_correlation(const Growth& wheels, const Growth& imu) {
   const Stamp begin = std::max(wheels.begin(), imu.begin());
   const Stamp end = std::min(wheels.end(), imu.end());
   std::vector<double> w, f;
-  for (Stamp stamp = begin; stamp <= end; stamp = stamp + kRateGrid) {
+  for (Stamp stamp = begin; stamp <= end; stamp = beyond_gap(wheels, imu, stamp + kRateGrid)) {
     w.push_back((wheels.rate(stamp + kHalf, kHalf) - wheels.rate(stamp - kHalf, kHalf)) /
                 (2.0 * to_seconds(kHalf)));
     f.push_back(imu.rate(stamp, 2 * kHalf));

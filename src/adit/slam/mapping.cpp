@@ -15,13 +15,24 @@
 namespace adit {
 namespace {
 
+/// What was found of one recording's sensors; what goes wrong meanwhile stops no other robot.
+std::vector<std::string> sensor_notes(Recording& recording) {
+  try {
+    std::vector<std::string> notes;
+    for (const SensorFinding& finding : use_sound_sensors(recording)) notes.push_back(finding.sentence);
+    return notes;
+  } catch (const std::exception& error) {
+    return {format("wheels and IMU could not be checked, and are used as they are: {}", error.what())};
+  }
+}
+
 /// The recordings with what can be used of their wheels and IMUs, and a note per finding.
 std::vector<Recording> with_sound_sensors(std::vector<Recording> recordings,
                                           std::vector<std::string>& notes) {
   const Phase phase("checking sensors", recordings.size());
   for (Recording& recording : recordings) {
-    for (const SensorFinding& finding : use_sound_sensors(recording))
-      notes.push_back(format("{}: {}", recording.name, finding.sentence));
+    for (const std::string& note : sensor_notes(recording))
+      notes.push_back(format("{}: {}", recording.name, note));
     phase.advance();
   }
   return recordings;
@@ -53,6 +64,27 @@ void note_quality(const RobotMap& map, std::vector<std::string>& notes) {
       format("{}: {:.0f} % of the LiDAR's returns were confirmed by no other and are left out of the map, as "
              "dust, rain and moving things are",
              map.name, 100.0 * mean));
+}
+
+/// A note where scans are missing for so long that the velocity before says no more where the robot went, and
+/// nothing else measured.
+void note_gaps(const Recording& recording, std::vector<std::string>& notes) {
+  constexpr Duration kLong = std::chrono::seconds(2);
+  Duration longest{};
+  Stamp begin;
+  for (std::size_t i = 1; i < recording.num_scans(); ++i) {
+    const Duration gap = recording.scan_stamps[i] - recording.scan_stamps[i - 1];
+    if (gap <= std::max(kLong, longest)) continue;
+    const SensedMotion motion = sensed_before(recording, i);
+    if (motion.wheel || !motion.imu.empty()) continue;
+    longest = gap;
+    begin = recording.scan_stamps[i - 1];
+  }
+  if (longest > Duration{})
+    notes.push_back(
+        format("{}: no scans for {:.1f} s from {:.3f} s on, and nothing else says where the robot went; "
+               "cut the recording there if the map is torn",
+               recording.name, to_seconds(longest), begin.seconds()));
 }
 
 /// Turns whatever goes wrong into an error of this robot, so that the others go on.
@@ -87,8 +119,10 @@ Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig
   const std::vector<Recording> recordings =
       config.check_sensors ? with_sound_sensors(given, mapping.notes) : given;
   std::vector<RobotSlamConfig> configs;
-  for (const Recording& recording : recordings)
+  for (const Recording& recording : recordings) {
     configs.push_back(config_for(recording, config.robot, mapping.notes));
+    note_gaps(recording, mapping.notes);
+  }
   std::vector<Result<RobotMap>> maps(recordings.size(), fail("not run"));
   std::vector<LeftOut> left_out(recordings.size(), LeftOut("scans"));
   {

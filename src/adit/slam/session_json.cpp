@@ -134,6 +134,15 @@ Json evaluation_json(const SessionEvaluation& evaluation) {
             {"unjudged", evaluation.num_unjudged}}}};
 }
 
+// Without a field of its own choice Foxglove colours a cloud by one that it finds, whatever the mode.
+Json cloud_settings(const std::string& color, double point_size) {
+  return {{"visible", true},
+          {"colorMode", "flat"},
+          {"colorField", "x"},
+          {"flatColor", color},
+          {"pointSize", point_size}};
+}
+
 }  // namespace
 
 std::string session_metrics(const SlamRun& run) {
@@ -183,12 +192,11 @@ std::string foxglove_layout(const PlacedSession& session) {
     if (robot.map->keyframes.empty() || robot.map->odometry.empty()) continue;
     const std::string name = "/" + names[i];
     const std::string color = hex(robot_color(i));
-    topics[name + "/map"] = {
-        {"visible", true}, {"colorMode", "flat"}, {"flatColor", color}, {"pointSize", 1.5}};
+    // Thin walls, so that the path and the loops within them are seen.
+    topics[name + "/map"] = cloud_settings(color + "26", 1.5);
     topics[name + "/path"] = {
-        {"visible", true}, {"type", "line"}, {"gradient", {color, color}}, {"lineWidth", 0.2}};
-    topics[name + "/points"] = {
-        {"visible", true}, {"colorMode", "flat"}, {"flatColor", hex(kInk)}, {"pointSize", 2}};
+        {"visible", true}, {"type", "line"}, {"gradient", {color, color}}, {"lineWidth", 0.6}};
+    topics[name + "/points"] = cloud_settings(hex(kInk), 2.0);
     topics[name + "/odometry"] = {{"visible", false}};
     if (robot.shared_map != 0) continue;
     for (const Pose& T : robot.T_world_keyframe) box.extend(T.translation());
@@ -196,7 +204,7 @@ std::string foxglove_layout(const PlacedSession& session) {
   if (box.isEmpty()) box.extend(Vector3::Zero().eval());
   const Vector3 centre = box.center();
   // From so far away the whole map fits into the view.
-  const double distance = std::max(20.0, 1.3 * box.diagonal().norm());
+  const double distance = std::max(20.0, 1.1 * box.diagonal().norm());
   const Json camera = {{"distance", distance},
                        {"perspective", true},
                        {"phi", 30},
@@ -207,14 +215,15 @@ std::string foxglove_layout(const PlacedSession& session) {
                        {"fovy", 45},
                        {"near", 0.5},
                        {"far", 20.0 * distance}};
-  const Json panel = {
-      {"cameraState", camera},
-      {"followMode", "follow-none"},
-      {"followTf", "map"},
-      {"scene", {{"backgroundColor", hex(kWhite)}, {"transforms", {{"axisScale", 2}, {"showLabel", false}}}}},
-      {"topics", topics},
-      {"transforms", Json::object()},
-      {"layers", Json::object()}};
+  const Json panel = {{"cameraState", camera},
+                      {"followMode", "follow-none"},
+                      {"followTf", "map"},
+                      {"scene",
+                       {{"backgroundColor", hex(kWhite)},
+                        {"transforms", {{"axisScale", 2}, {"showLabel", false}, {"lineWidth", 0}}}}},
+                      {"topics", topics},
+                      {"transforms", Json::object()},
+                      {"layers", Json::object()}};
   const Json layout = {{"configById", {{"3D!adit", panel}}},
                        {"globalVariables", Json::object()},
                        {"userNodes", Json::object()},

@@ -24,7 +24,9 @@ namespace fs = std::filesystem;
 
 // Bytes of messages in a chunk, before compression.
 constexpr std::size_t kChunkBytes = 4'000'000;
-constexpr double kLineWidth = 0.1;  // metres
+// Metres. Two keyframes that a loop joins lie at one place, often, where a line between them cannot be seen.
+constexpr double kLoopWidth = 0.1;
+constexpr double kLoopEnd = 0.8;
 
 std::string map_frame(const PlacedRobot& robot) {
   return robot.shared_map == 0 ? "map" : format("map_{}", robot.shared_map + 1);
@@ -147,11 +149,11 @@ std::array<float, 4> opaque(Rgba color) {
 }
 
 /// Of each shared map: loops in use, and those that were not used. Both ends have to lie in it.
-std::vector<ros::LinesMarker> loop_markers(const PlacedSession& session,
-                                           const std::vector<ShownRobot>& robots, Stamp stamp) {
+std::vector<ros::Marker> loop_markers(const PlacedSession& session, const std::vector<ShownRobot>& robots,
+                                      Stamp stamp) {
   std::map<std::string, const ShownRobot*> by_name;
   for (const ShownRobot& robot : robots) by_name[robot.placed->map->name] = &robot;
-  std::map<std::pair<std::string, LoopFate>, ros::LinesMarker> markers;
+  std::map<std::pair<std::string, LoopFate>, ros::Marker> markers;
   for (const SavedLoop& loop : session.saved.loops) {
     const auto from = by_name.find(loop.from_robot);
     const auto to = by_name.find(loop.to_robot);
@@ -163,17 +165,22 @@ std::vector<ros::LinesMarker> loop_markers(const PlacedSession& session,
     if (!begin || !end) continue;
     const LoopFate fate = loop.in_use() ? LoopFate::in_use : LoopFate::refused;
     const std::string frame = map_frame(*from->second->placed);
-    ros::LinesMarker& marker = markers[{frame, fate}];
+    ros::Marker& marker = markers[{frame, fate}];
     marker.frame = frame;
     marker.name = loop.in_use() ? "loops in use" : "loops not used";
     marker.stamp = stamp;
     marker.color = opaque(fate_color(fate));
-    marker.width = kLineWidth;
+    marker.width = kLoopWidth;
     marker.points.push_back(*begin);
     marker.points.push_back(*end);
   }
-  std::vector<ros::LinesMarker> out;
-  for (auto& [key, marker] : markers) out.push_back(std::move(marker));
+  std::vector<ros::Marker> out;
+  for (const auto& [key, lines] : markers) {
+    ros::Marker ends = lines;
+    ends.shape = ros::MarkerShape::spheres;
+    ends.width = kLoopEnd;
+    out.insert(out.end(), {lines, std::move(ends)});
+  }
   return out;
 }
 

@@ -113,7 +113,8 @@ TEST(SessionMcap, LoopsAreDrawnInTheFrameOfBothEnds) {
       bag.messages, [&](const BagMessage& m) { return bag.topics[m.topic].name == "/graph"; });
   const std::string content = bag.read(*graph).value();
   MessageReader reader(content);
-  ASSERT_EQ(reader.number<std::uint32_t>(), 3U);  // used and unused of the first map, used of the second
+  ASSERT_EQ(reader.number<std::uint32_t>(),
+            6U);  // used and unused of the first map, used of the second; lines and ends
   EXPECT_EQ(reader.number<std::int32_t>(), 100);
   EXPECT_EQ(reader.number<std::uint32_t>(), 0U);
   EXPECT_EQ(reader.text(), "map");

@@ -42,9 +42,11 @@ constexpr std::array kSettings = {
                    "corners that stay sharp where the robot turns"},
     SettingToWatch{"recording.stamp_at", "the driver stamps the end of a sweep",
                    "the time offset that `adit doctor` finds"},
-    SettingToWatch{"maps.voxel_m",
-                   "a denser or lighter cloud; little is gained below `robot.cloud_voxel`, which was kept",
-                   "the size of the file"},
+    SettingToWatch{
+        "maps.voxel_m",
+        "a denser or lighter cloud; below `robot.cloud_voxel` further points come only from keyframes that "
+        "overlap",
+        "the size of the file"},
     SettingToWatch{"maps.grid.lowest_m", "higher kerbs and rails that the robot climbs",
                    "the occupancy grid, before a robot plans on it"},
     SettingToWatch{"maps.grid.highest_m", "a higher robot or mast", "the same"},
