@@ -130,10 +130,10 @@ Result<> write_folder(const fs::path& out, const Recording& recording, CloudForm
 
 Result<> convert_recording(const ConvertOptions& options, const RecordingConfig& config) {
   const fs::path out = options.out;
+  if (is_bag_file(out) && extension_of(out) != ".mcap")
+    return fail(options.out + ": recordings are written as .mcap, or as a folder of clouds");
   return open_input(options.in, config).and_then([&](const Recording& recording) -> Result<> {
     if (kind_of(options.out) == Kind::trajectory) return convert_poses(recording, options.in, out);
-    if (is_bag_file(out) && extension_of(out) != ".mcap")
-      return fail(options.out + ": recordings are written as .mcap, or as a folder of clouds");
     LeftOut left_out("scans");
     const Recording readable = with_damaged_scans_empty(recording, left_out);
     const bool to_folder = extension_of(out) != ".mcap";
