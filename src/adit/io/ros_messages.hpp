@@ -111,13 +111,13 @@ Result<JointStateMessage> decode_joint_state(std::string_view message,
 enum class MarkerShape { lines, spheres };
 /// Shapes of one colour that a viewer draws.
 struct Marker {
-  MarkerShape shape = MarkerShape::lines;
-  std::string frame;                ///< Of the points.
-  std::string name;                 ///< Namespace: viewers switch markers on and off by it.
-  Stamp stamp;                      ///< Must fit: see `fits_ros`.
-  std::array<float, 4> color = {};  ///< Red, green, blue, opacity; 0 to 1.
-  double width = 0.0;               ///< Of lines; the diameter of spheres. Metres.
-  std::vector<Vector3> points;      ///< Metres.
+  MarkerShape shape = MarkerShape::lines;  ///< Of all points.
+  std::string frame;                       ///< Of the points.
+  std::string name;                        ///< Namespace: viewers switch markers on and off by it.
+  Stamp stamp;                             ///< Must fit: see `fits_ros`.
+  std::array<float, 4> color = {};         ///< Red, green, blue, opacity; 0 to 1.
+  double width = 0.0;                      ///< Of lines; the diameter of spheres. Metres.
+  std::vector<Vector3> points;             ///< Metres.
 };
 /// A MarkerArray in CDR, whose markers stay until others of their names and numbers replace them.
 [[nodiscard]] std::string encode_markers(const std::vector<Marker>& markers);

@@ -16,6 +16,7 @@ class SteadyMotion {
  public:
   /// Throws ContractViolation where the stamp is not after the last one.
   void arrive(Stamp stamp, const Pose& T_odom_base);
+  /// Whether a scan has arrived.
   [[nodiscard]] bool has_begun() const { return stamp_.has_value(); }
   /// At the last scan; identity before.
   [[nodiscard]] const Pose& T_odom_base() const { return T_odom_base_; }
