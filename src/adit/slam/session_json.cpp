@@ -193,7 +193,7 @@ std::string foxglove_layout(const PlacedSession& session) {
     const std::string name = "/" + names[i];
     const std::string color = hex(robot_color(i));
     // Thin walls, so that the path and the loops within them are seen.
-    topics[name + "/map"] = cloud_settings(color + "26", 1.5);
+    topics[name + "/map"] = cloud_settings(color + "1a", 1.5);
     topics[name + "/path"] = {
         {"visible", true}, {"type", "line"}, {"gradient", {color, color}}, {"lineWidth", 0.6}};
     topics[name + "/points"] = cloud_settings(hex(kInk), 2.0);

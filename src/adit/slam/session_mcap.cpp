@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kChunkBytes = 4'000'000;
 // Metres. Two keyframes that a loop joins lie at one place, often, where a line between them cannot be seen.
 constexpr double kLoopWidth = 0.1;
-constexpr double kLoopEnd = 0.8;
+constexpr double kLoopEnd = 1.5;
 
 std::string map_frame(const PlacedRobot& robot) {
   return robot.shared_map == 0 ? "map" : format("map_{}", robot.shared_map + 1);
