@@ -23,7 +23,7 @@ const files = {
   "/react-dom.js": packages("react-dom/umd/react-dom.production.min.js"),
   "/session.mcap": session,
 };
-let served = withLoops;
+let served; // The layout that is imported next.
 const types = { ".js": "text/javascript", ".html": "text/html", ".wasm": "application/wasm" };
 const problems = [];
 const size = { width: 1400, height: 900 };
