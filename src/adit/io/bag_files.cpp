@@ -115,7 +115,7 @@ Result<Bag> open_file(const fs::path& path) {
 Bag naming(const fs::path& file, Bag bag) {
   const std::string name = file.filename().string();
   for (std::string& warning : bag.warnings)
-    if (warning.find(name) == std::string::npos) warning = name + ": " + warning;
+    if (warning.find(name) == std::string::npos) warning.insert(0, name + ": ");
   bag.read = [name, read = std::move(bag.read)](const BagMessage& message) {
     Result<std::string> content = read(message);
     return content ? std::move(content) : fail(name, content.error());
