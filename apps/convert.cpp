@@ -122,9 +122,10 @@ const std::map<std::string, CloudFormat> kCloudFormats = {
 
 /// Says how many scans a folder of clouds lacks.
 Result<> write_folder(const fs::path& out, const Recording& recording, CloudFormat format) {
-  return write_scan_folder(out, recording, format).map([](std::size_t num_empty) {
+  return write_scan_folder(out, recording, format).map([&](std::size_t num_empty) {
     if (num_empty > 0)
-      print_notes("convert", {adit::format("{} scans have no points and are left out", num_empty)});
+      print_notes("convert", {adit::format("{} of {} scans have no points, and no file", num_empty,
+                                           recording.num_scans())});
   });
 }
 

@@ -50,8 +50,8 @@ class AtomicFile {
 ///
 /// An existing DIR is only ever replaced when it is empty or is adit's own output of the same kind, which
 /// carries the file `.adit-KIND` (a directory with session.toml also counts as kind "session", one with
-/// metrics.json as "study"). Anything else is refused by `create`, before any work is done: it may be the
-/// user's.
+/// metrics.json as "study"). That file lists what adit wrote. Anything else is refused by `create`, before
+/// any work is done: it may be the user's.
 class OutputDir {
  public:
   /// Fails where the parent folder is missing, `path` is a file, or what is there may not be replaced.

@@ -15,12 +15,13 @@ namespace adit {
 /// zstd at its fastest ordinary level: point clouds are mostly noise, and higher ones gain little.
 [[nodiscard]] std::string compress_zstd(std::string_view bytes);
 
-/// Exactly `size` bytes, or an error; more than 1 GiB, or than so few bytes can hold, is refused as damage.
+/// Exactly `size` bytes, or an error; more than so few bytes can hold is refused as damage, and more than 1
+/// GiB, of zstd only where that is more than 64 times `bytes`.
 Result<std::string> decompress(std::string_view bytes, std::string_view compression, std::size_t size);
 
 /// Whether the bytes begin as a zstd frame does.
 [[nodiscard]] bool is_zstd(std::string_view bytes);
-/// A zstd frame that states its own size, at most 1 GiB.
+/// A zstd frame that states its own size; bounds as of decompress.
 Result<std::string> decompress_zstd_frame(std::string_view bytes);
 
 /// LZF, as in PCD's binary_compressed.

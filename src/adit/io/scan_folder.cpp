@@ -39,8 +39,8 @@ std::optional<std::size_t> last_number(const std::string& stem) {
   return parse_size(std::string(begin.base(), end.base()));
 }
 
-/// "1271124904.505012000.pcd", as programs write that take clouds out of bags: seconds since 1970, or with
-/// nanoseconds; "run2.0017.pcd" is none.
+/// The stamp that a name ends in, as in "1271124904.505012000.pcd" of programs that take clouds out of bags.
+/// To be one, it has nine digits before the point or nine behind it; "run2.0017.pcd" ends in the number 17.
 std::optional<Stamp> stamp_in(const std::string& stem) {
   const std::size_t point = stem.rfind('.');
   if (point == std::string::npos) return std::nullopt;

@@ -10,6 +10,7 @@
 #include "adit/core/check.hpp"
 #include "adit/core/decompositions.hpp"
 #include "adit/odometry/fixed_directions.hpp"
+#include "adit/odometry/steady_motion.hpp"
 
 namespace adit {
 namespace {
@@ -76,12 +77,13 @@ MotionFilter::MotionFilter(const MotionNoise& motion, const WheelNoise& wheels, 
 void MotionFilter::predict(Stamp begin, Stamp end, const SensedMotion& motion) {
   ADIT_CHECK(begin < end, "time passes from scan to scan");
   started_ = true;
+  const double horizon = to_seconds(std::max(kVelocityHorizon, end_ - begin_));
   begin_ = begin;
   end_ = end;
   path_ = {};
   predict_slip(to_seconds(end - begin));
   if (motion.imu.empty())
-    predict_by_twist(to_seconds(end - begin));
+    predict_by_twist(to_seconds(end - begin), horizon);
   else
     predict_by_imu(motion);
 }
@@ -165,9 +167,8 @@ std::optional<Vector3> MotionFilter::up() const {
   return -felt_.gravity.normalized();
 }
 
-void MotionFilter::predict_by_twist(double dt) {
-  constexpr double kHorizon = 2.0;  // seconds; a velocity says little about what comes later
-  const Vector6 motion = std::min(dt, kHorizon) * twist_;
+void MotionFilter::predict_by_twist(double dt, double horizon) {
+  const Vector6 motion = std::min(dt, horizon) * twist_;
   const Vector6 beyond = dt * twist_ - motion;
   T_last_now_ = Pose::exp(motion);
   Vector6 walk;

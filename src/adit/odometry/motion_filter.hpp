@@ -124,7 +124,7 @@ class MotionFilter {
       3.0;  ///< Metres and radians per second: no robot is faster at first.
 
   void predict_slip(double dt);
-  void predict_by_twist(double dt);
+  void predict_by_twist(double dt, double horizon);  ///< Seconds; for how long the twist is kept.
   void predict_by_imu(const SensedMotion& motion);
   /// The first time that the IMU measures.
   void start_imu(const SensedMotion& motion);

@@ -216,8 +216,9 @@ Alignment align_point_to_point(std::span<const Eigen::Vector3f> source, const Lo
 Alignment align_unicycle(std::span<const Eigen::Vector3f> source, const LocalMap& map,
                          const Pose& T_prediction, double max_distance, const ScanToMapConfig& config,
                          bool by_wheels) {
-  constexpr double kDamping =
-      0.05;  // of the forward motion's share of H where the scene fixes it, 0.2 to 0.5
+  // Beside H(0, 0) / n, which is 1 as each point moves by what the robot does. Undamped, points along a
+  // smooth wall would carry the robot wherever noise points.
+  constexpr double kDamping = 0.05;
   Correspondences pairs(source, map, max_distance);
   std::optional<double> beta;
   if (!by_wheels) beta = kDamping;

@@ -83,7 +83,7 @@ struct Alignment {
 
 /// Gauss-Newton on `linearize_unicycle` from the prediction. The forward step is damped by beta = 1 / (mean
 /// squared residual at the prediction), so the better the wheels already fit the scene, the more they are
-/// trusted. A prediction that is not `by_wheels` is not: the step is hardly damped where the scene fixes it.
+/// trusted. A prediction that is not `by_wheels` is hardly trusted: beta is 0.05.
 [[nodiscard]] Alignment align_unicycle(std::span<const Eigen::Vector3f> source, const LocalMap& map,
                                        const Pose& T_prediction, double max_distance,
                                        const ScanToMapConfig& config, bool by_wheels = true);

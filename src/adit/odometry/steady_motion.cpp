@@ -8,10 +8,6 @@
 
 namespace adit {
 
-namespace {
-constexpr Duration kHorizon = std::chrono::seconds(2);  // a velocity says little about what comes later
-}  // namespace
-
 void SteadyMotion::arrive(Stamp stamp, const Pose& T_odom_base) {
   ADIT_CHECK(!stamp_ || *stamp_ < stamp, "the stamps of scans ascend");
   if (stamp_) last_ = {T_odom_base_.inverse() * T_odom_base, stamp - *stamp_};
@@ -22,7 +18,7 @@ void SteadyMotion::arrive(Stamp stamp, const Pose& T_odom_base) {
 Pose SteadyMotion::until(Stamp stamp) const {
   ADIT_CHECK(!stamp_ || *stamp_ < stamp, "the stamps of scans ascend");
   if (!last_) return {};
-  return last_->pose_after(std::min(stamp - *stamp_, std::max(last_->duration, kHorizon)));
+  return last_->pose_after(std::min(stamp - *stamp_, std::max(last_->duration, kVelocityHorizon)));
 }
 
 }  // namespace adit

@@ -10,6 +10,9 @@
 
 namespace adit {
 
+/// So long a velocity is kept where nothing else is known, or for as long as it was measured.
+inline constexpr Duration kVelocityHorizon = std::chrono::seconds(2);
+
 /// Where a robot is, and how it moved between its last two scans: what predicts the next where no sensor
 /// does.
 class SteadyMotion {
@@ -22,9 +25,8 @@ class SteadyMotion {
   [[nodiscard]] const Pose& T_odom_base() const { return T_odom_base_; }
   /// Between the last two scans; none before.
   [[nodiscard]] const std::optional<ConstantVelocity>& last() const { return last_; }
-  /// T_last_now at `stamp` with the velocity so far, which is kept for two seconds at most, or for as long as
-  /// it was measured; identity before two scans. Throws ContractViolation where the stamp is not after the
-  /// last one.
+  /// T_last_now at `stamp` with the velocity so far, kept for kVelocityHorizon; identity before two scans.
+  /// Throws ContractViolation where the stamp is not after the last one.
   [[nodiscard]] Pose until(Stamp stamp) const;
 
  private:

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <exception>
+#include <utility>
 
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/core/robot_ids.hpp"
+#include "adit/odometry/steady_motion.hpp"
 #include "adit/robot/scan_loop.hpp"
 #include "adit/robot/sensor_checks.hpp"
 
@@ -19,7 +21,9 @@ namespace {
 std::vector<std::string> sensor_notes(Recording& recording) {
   try {
     std::vector<std::string> notes;
-    for (const SensorFinding& finding : use_sound_sensors(recording)) notes.push_back(finding.sentence);
+    Recording sound = recording;
+    for (const SensorFinding& finding : use_sound_sensors(sound)) notes.push_back(finding.sentence);
+    recording = std::move(sound);
     return notes;
   } catch (const std::exception& error) {
     return {format("wheels and IMU could not be checked, and are used as they are: {}", error.what())};
@@ -69,12 +73,13 @@ void note_quality(const RobotMap& map, std::vector<std::string>& notes) {
 /// A note where scans are missing for so long that the velocity before says no more where the robot went, and
 /// nothing else measured.
 void note_gaps(const Recording& recording, std::vector<std::string>& notes) {
-  constexpr Duration kLong = std::chrono::seconds(2);
   Duration longest{};
+  Duration before{};
   Stamp begin;
   for (std::size_t i = 1; i < recording.num_scans(); ++i) {
     const Duration gap = recording.scan_stamps[i] - recording.scan_stamps[i - 1];
-    if (gap <= std::max(kLong, longest)) continue;
+    const Duration kept = std::max({kVelocityHorizon, std::exchange(before, gap), longest});
+    if (gap <= kept) continue;
     const SensedMotion motion = sensed_before(recording, i);
     if (motion.wheel || !motion.imu.empty()) continue;
     longest = gap;
