@@ -56,7 +56,7 @@ MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first, d
   }
   if (std::ssize(best.loops) < config_.min_loops) return MergeDecision::too_few_loops;
 
-  // Against every other hypothesis, the next best one first.
+  // Against every other hypothesis: the nearest one is the second.
   if (best_first.size() > 1 && are_rivals(best, hypotheses_[best_first[1]])) return MergeDecision::rival;
   return best.is_finished() ? MergeDecision::accepted : MergeDecision::unfinished;
 }
@@ -88,11 +88,9 @@ double MergeChecker::compared_km(const Hypothesis& h) const {
   return std::min(by_places, whole) / 1000.0;
 }
 
-/// Whether loops are few does not tell them apart: the true one may be beside a copy that was found more
-/// often.
 bool MergeChecker::are_rivals(const Hypothesis& best, const Hypothesis& other) const {
-  const auto without_loops = [&](const Hypothesis& h) { return evidence(h) - evidence_of_few_loops(h); };
-  return !differs_too_often(other) && !(without_loops(best) - without_loops(other) >= least_lead());
+  const double lead = evidence_among_rivals(best) - evidence_among_rivals(other);
+  return !differs_too_often(other) && !(lead >= least_lead());
 }
 
 double MergeChecker::needed() const { return std::log(1.0 / config_.evidence.error_rate); }
@@ -101,6 +99,12 @@ double MergeChecker::least_lead() const { return std::log(1.0 / config_.evidence
 
 double MergeChecker::evidence(const Hypothesis& h) const {
   return evidence_of_scans(h) + evidence_of_walls(h) + evidence_of_things(h);
+}
+
+/// Whether loops are few does not tell them apart: the true one may be beside a copy that was found more
+/// often.
+double MergeChecker::evidence_among_rivals(const Hypothesis& h) const {
+  return evidence(h) - evidence_of_few_loops(h);
 }
 
 double MergeChecker::prior_evidence(const Hypothesis& h) const {
@@ -324,16 +328,19 @@ std::vector<std::size_t> MergeChecker::best_first() const {
   std::vector<std::size_t> differing;
   for (std::size_t h = 0; h < hypotheses_.size(); ++h)
     (differs_too_often(hypotheses_[h]) ? differing : order).push_back(h);
-  std::vector<double> evidence_of(hypotheses_.size(), 0.0);
-  // The own map is not measured to rank a single one.
-  if (order.size() > 1)
+  if (order.size() > 1) {  // the own map is not measured to rank a single one
+    std::vector<double> evidence_of(hypotheses_.size(), 0.0);
+    // NaN, which has no place in an order, comes first, where it refuses.
+    const auto has_more = [&](std::size_t one, std::size_t other) {
+      const bool is_nan = std::isnan(evidence_of[one]);
+      const bool other_is = std::isnan(evidence_of[other]);
+      return is_nan || other_is ? is_nan && !other_is : evidence_of[one] > evidence_of[other];
+    };
     for (const std::size_t h : order) evidence_of[h] = evidence(hypotheses_[h]);
-  // NaN, which has no place in an order, comes first, where it refuses.
-  std::ranges::stable_sort(order, [&](std::size_t one, std::size_t other) {
-    const bool is_nan = std::isnan(evidence_of[one]);
-    const bool other_is = std::isnan(evidence_of[other]);
-    return is_nan || other_is ? is_nan && !other_is : evidence_of[one] > evidence_of[other];
-  });
+    std::ranges::stable_sort(order, has_more);
+    for (const std::size_t h : order) evidence_of[h] = evidence_among_rivals(hypotheses_[h]);
+    std::stable_sort(order.begin() + 1, order.end(), has_more);
+  }
   order.insert(order.end(), differing.begin(), differing.end());
   return order;
 }

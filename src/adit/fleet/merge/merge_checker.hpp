@@ -89,6 +89,7 @@ class MergeChecker {
   /// Evidence by which a hypothesis has to lead every other one.
   [[nodiscard]] double least_lead() const;
   [[nodiscard]] double evidence(const Hypothesis& hypothesis) const;
+  [[nodiscard]] double evidence_among_rivals(const Hypothesis& hypothesis) const;
   [[nodiscard]] double prior_evidence(const Hypothesis& hypothesis) const;
   [[nodiscard]] double evidence_of_few_loops(const Hypothesis& hypothesis) const;
   [[nodiscard]] double evidence_of_scans(const Hypothesis& hypothesis) const;
@@ -118,6 +119,7 @@ class MergeChecker {
   /// None when the check is over.
   [[nodiscard]] std::optional<Step> next_step() const;
   [[nodiscard]] std::vector<PlannedComparison> planned(const Step& step, std::size_t num) const;
+  /// The best hypothesis, then the others by how near they are to being its rival; refuted ones last.
   [[nodiscard]] std::vector<std::size_t> best_first() const;
   [[nodiscard]] double apart_m(std::size_t one, std::size_t other) const;
   [[nodiscard]] HypothesisCounts counts(const Hypothesis& hypothesis) const;

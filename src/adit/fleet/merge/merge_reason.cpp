@@ -85,7 +85,8 @@ std::string MergeChecker::why(MergeDecision decision, const std::vector<std::siz
     case MergeDecision::rival:
       return format(
           "two hypotheses {:.0f} m apart along the tunnel have similar support, evidence {:.1f} and {:.1f}",
-          apart_m(best_first[0], best_first[1]), evidence(h), evidence(hypotheses_[best_first[1]]));
+          apart_m(best_first[0], best_first[1]), evidence_among_rivals(h),
+          evidence_among_rivals(hypotheses_[best_first[1]]));
     case MergeDecision::no_loops:
     case MergeDecision::unfinished:
     case MergeDecision::accepted:

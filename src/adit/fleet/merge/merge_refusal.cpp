@@ -120,7 +120,7 @@ std::optional<UndecidedStretch> MergeChecker::undecided() const {
   if (kind == RefusalKind::rival) {
     const Hypothesis& rival = hypotheses_[order[1]];
     out.rival_loops = loops_of(rival);
-    out.missing = least_lead() - (evidence(best) - evidence(rival));
+    out.missing = std::max(least_lead() - (evidence_among_rivals(best) - evidence_among_rivals(rival)), 0.0);
   }
   return out;
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 // Alignments of two maps that compete with one another.
 #include <gtest/gtest.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -98,6 +100,45 @@ TEST(MergeRival, ThatLoopsAreFewDoesNotDecideBetweenTwo) {
   // The lead is larger by a half than what is needed, and few loops make two of it.
   const double lead = first.evidence - first.hypotheses[1].evidence;
   EXPECT_EQ(checked(std::exp(0.5 - lead)).refused_kind, RefusalKind::rival);
+}
+
+// The second has more loops and differs at some places. The third agrees everywhere, by two loops: what few
+// loops take away puts it behind the second, and is no reason why it should not be the right one.
+TEST(MergeRival, TheNearestRivalNeedNotBeTheSecondByEvidence) {
+  std::vector<PcmLoop> loops = kTrueLoops;
+  for (const std::size_t a : {70U, 100U, 120U, 130U}) loops.push_back(loop_at(a, 20.0));
+  for (const std::size_t a : {60U, 75U}) loops.push_back(loop_at(a, -20.0));
+  const auto checked = [&](double rival_rate) {
+    MergeCheckConfig config = by_places();
+    config.evidence.rival_rate = rival_rate;
+    MergeChecker checker = a_check(loops, 0.5, config);
+    return run(checker, [](const PlannedComparison& asked) {
+      const double along =
+          (T_a_b_true(asked.own, asked.theirs).inverse() * asked.T_own_theirs).translation().x();
+      ComparedPlace place = kAgrees;
+      if (along > 5.0 && asked.theirs % 16 == 0) {
+        place = kDiffers;
+        place.structures.emplace_back(20.0 * std::round(asked.theirs / 50.0), 0.0, 0.0);
+      }
+      return place;
+    });
+  };
+  const MergeCheck check = checked(0.5);
+  ASSERT_EQ(check.hypotheses.size(), 3U);
+  const auto& of_many = *std::ranges::max_element(
+      check.hypotheses, {}, [](const MergeHypothesis& h) { return h.loops.size() == 4 ? 1 : 0; });
+  const auto& of_few = *std::ranges::min_element(check.hypotheses, {},
+                                                 [](const MergeHypothesis& h) { return h.loops.size(); });
+  ASSERT_EQ(of_many.loops.size(), 4U);
+  ASSERT_EQ(of_few.loops.size(), 2U);
+  ASSERT_LT(of_few.evidence, of_many.evidence);
+  // The one of many loops is left behind by this rate, the other is not.
+  const MergeCheck refused = checked(1.01 * std::exp(of_many.evidence - check.evidence));
+  EXPECT_FALSE(refused.accepted);
+  EXPECT_EQ(refused.refused_kind, RefusalKind::rival);
+  EXPECT_EQ(refused.hypotheses[1].loops.size(), 2U);
+  EXPECT_EQ(refused.hypotheses[1].outcome, HypothesisOutcome::rival);
+  EXPECT_NE(refused.reason.find("20 m apart"), std::string::npos) << refused.reason;
 }
 
 TEST(MergeRival, AHypothesisFarBehindTheBestIsNoRival) {
