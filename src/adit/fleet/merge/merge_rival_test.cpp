@@ -116,14 +116,14 @@ TEST(MergeRival, TheNearestRivalNeedNotBeTheSecondByEvidence) {
       const double along =
           (T_a_b_true(asked.own, asked.theirs).inverse() * asked.T_own_theirs).translation().x();
       ComparedPlace place = kAgrees;
-      if (along > 5.0 && asked.theirs % 16 == 0) {
+      if (along < -5.0 && asked.theirs > 40 && asked.theirs < 44) {
         place = kDiffers;
         place.structures.emplace_back(20.0 * std::round(asked.theirs / 50.0), 0.0, 0.0);
       }
       return place;
     });
   };
-  const MergeCheck check = checked(0.5);
+  const MergeCheck check = checked(1e-6);
   ASSERT_EQ(check.hypotheses.size(), 3U);
   const auto& of_many = *std::ranges::max_element(
       check.hypotheses, {}, [](const MergeHypothesis& h) { return h.loops.size() == 4 ? 1 : 0; });
