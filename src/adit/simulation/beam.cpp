@@ -21,36 +21,25 @@ constexpr std::array<std::array<float, 2>, kSubRays> kRing{{{1.0F, 0.0F},
                                                             {-1.0F, 0.0F},
                                                             {-0.5F, -kHalfRoot3},
                                                             {0.5F, -kHalfRoot3}}};
-constexpr float kRingRadius = 0.7F;   ///< Of the beam's radius.
-constexpr float kEdge = 0.03F;        ///< Neighbours whose ranges differ by more than this share.
+constexpr float kRingRadius = 0.7F;  ///< Of the beam's radius.
+constexpr float kStep = 0.1F;  ///< Metres by which three neighbours are off a line where there is an edge.
 constexpr float kGrazing = 0.34202F;  ///< Cosine of 70 degrees.
 constexpr float kLeastCosine = 0.05F;
 
-// Returns whether a mover is nearer than the world anywhere.
-bool cast_at_all(const Raycaster& world, const std::optional<Raycaster>& movers, float range_max,
-                 RayBlock& rays) {
-  world.cast(rays, range_max);
-  if (!movers) return false;
-  bool meets_movers = false;
-  RayBlock nearer = rays;
-  movers->cast(nearer, range_max);
-  for (std::size_t i = 0; i < rays.size; ++i) {
-    const bool hits = nearer.distances[i] < rays.distances[i];
-    meets_movers = meets_movers || hits;
-    rays.distances[i] = hits ? nearer.distances[i] : rays.distances[i];
-    rays.cosines[i] = hits ? nearer.cosines[i] : rays.cosines[i];
-  }
-  return meets_movers;
+// Off the middle between two neighbours, or some of the three met nothing.
+bool is_edge(float one, float middle, float other) {
+  if (std::min({one, middle, other}) == RayHit::kMiss) return false;
+  return !(std::abs((one - middle) - (middle - other)) <= kStep);  // NaN where two of them met nothing
 }
 
-bool is_edge(float one, float other) {
-  return std::abs(one - other) > kEdge * std::min(one, other);  // also where one of them met nothing
-}
-
-bool needs_footprint(const RayBlock& rays, std::size_t i) {
-  if (rays.distances[i] < RayHit::kMiss && rays.cosines[i] < kGrazing) return true;
-  return (i > 0 && is_edge(rays.distances[i], rays.distances[i - 1])) ||
-         (i + 1 < rays.size && is_edge(rays.distances[i], rays.distances[i + 1]));
+bool needs_footprint(const RayBlock& rays, const Neighbours& columns, std::size_t i) {
+  const float range = rays.distances[i];
+  if (range < RayHit::kMiss && rays.cosines[i] < kGrazing) return true;
+  const float above = rays.distances[i > 0 ? i - 1 : i];
+  const float below = rays.distances[i + 1 < rays.size ? i + 1 : i];
+  const float before = columns.before != nullptr ? (*columns.before)[i] : range;
+  const float after = columns.after != nullptr ? (*columns.after)[i] : range;
+  return is_edge(above, range, below) || is_edge(before, range, after);
 }
 
 Eigen::Vector3f at(const RayBlock::Vectors& vectors, std::size_t i) {
@@ -80,49 +69,76 @@ struct Part {
   float cosine;
 };
 
-/// The strongest return of a footprint: of its parts, those less than a pulse apart whose cosines add up to
-/// most. `share` in [0, 1) draws where it lies between the nearest and the farthest of them.
-Part strongest(std::array<Part, kSubRays + 1> parts, float pulse, float share) {
+/// The strongest return of a footprint: of its parts, those of one surface, or less than a pulse apart, of
+/// which most comes back. `share` in [0, 1) draws where between the nearest and the farthest of them it lies.
+/// `radius`: of the footprint, in radians.
+Part strongest(std::array<Part, kSubRays + 1> parts, float pulse, float radius, float share) {
   std::ranges::sort(parts, {}, &Part::distance);
+  const auto cosine_of = [](const Part& part) { return std::max(part.cosine, kLeastCosine); };
+  // One surface is as long in a footprint as its slope says.
+  const auto are_one = [&](const Part& one, const Part& next) {
+    const float cosine = cosine_of(one);
+    const float slope = std::sqrt(std::max(1.0F - cosine * cosine, 0.0F)) / cosine;
+    return next.distance - one.distance < std::max(pulse, radius * one.distance * slope);
+  };
   Part best{RayHit::kMiss, 0.0F};
   float most = 0.0F;
-  for (std::size_t first = 0; first < parts.size() && parts[first].distance < RayHit::kMiss; ++first) {
+  for (std::size_t first = 0; first < parts.size() && parts[first].distance < RayHit::kMiss;) {
+    std::size_t end = first + 1;
+    while (end < parts.size() && are_one(parts[end - 1], parts[end])) ++end;
     float energy = 0.0F;
     float distance = 0.0F;
-    std::size_t last = first;
-    for (std::size_t k = first; k < parts.size() && parts[k].distance - parts[first].distance < pulse; ++k) {
-      const float cosine = std::max(parts[k].cosine, kLeastCosine);
-      energy += cosine;
-      distance += cosine * parts[k].distance;
-      last = k;
+    float cosine = 0.0F;
+    for (std::size_t k = first; k < end; ++k) {
+      const float back = cosine_of(parts[k]) / (parts[k].distance * parts[k].distance);
+      energy += back;
+      distance += back * parts[k].distance;
+      cosine += back * parts[k].cosine;
     }
-    if (energy <= most) continue;
-    most = energy;
-    const float spread = parts[last].distance - parts[first].distance;
-    best = {distance / energy + (share - 0.5F) * 0.5F * spread, parts[first].cosine};
+    if (energy > most) {
+      most = energy;
+      const float nearest = parts[first].distance;
+      const float farthest = parts[end - 1].distance;
+      const float drawn = distance / energy + (share - 0.5F) * (farthest - nearest);
+      best = {std::clamp(drawn, nearest, farthest), cosine / energy};
+    }
+    first = end;
   }
   return best;
 }
 
 }  // namespace
 
-void cast_beams(const Raycaster& world, const std::optional<Raycaster>& movers, const Beam& beam,
-                float range_max, std::uint64_t seed, RayBlock& rays) {
+bool cast_rays(const Raycaster& world, const std::optional<Raycaster>& movers, float range_max,
+               RayBlock& rays) {
+  world.cast(rays, range_max);
+  if (!movers) return false;
+  bool meets_movers = false;
+  RayBlock nearer = rays;
+  movers->cast(nearer, range_max);
+  for (std::size_t i = 0; i < rays.size; ++i) {
+    const bool hits = nearer.distances[i] < rays.distances[i];
+    meets_movers = meets_movers || hits;
+    rays.distances[i] = hits ? nearer.distances[i] : rays.distances[i];
+    rays.cosines[i] = hits ? nearer.cosines[i] : rays.cosines[i];
+  }
+  return meets_movers;
+}
+
+void widen_rays(const Raycaster& world, const std::optional<Raycaster>& movers, const Beam& beam,
+                const Neighbours& columns, float range_max, std::uint64_t seed, RayBlock& rays) {
   constexpr std::size_t kAtOnce = RayBlock::kCapacity / kSubRays;
-  const bool meets_movers = cast_at_all(world, movers, range_max, rays);
   if (beam.divergence <= 0.0) return;
-  // Without a mover in the block, none is looked for in footprints: most columns see none.
-  const std::optional<Raycaster> near_movers = meets_movers ? movers : std::nullopt;
   const float radius = kRingRadius * static_cast<float>(beam.divergence / 2.0);
   std::array<std::size_t, RayBlock::kCapacity> wide;
   std::size_t num_wide = 0;
   for (std::size_t i = 0; i < rays.size; ++i)
-    if (needs_footprint(rays, i)) wide[num_wide++] = i;
+    if (needs_footprint(rays, columns, i)) wide[num_wide++] = i;
   for (std::size_t from = 0; from < num_wide; from += kAtOnce) {
     const std::size_t to = std::min(num_wide, from + kAtOnce);
     RayBlock ring;
     for (std::size_t k = from; k < to; ++k) add_ring(rays, wide[k], radius, ring);
-    cast_at_all(world, near_movers, range_max, ring);
+    cast_rays(world, movers, range_max, ring);
     for (std::size_t k = from; k < to; ++k) {
       const std::size_t i = wide[k];
       std::array<Part, kSubRays + 1> parts;
@@ -132,7 +148,7 @@ void cast_beams(const Raycaster& world, const std::optional<Raycaster>& movers, 
       }
       parts[kSubRays] = {rays.distances[i], rays.cosines[i]};
       const auto share = static_cast<float>(mix64(seed, i) >> 40U) * 0x1p-24F;
-      const Part met = strongest(parts, static_cast<float>(beam.pulse_m), share);
+      const Part met = strongest(parts, static_cast<float>(beam.pulse_m), radius, share);
       rays.distances[i] = met.distance;
       rays.cosines[i] = met.cosine;
     }

@@ -21,10 +21,22 @@ struct Beam {
   double pulse_m = 0.3;     ///< Returns nearer to one another than this are one.
 };
 
-/// Casts the rays of a block at the world and at what is there beside it for now. Where a beam has a width
-/// and neighbours in the block show an edge, or a surface is met at more than 70 degrees, a ring of rays
-/// around it finds the footprint. `seed` draws where in a long footprint the range lies.
-void cast_beams(const Raycaster& world, const std::optional<Raycaster>& movers, const Beam& beam,
-                float range_max, std::uint64_t seed, RayBlock& rays);
+/// Ranges in the columns before and after that of a block, ray by ray; none at the ends of a sweep and where
+/// beams make no columns.
+struct Neighbours {
+  const RayBlock::Numbers* before = nullptr;  ///< Fired just before.
+  const RayBlock::Numbers* after = nullptr;   ///< Fired just after.
+};
+
+/// Casts the rays of a block, without a width, at the world and at what is there beside it for now. Returns
+/// whether any of them meets that.
+bool cast_rays(const Raycaster& world, const std::optional<Raycaster>& movers, float range_max,
+               RayBlock& rays);
+
+/// Gives rays that were cast a width: where neighbours in the block or in the columns beside it show an edge
+/// (10 cm off a straight line), or a surface is met at more than 70 degrees, a ring of rays finds what the
+/// footprint holds. `seed` draws where in it the range lies. A divergence of 0 changes nothing.
+void widen_rays(const Raycaster& world, const std::optional<Raycaster>& movers, const Beam& beam,
+                const Neighbours& columns, float range_max, std::uint64_t seed, RayBlock& rays);
 
 }  // namespace adit

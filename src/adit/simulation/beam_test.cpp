@@ -41,7 +41,8 @@ Raycaster step_in_a_wall(double step) {
 
 /// Ranges as distances from the plane x = 0.
 std::vector<double> depths(const Raycaster& world, const Beam& beam, RayBlock rays) {
-  cast_beams(world, {}, beam, kFar, 7, rays);
+  cast_rays(world, {}, kFar, rays);
+  widen_rays(world, {}, beam, {}, kFar, 7, rays);
   std::vector<double> out;
   for (std::size_t i = 0; i < rays.size; ++i)
     out.push_back(static_cast<double>(rays.distances[i] * rays.directions.x[i]));
@@ -53,7 +54,8 @@ TEST(Beam, WithoutWidthIsARay) {
   RayBlock rays = level_fan(0.0, 0.1, 64);
   RayBlock beams = rays;
   world.cast(rays, kFar);
-  cast_beams(world, {}, {}, kFar, 7, beams);
+  cast_rays(world, {}, kFar, beams);
+  widen_rays(world, {}, {}, {}, kFar, 7, beams);
   for (std::size_t i = 0; i < rays.size; ++i) EXPECT_EQ(beams.distances[i], rays.distances[i]);
 }
 
@@ -64,39 +66,65 @@ TEST(Beam, AnEdgeIsOneSurfaceOrTheOtherWhereTheyAreMoreThanAPulseApart) {
 }
 
 TEST(Beam, AnEdgeIsSmearedWhereSurfacesAreLessThanAPulseApart) {
-  const Raycaster world = step_in_a_wall(0.8);  // an edge by the range of neighbours
+  const Raycaster world = step_in_a_wall(0.2);
   const auto num_between = [&](double divergence_deg) {
-    const auto found = depths(world, {divergence_deg * kDegree, 1.0}, level_fan(0.0, 0.02, 100));
-    return std::ranges::count_if(found, [](double depth) { return depth > 19.25 && depth < 19.95; });
+    const auto found = depths(world, {divergence_deg * kDegree, 0.3}, level_fan(0.0, 0.02, 100));
+    return std::ranges::count_if(found, [](double depth) { return depth > 19.82 && depth < 19.98; });
   };
   EXPECT_EQ(num_between(0.0), 0);
   EXPECT_GT(num_between(0.18), 0);
 }
 
-TEST(Beam, ReturnsOfAGrazedWallLieWithinItsFootprint) {
-  TriangleMesh mesh;  // 10 degrees between wall and ray, 30 m away
-  const double away = 30.0 * std::sin(10.0 * kDegree);
-  test::add_quad(mesh, {-90, away, -9}, {90, away, -9}, {90, away, 9}, {-90, away, 9});
-  const Raycaster world = Raycaster::build(mesh).value();
-  const RayBlock aimed = level_fan(10.0, 1e-4, 100);
-  RayBlock beams = aimed;
-  const double divergence = 0.18 * kDegree;
-  cast_beams(world, {}, {divergence, 1.0}, kFar, 7, beams);
-  double squares = 0.0;
-  const double half_footprint = 0.5 * 30.0 * divergence / std::tan(10.0 * kDegree);
-  for (std::size_t i = 0; i < beams.size; ++i) {
-    const double off = static_cast<double>(beams.distances[i]) - 30.0;
-    EXPECT_LT(std::abs(off), half_footprint + 0.01);
-    squares += off * off / static_cast<double>(beams.size);
+// One ray per block, as in a column that runs along the edge: only the columns beside it show the edge.
+TEST(Beam, AnEdgeIsFoundByTheColumnsBesideIt) {
+  const Raycaster world = step_in_a_wall(0.2);
+  const Beam beam{0.18 * kDegree, 0.3};
+  RayBlock rays = level_fan(0.0, 0.0, 1);
+  cast_rays(world, {}, kFar, rays);
+  const RayBlock::Numbers left{19.8F};
+  const RayBlock::Numbers right{20.0F};
+  RayBlock alone = rays;
+  widen_rays(world, {}, beam, {}, kFar, 7, alone);
+  EXPECT_EQ(alone.distances[0], rays.distances[0]);
+  int num_between = 0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    RayBlock beams = rays;
+    widen_rays(world, {}, beam, {&left, &right}, kFar, seed, beams);
+    num_between += beams.distances[0] > 19.82F && beams.distances[0] < 19.98F;
   }
-  EXPECT_GT(std::sqrt(squares), 0.1 * half_footprint);
+  EXPECT_GT(num_between, 25);
+}
+
+// As long as the footprint, and right on average, whether or not it is longer than a pulse.
+TEST(Beam, ReturnsOfAGrazedWallLieEvenlyWithinItsFootprint) {
+  constexpr double kDivergence = 0.18 * kDegree;
+  for (const double grazing_deg : {15.0, 10.0, 5.0}) {
+    TriangleMesh mesh;  // 30 m away
+    const double away = 30.0 * std::sin(grazing_deg * kDegree);
+    test::add_quad(mesh, {-90, away, -9}, {90, away, -9}, {90, away, 9}, {-90, away, 9});
+    const Raycaster world = Raycaster::build(mesh).value();
+    RayBlock beams = level_fan(grazing_deg, 1e-4, 100);
+    cast_rays(world, {}, kFar, beams);
+    widen_rays(world, {}, {kDivergence, 0.3}, {}, kFar, 7, beams);
+    const double half_footprint = 0.5 * 30.0 * kDivergence / std::tan(grazing_deg * kDegree);
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < beams.size; ++i) {
+      const double off = static_cast<double>(beams.distances[i]) - 30.0;
+      EXPECT_LT(std::abs(off), half_footprint + 0.02);
+      sum += off / static_cast<double>(beams.size);
+      squares += off * off / static_cast<double>(beams.size);
+    }
+    EXPECT_LT(std::abs(sum), 0.15 * half_footprint) << grazing_deg;
+    EXPECT_GT(std::sqrt(squares), 0.25 * half_footprint) << grazing_deg;
+  }
 }
 
 TEST(Beam, MeetsWhatMovesBeforeTheWorld) {
   TriangleMesh person;
   test::add_quad(person, {5, -0.3, -1}, {5, -0.3, 1}, {5, 0.3, 1}, {5, 0.3, -1});
   RayBlock rays = level_fan(0.0, 0.5, 41);
-  cast_beams(step_in_a_wall(1.0), Raycaster::build(person).value(), {}, kFar, 7, rays);
+  EXPECT_TRUE(cast_rays(step_in_a_wall(1.0), Raycaster::build(person).value(), kFar, rays));
   EXPECT_FLOAT_EQ(rays.distances[20], 5.0F / rays.directions.x[20]);
   EXPECT_GT(rays.distances[0], 18.0F);
 }

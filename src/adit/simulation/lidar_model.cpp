@@ -12,146 +12,14 @@
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/core/rng.hpp"
-#include "adit/core/simd.hpp"
 #include "adit/simulation/beam.hpp"
+#include "adit/simulation/range_errors.hpp"
 #include "adit/simulation/scan_pattern.hpp"
 
 namespace adit {
 namespace {
 
-constexpr std::size_t kColumnsPerPart = 64;       ///< Of a parallel loop.
-constexpr float kDustReach = 5.0F;                ///< Metres: beyond, dust returns too little.
-constexpr double kWalkStatedAt = 80.0 * kDegree;  ///< Incidence, of LidarErrorConfig::incidence_walk.
-
-// For 0 <= x <= 1, to 1e-6 (Abramowitz and Stegun, 4.4.46). The C library's is not vectorized.
-float arc_cosine(float x) {
-  constexpr std::array<float, 8> kCoefficients = {1.5707963050F,  -0.2145988016F, 0.0889789874F,
-                                                  -0.0501743046F, 0.0308918810F,  -0.0170881256F,
-                                                  0.0066700901F,  -0.0012624911F};
-  float sum = kCoefficients[7];
-  for (std::size_t k = 7; k-- > 0;) sum = sum * x + kCoefficients[k];
-  return std::sqrt(1.0F - x) * sum;
-}
-
-// Range noise and drop-out of each ray of a block. They depend on the seed of the column and the number of
-// the beam alone.
-struct Chance {
-  // Near normal with mean 0 and standard deviation 1: the sum of four 16-bit uniform numbers (Irwin and
-  // Hall). No logarithm, so every machine draws the same; and bounded by 3.5, as no sensor errs by metres.
-  RayBlock::Numbers noise;
-  RayBlock::Numbers dropout;  // uniform in [0, 1), as the others below
-  RayBlock::Numbers falseness;
-  RayBlock::Numbers share;  // of the range, where it is false
-
-  Chance(std::uint64_t column_seed, std::size_t first_beam, std::size_t num) {
-    std::array<std::int32_t, RayBlock::kCapacity> sums;
-    std::array<std::int32_t, RayBlock::kCapacity> draws;
-    std::array<std::int32_t, RayBlock::kCapacity> more_draws;
-    for (std::size_t i = 0; i < num; ++i) {
-      const std::uint64_t ray_seed = mix64(column_seed ^ (first_beam + i));
-      const std::uint64_t bits = mix64(ray_seed);
-      const std::uint64_t pairs = (bits & 0xffff0000ffffU) + ((bits >> 16U) & 0xffff0000ffffU);
-      sums[i] = static_cast<std::int32_t>((pairs >> 32U) + (pairs & 0xffffffffU));
-      const std::uint64_t others = mix64(~ray_seed);
-      draws[i] = static_cast<std::int32_t>(others >> 40U);
-      more_draws[i] = static_cast<std::int32_t>(others & 0x7fffffffU);
-    }
-    constexpr double kMean = 2.0 * 0xffff;
-    for (std::size_t i = 0; i < num; ++i) {
-      noise[i] = static_cast<float>((sums[i] - kMean) * (std::numbers::sqrt3 / 0x10000));
-      dropout[i] = static_cast<float>(draws[i]) * 0x1p-24F;
-      falseness[i] = static_cast<float>(more_draws[i] & 0xfffff) * 0x1p-20F;
-      share[i] = static_cast<float>(more_draws[i] >> 20) * 0x1p-11F;
-    }
-  }
-};
-
-// How true ranges are reported, and which are lost.
-struct Returns {
-  float range_min;
-  float range_max;
-  float noise_near;
-  float noise_slope;
-  float cos_dropout_start;
-  float dropout_start;
-  float dropout_width;
-  float walk;  ///< Per squared (1 - cosine).
-  float intensity_walk;
-  float false_returns;
-  float false_or_dust;
-
-  Returns(const LidarConfig& c, const LidarUnit& unit, double dust)
-      : range_min(static_cast<float>(c.range_min)),
-        range_max(static_cast<float>(c.range_max)),
-        noise_near(static_cast<float>(c.noise_near)),
-        noise_slope(static_cast<float>((c.noise_far - c.noise_near) / (c.range_max - c.range_min))),
-        cos_dropout_start(static_cast<float>(std::cos(c.dropout_start_deg * kDegree))),
-        dropout_start(static_cast<float>(c.dropout_start_deg * kDegree)),
-        dropout_width(static_cast<float>(c.dropout_end_deg * kDegree) - dropout_start),
-        walk(static_cast<float>(unit.incidence_walk / std::pow(1.0 - std::cos(kWalkStatedAt), 2))),
-        intensity_walk(static_cast<float>(unit.intensity_walk)),
-        false_returns(static_cast<float>(unit.false_returns)),
-        false_or_dust(static_cast<float>(unit.false_returns + dust)) {}
-};
-
-// Of each ray of a block.
-struct Errors {
-  RayBlock::Numbers sigmas;
-  RayBlock::Numbers biases;
-};
-
-ADIT_WIDE_VECTORS void add_noise_by_range(const Returns& returns, const RayBlock& rays,
-                                          RayBlock::Numbers& sigmas) {
-  for (std::size_t i = 0; i < rays.size; ++i)
-    sigmas[i] = returns.noise_near + returns.noise_slope * (rays.distances[i] - returns.range_min);
-}
-
-// As photons are counted: with the root of their number, from the nominal surface the same as by range.
-ADIT_WIDE_VECTORS void add_noise_by_signal(const Returns& returns, const RayBlock::Numbers& signals,
-                                           std::size_t num, Errors& errors) {
-  constexpr float kMost = 1.5F;  // of the noise of a return that is just seen
-  const float grows = returns.noise_slope * (returns.range_max - returns.range_min);
-  for (std::size_t i = 0; i < num; ++i) {
-    errors.sigmas[i] = returns.noise_near + grows * std::min(kMost, 1.0F / std::sqrt(signals[i]));
-    errors.biases[i] += returns.intensity_walk * share_of_walk(signals[i]);
-  }
-}
-
-// The ranges that are reported, or misses. Beyond the end of the drop-out, all of 0 to 1 is below the share
-// that is lost.
-ADIT_WIDE_VECTORS void measure(const Returns& returns, const Chance& chance, const RayBlock& rays,
-                               const Errors& errors, RayBlock::Numbers& ranges) {
-  const auto& distances = rays.distances;
-  const float range_min = returns.range_min;
-  const float range_max = returns.range_max;
-  for (std::size_t i = 0; i < rays.size; ++i) {
-    const float cosine = std::min(rays.cosines[i], 1.0F);
-    const float off_normal = 1.0F - cosine;
-    const float true_return = distances[i] + errors.sigmas[i] * chance.noise[i] +
-                              (errors.biases[i] + returns.walk * off_normal * off_normal);
-    const float in_dust = range_min + kDustReach * chance.share[i] * chance.share[i];
-    const bool is_false = chance.falseness[i] < returns.false_returns;
-    const bool is_dust = !is_false & (chance.falseness[i] < returns.false_or_dust);
-    const float not_false = is_dust ? std::min(in_dust, true_return) : true_return;
-    const float range = is_false ? chance.share[i] * true_return : not_false;
-    const float share_lost = (arc_cosine(cosine) - returns.dropout_start) / returns.dropout_width;
-    const bool lost = (cosine < returns.cos_dropout_start) & (chance.dropout[i] < share_lost);
-    const bool kept = !lost & (distances[i] < RayHit::kMiss) & (range >= range_min) & (range <= range_max);
-    ranges[i] = kept ? range : RayHit::kMiss;
-  }
-}
-
-// Reflectivity times the cosine of the incidence, in percent, as far as the signal tells.
-ADIT_WIDE_VECTORS void add_intensities(const RayBlock& rays, const RayBlock::Numbers& signals, float reach,
-                                       const Chance& chance, RayBlock::Numbers& intensities) {
-  constexpr float kSpread = 0.1F;  // of readings, evenly
-  constexpr float kPercent = 100.0F * kNominalReflectivity;
-  for (std::size_t i = 0; i < rays.size; ++i) {
-    const float share = rays.distances[i] / reach;
-    const float reading = kPercent * signals[i] * share * share;
-    intensities[i] = std::min(255.0F, reading * (1.0F + kSpread * (chance.share[i] - 0.5F)));
-  }
-}
+constexpr std::size_t kColumnsPerPart = 64;  ///< Of a parallel loop.
 
 // Directions of the beams at azimuth 0.
 struct Fan {
@@ -253,6 +121,12 @@ struct Turn {
     const Pose& to = piece == between.size() ? sweep.T_world_lidar_end : between[piece];
     return interpolate(from, to, place - static_cast<double>(piece));
   }
+  /// What moves, where it is when that column is fired.
+  [[nodiscard]] const std::optional<Raycaster>& movers(int column) const {
+    static const std::optional<Raycaster> kNothing;
+    const auto num = static_cast<int>(sweep.movers.size());
+    return num == 0 ? kNothing : sweep.movers[static_cast<std::size_t>(column * num / config.columns)];
+  }
   [[nodiscard]] double azimuth(int column) const {
     return std::numbers::pi - 2.0 * std::numbers::pi * column / config.columns;
   }
@@ -317,7 +191,7 @@ void append_returns(const Report& report, std::size_t num, std::int32_t offset_n
 // What happens to light between the sensor and the surfaces, and how exact it leaves ranges. `seed` is the
 // block's.
 void measure_light(const Sensor& sensor, const Sweep& sweep, const Chance& chance, std::uint64_t seed,
-                   RayBlock& rays, Errors& errors, Report& report) {
+                   RayBlock& rays, RangeErrors& errors, Report& report) {
   constexpr std::uint64_t kWeakStream = 1;
   constexpr std::uint64_t kAirStream = 2;
   RayBlock::Numbers reflectivities;
@@ -332,38 +206,96 @@ void measure_light(const Sensor& sensor, const Sweep& sweep, const Chance& chanc
   add_intensities(rays, signals, sensor.reach(), chance, report.intensities);
 }
 
-void cast_column(const Raycaster& raycaster, const Sensor& sensor, const Turn& turn, int column,
-                 PointCloud& cloud) {
-  if (turn.is_dark(column)) return;
-  const Pose T_world_lidar = turn.T_world_lidar(column);
-  const std::uint64_t column_seed = mix64(turn.sweep.noise_seed, static_cast<std::uint64_t>(column));
-  const Sweep& sweep = turn.sweep;
-  const bool is_plain = sweep.surfaces.are_alike() && sweep.air.is_clear();
-  RayBlock rays;
-  RayBlock::Vectors directions;
-  Errors errors;
-  Report report;
-  for (std::size_t beam = 0; beam < sensor.num_beams(); beam += rays.size) {
-    rays.size = std::min(RayBlock::kCapacity, sensor.num_beams() - beam);
-    if (turn.config.pattern == LidarPattern::spinning) {
-      sensor.look(turn.azimuth(column), beam, rays.size, report.directions, directions);
-    } else {
-      const Duration before = static_cast<std::int64_t>(beam) * turn.shot_time();
-      sensor.look(turn.first_shot(column) + before, turn.shot_time(), rays.size, directions);
-      report.directions = directions;
+/// The rays of one column as they were cast, a block after the other, and in which directions they are
+/// reported.
+struct Column {
+  std::vector<RayBlock> rays;
+  std::vector<RayBlock::Vectors> reported;
+  bool meets_movers = false;
+};
+
+/// Casts the columns of one sweep.
+class ColumnCaster {
+ public:
+  ColumnCaster(const Raycaster& raycaster, const Sensor& sensor, const Turn& turn)
+      : raycaster_(raycaster),
+        sensor_(sensor),
+        turn_(turn),
+        has_neighbours_(turn.config.pattern == LidarPattern::spinning && sensor.beam().divergence > 0.0) {}
+
+  /// Appends the returns of the columns from `begin` to before `end`.
+  void cast(int begin, int end, PointCloud& cloud) const {
+    // A beam with a width looks at what the columns beside its own have met.
+    const int beside = has_neighbours_ ? 1 : 0;
+    std::vector<Column> columns;
+    for (int c = begin - beside; c < end + beside; ++c) columns.push_back(rays_of(c));
+    for (int c = begin; c < end; ++c) {
+      const auto k = static_cast<std::size_t>(c - begin + beside);
+      const Column none;
+      append(c, columns[k], has_neighbours_ ? columns[k - 1] : none, has_neighbours_ ? columns[k + 1] : none,
+             cloud);
     }
-    aim(T_world_lidar, directions, rays);
-    const std::uint64_t block_seed = mix64(~column_seed, beam);
-    cast_beams(raycaster, sweep.movers, sensor.beam(), sensor.returns().range_max, block_seed, rays);
-    sweep.surfaces.mirror(raycaster, sensor.returns().range_max, ~block_seed, rays);
-    const Chance chance(column_seed, beam, rays.size);
-    sensor.biases(beam, rays.size, errors.biases);
-    add_noise_by_range(sensor.returns(), rays, errors.sigmas);
-    if (!is_plain) measure_light(sensor, sweep, chance, block_seed, rays, errors, report);
-    measure(sensor.returns(), chance, rays, errors, report.ranges);
-    append_returns(report, rays.size, turn.offset_ns(column), cloud);
   }
-}
+
+ private:
+  /// None where the sensor does not fire.
+  [[nodiscard]] Column rays_of(int column) const {
+    Column out;
+    if (column < 0 || column >= turn_.config.columns || turn_.is_dark(column)) return out;
+    const Pose T_world_lidar = turn_.T_world_lidar(column);
+    for (std::size_t beam = 0; beam < sensor_.num_beams(); beam += RayBlock::kCapacity) {
+      RayBlock& rays = out.rays.emplace_back();
+      RayBlock::Vectors& reported = out.reported.emplace_back();
+      rays.size = std::min(RayBlock::kCapacity, sensor_.num_beams() - beam);
+      RayBlock::Vectors directions;
+      if (turn_.config.pattern == LidarPattern::spinning) {
+        sensor_.look(turn_.azimuth(column), beam, rays.size, reported, directions);
+      } else {
+        const Duration before = static_cast<std::int64_t>(beam) * turn_.shot_time();
+        sensor_.look(turn_.first_shot(column) + before, turn_.shot_time(), rays.size, directions);
+        reported = directions;
+      }
+      aim(T_world_lidar, directions, rays);
+      const bool meets = cast_rays(raycaster_, turn_.movers(column), sensor_.returns().range_max, rays);
+      out.meets_movers = out.meets_movers || meets;
+    }
+    return out;
+  }
+
+  void append(int number, const Column& column, const Column& before, const Column& after,
+              PointCloud& cloud) const {
+    const Sweep& sweep = turn_.sweep;
+    const float range_max = sensor_.returns().range_max;
+    const std::uint64_t column_seed = mix64(sweep.noise_seed, static_cast<std::uint64_t>(number));
+    const bool is_plain = sweep.surfaces.are_alike() && sweep.air.is_clear();
+    // Where no ray meets a mover, none is looked for in footprints: most columns see none.
+    const bool may_meet = column.meets_movers || before.meets_movers || after.meets_movers;
+    const std::optional<Raycaster> movers = may_meet ? turn_.movers(number) : std::nullopt;
+    for (std::size_t b = 0; b < column.rays.size(); ++b) {
+      const std::size_t beam = b * RayBlock::kCapacity;
+      const auto ranges_of = [&](const Column& c) { return c.rays.empty() ? nullptr : &c.rays[b].distances; };
+      RayBlock rays = column.rays[b];
+      const std::uint64_t block_seed = mix64(~column_seed, beam);
+      widen_rays(raycaster_, movers, sensor_.beam(), {ranges_of(before), ranges_of(after)}, range_max,
+                 block_seed, rays);
+      sweep.surfaces.mirror(raycaster_, range_max, ~block_seed, rays);
+      const Chance chance(column_seed, beam, rays.size);
+      RangeErrors errors;
+      Report report;
+      report.directions = column.reported[b];
+      sensor_.biases(beam, rays.size, errors.biases);
+      add_noise_by_range(sensor_.returns(), rays, errors.sigmas);
+      if (!is_plain) measure_light(sensor_, sweep, chance, block_seed, rays, errors, report);
+      measure(sensor_.returns(), chance, rays, errors, report.ranges);
+      append_returns(report, rays.size, turn_.offset_ns(number), cloud);
+    }
+  }
+
+  const Raycaster& raycaster_;
+  const Sensor& sensor_;
+  const Turn& turn_;
+  bool has_neighbours_;
+};
 
 PointCloud joined(const std::vector<PointCloud>& parts) {
   std::size_t size = 0;
@@ -420,15 +352,14 @@ Scan cast_scan(const Raycaster& raycaster, const LidarConfig& config, const Swee
   ADIT_CHECK(check_lidar(config).has_value(), "the lidar's configuration passes check_lidar");
   const Sensor sensor(config, unit, sweep);
   const Turn turn{config, sweep};
+  const ColumnCaster caster(raycaster, sensor, turn);
   const auto columns = static_cast<std::size_t>(config.columns);
   std::vector<PointCloud> parts((columns + kColumnsPerPart - 1) / kColumnsPerPart);
   parallel_for(columns, kColumnsPerPart, [&](std::size_t begin, std::size_t end) {
     PointCloud& part = parts[begin / kColumnsPerPart];
     part.points.reserve((end - begin) * sensor.num_beams());
     part.time_offsets_ns.reserve((end - begin) * sensor.num_beams());
-    for (std::size_t column = begin; column < end; ++column) {
-      cast_column(raycaster, sensor, turn, static_cast<int>(column), part);
-    }
+    caster.cast(static_cast<int>(begin), static_cast<int>(end), part);
   });
   return {sweep.end, joined(parts)};
 }

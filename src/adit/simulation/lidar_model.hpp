@@ -123,10 +123,11 @@ struct Sweep {
   /// One per scan. A ray's noise depends on it, its beam and its column alone.
   std::uint64_t noise_seed = 0;
   std::vector<Pose> T_world_lidar_between = {};  ///< At equal intervals of time; without start and end.
-  double dust = 0.0;                     ///< Share of rays that end in dust, within 5 m of the sensor.
-  std::optional<Raycaster> movers = {};  ///< What is there during this sweep alone.
-  Surfaces surfaces = {};                ///< Of the world; all alike by default.
-  Air air = {};                          ///< Clear by default.
+  double dust = 0.0;  ///< Share of rays that end in dust, within 5 m of the sensor.
+  /// What moves, where it is in the middle of equal parts of the sweep; nothing where nothing is.
+  std::vector<std::optional<Raycaster>> movers = {};
+  Surfaces surfaces = {};  ///< Of the world; all alike by default.
+  Air air = {};            ///< Clear by default.
 };
 
 /// What the sensor sees during one sweep, as it would report it: each point in the lidar frame of its own

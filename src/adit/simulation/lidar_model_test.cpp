@@ -68,6 +68,29 @@ TEST(LidarModel, times_run_from_minus_one_turn_to_the_stamp) {
   EXPECT_EQ(cloud.time_offsets_ns.front(), -100'000'000LL * (c.columns - 1) / c.columns);
 }
 
+// A step of 20 cm in a wall 8 m ahead, its edge upright or level.
+std::ptrdiff_t num_mixed_at(bool upright) {
+  TriangleMesh mesh;
+  test::add_quad(mesh, {8, -9, -9}, {8, -9, 9}, {8, 9, 9}, {8, 9, -9});
+  if (upright)
+    test::add_quad(mesh, {7.8, 0, -9}, {7.8, 0, 9}, {7.8, 9, 9}, {7.8, 9, -9});
+  else
+    test::add_quad(mesh, {7.8, -9, 0}, {7.8, -9, 9}, {7.8, 9, 9}, {7.8, 9, 0});
+  LidarUnit unit;
+  unit.divergence_factor = 10.0;
+  const Raycaster world = Raycaster::build(mesh).value();
+  LidarConfig config = noiseless();
+  config.beams = 129;  // more than a block
+  return std::ranges::count_if(
+      cast_scan(world, config, standing(Pose()), unit).cloud.points,
+      [](const Eigen::Vector3f& p) { return p.x() > 7.83F && p.x() < 7.97F && p.tail<2>().norm() < 2.5F; });
+}
+
+TEST(LidarModel, beams_with_a_width_mix_both_sides_of_upright_and_of_level_edges) {
+  EXPECT_GT(num_mixed_at(true), 40);
+  EXPECT_GT(num_mixed_at(false), 40);
+}
+
 TEST(LidarModel, deskewing_with_the_true_motion_restores_the_walls) {
   const LidarConfig c = noiseless();
   const Pose start = Pose::planar(-1.0, 0.5, 0.3);

@@ -46,7 +46,8 @@ Fields fields_of(LidarErrorConfig& c) {
       {"intensity_walk", &c.intensity_walk, "m", 0, 1,
        "added to the weakest returns, less to stronger ones; see surfaces"},
       {"warm_up_drift", &c.warm_up_drift, "m", 0, 1, "added once the sensor is warm"},
-      {"warm_up_s", &c.warm_up_s, "s", 1, 1e5, "time in which the drift has come to 63 %"},
+      {"warm_up_s", &c.warm_up_s, "s", 1, 1e5,
+       "time in which the drift has come to 63 %; sensors were switched on up to as long before the drive"},
       {"ring_azimuth_deg", &c.ring_azimuth_deg, "deg", 0, 5, "a ring looks to the side of what it reports"},
       {"ring_elevation_deg", &c.ring_elevation_deg, "deg", 0, 5, "a ring looks above what it reports"},
       {"mount", &c.mount, "m", 0, 1, "position of the sensor against the stated mount, per axis"},
@@ -78,7 +79,7 @@ LidarErrorConfig field_lidar_errors() {
 }
 
 double LidarUnit::bias_at(Duration since_start) const {
-  return range_bias + warm_up_drift * -std::expm1(-to_seconds(since_start) / warm_up_s);
+  return range_bias + warm_up_drift * -std::expm1(-(on_before_s + to_seconds(since_start)) / warm_up_s);
 }
 
 LidarUnit draw_lidar_unit(const LidarErrorConfig& c, std::size_t rings, std::size_t robot,
@@ -107,7 +108,9 @@ LidarUnit draw_lidar_unit(const LidarErrorConfig& c, std::size_t rings, std::siz
   unit.ring_range = by_ring(rings, c.ring_bias, rng);
   unit.ring_azimuth = by_ring(rings, c.ring_azimuth_deg * kDegree, rng);
   unit.ring_elevation = by_ring(rings, c.ring_elevation_deg * kDegree, rng);
-  unit.intensity_walk = one(c.intensity_walk);  // last: a draw that is new leaves the others as they were
+  unit.intensity_walk =
+      one(c.intensity_walk);  // draws that are new come last and leave the others as they were
+  unit.on_before_s = c.warm_up_s * rng.uniform();
   return unit;
 }
 

@@ -29,7 +29,8 @@ struct LidarErrorConfig {
   double incidence_walk = 0.0;     ///< Added where a surface is met at 80 degrees; less where more head-on.
   double intensity_walk = 0.0;     ///< Added to the weakest return, half of it to one 100 times as strong.
   double warm_up_drift = 0.0;      ///< Added once the sensor is warm.
-  double warm_up_s = 600.0;        ///< Time in which the drift has come to 63 %.
+  double warm_up_s = 600.0;        ///< Time in which the drift has come to 63 %; units were switched on up to
+                                   ///< as long before the drive.
   double ring_azimuth_deg = 0.0;   ///< A ring looks elsewhere than it reports.
   double ring_elevation_deg = 0.0;
   double mount = 0.0;          ///< Per axis: the sensor sits elsewhere than the recording says,
@@ -56,6 +57,7 @@ struct LidarUnit {
   double intensity_walk = 0.0;         ///< Metres, added to the weakest return; felt where surfaces differ.
   double warm_up_drift = 0.0;          ///< Metres, added once the sensor is warm.
   double warm_up_s = 1.0;              ///< Seconds in which the drift has come to 63 %.
+  double on_before_s = 0.0;            ///< Seconds before the drive at which the sensor was switched on.
   std::vector<double> ring_range;      ///< Metres by beam, from the highest down; empty: none.
   std::vector<double> ring_azimuth;    ///< Radians, the same.
   std::vector<double> ring_elevation;  ///< Radians, the same.
@@ -65,7 +67,7 @@ struct LidarUnit {
   double jitter_s = 0.0;               ///< Standard deviation of the stamps of scans, seconds.
   double false_returns = 0.0;          ///< Share of rays that report too short a range.
 
-  /// What is added to ranges at that time after power-on whatever they meet, rings apart.
+  /// What is added to ranges at that time after the start of the drive whatever they meet, rings apart.
   [[nodiscard]] double bias_at(Duration since_start) const;
 };
 

@@ -96,6 +96,8 @@ TEST(LidarUnit, WarmsUp) {
   EXPECT_LT(largest(range_errors(seen_by(unit, 0.0))), 1e-5);
   EXPECT_NEAR(range_errors(seen_by(unit, 100.0)).front(), 0.01 * (1.0 - std::exp(-1.0)), 1e-5);
   EXPECT_NEAR(range_errors(seen_by(unit, 2000.0)).front(), 0.01, 1e-5);
+  unit.on_before_s = 60.0;
+  EXPECT_NEAR(range_errors(seen_by(unit, 40.0)).front(), 0.01 * (1.0 - std::exp(-1.0)), 1e-5);
 }
 
 // It reports the direction of its drawing and the range of where it looks.

@@ -57,7 +57,8 @@ Fields fields_of(SurfaceConfig& c) {
   return {{"contrast", &c.contrast, "", 0, 2,
            "spread of reflectivities, 1: 5 to 60 %; noise, drop-out and intensity follow; 0: none of this"},
           {"patch", &c.patch, "m", 0.1, 100, "size of patches of one reflectivity"},
-          {"signs", &c.signs, "", 0, 1, "share of squares of half a metre that reflect 90 %"},
+          {"signs", &c.signs, "", 0, 1,
+           "share of squares of half a metre that reflect 90 %; none where contrast is 0"},
           {"wet", &c.wet, "", 0, 1, "share of the floor under water, which mirrors grazing rays"}};
 }
 

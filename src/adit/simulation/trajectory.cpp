@@ -16,6 +16,7 @@
 namespace adit {
 namespace {
 
+constexpr std::uint64_t kSwayStream = 0x73776179;
 constexpr int kSamplesPerCorner = 64;  ///< Path points per DriveConfig::corner_length: centimetres apart.
 constexpr double kHighestStep =
     0.3;  ///< Metres: largest height of a wheel above or below the floor midway between all four.
@@ -250,18 +251,37 @@ Pose pose_after(const Path& path, double driving_time) {
   return T_world_base(a, b, std::clamp(share, 0.0, 1.0));
 }
 
-// T_base_swaying: how the body of a walking robot moves against the smooth line, at a share of its full
-// speed.
-Pose sway(const DriveConfig& config, double time, double share) {
-  const double phase = 2.0 * std::numbers::pi * config.sway_hz * time;
-  const double roll = share * config.sway_roll_deg * kDegree * std::sin(phase);
-  const double pitch = share * config.sway_pitch_deg * kDegree * std::sin(2.0 * phase);
-  const double height = share * config.sway_height * 0.5 * (1.0 - std::cos(2.0 * phase));
-  return {so3::exp(Vector3(roll, pitch, 0.0)), Vector3(0.0, 0.0, height)};
-}
+// How the body moves on its suspension or its legs: two robots of one kind neither in step nor equally fast.
+class Sway {
+ public:
+  Sway(const DriveConfig& config, std::uint64_t seed) : config_(config) {
+    constexpr double kSpread = 0.1;  // of the frequency, either way
+    Rng rng(seed);
+    hz_ = config.sway_hz * (1.0 + kSpread * (2.0 * rng.uniform() - 1.0));
+    for (double* phase : {&roll_phase_, &pitch_phase_, &height_phase_})
+      *phase = 2.0 * std::numbers::pi * rng.uniform();
+  }
+  // T_base_swaying, against the smooth line, at a share of the full speed.
+  [[nodiscard]] Pose at(double time, double share) const {
+    const double phase = 2.0 * std::numbers::pi * hz_ * time;
+    const double roll = share * config_.sway_roll_deg * kDegree * std::sin(phase + roll_phase_);
+    const double pitch = share * config_.sway_pitch_deg * kDegree * std::sin(2.0 * phase + pitch_phase_);
+    const double height = share * config_.sway_height * 0.5 * (1.0 - std::cos(2.0 * phase + height_phase_));
+    return {so3::exp(Vector3(roll, pitch, 0.0)), Vector3(0.0, 0.0, height)};
+  }
 
-Trajectory with_sway(Trajectory trajectory, const DriveConfig& config, double full_speed) {
+ private:
+  const DriveConfig& config_;
+  double hz_ = 0.0;
+  double roll_phase_ = 0.0;
+  double pitch_phase_ = 0.0;
+  double height_phase_ = 0.0;
+};
+
+Trajectory with_sway(Trajectory trajectory, const DriveConfig& config, double full_speed,
+                     std::uint64_t seed) {
   if (config.sway_hz == 0.0) return trajectory;
+  const Sway sway(config, seed);
   const Trajectory smooth = trajectory;
   for (std::size_t i = 1; i + 1 < smooth.size(); ++i) {
     const double moved =
@@ -269,7 +289,7 @@ Trajectory with_sway(Trajectory trajectory, const DriveConfig& config, double fu
     const double seconds = to_seconds(smooth[i + 1].stamp - smooth[i - 1].stamp);
     const double time = to_seconds(smooth[i].stamp - smooth.front().stamp);
     trajectory[i].T_world_body =
-        smooth[i].T_world_body * sway(config, time, std::min(1.0, moved / seconds / full_speed));
+        smooth[i].T_world_body * sway.at(time, std::min(1.0, moved / seconds / full_speed));
   }
   return trajectory;
 }
@@ -315,7 +335,7 @@ Result<Trajectory> drive(const Raycaster& raycaster, const Route& route, const D
   std::vector<double> halt_times;
   for (const std::size_t halt : halts) halt_times.push_back(path[halt].time);
   const DriveClock clock(manoeuvres, halt_times);
-  return with_sway(sampled(path, config, clock, start), config, route.speed_mps);
+  return with_sway(sampled(path, config, clock, start), config, route.speed_mps, mix64(seed, kSwayStream));
 }
 
 DriveConfig field_drive(DriveConfig config) {

@@ -17,9 +17,20 @@ namespace {
 
 constexpr int kTries = 30;
 
-/// Puts `per_km` of them beside `path`, wherever no path of `others` is blocked.
+bool pass_by(std::span<const Trajectory> paths, const Vector3& place) {
+  constexpr double kSameTunnel = 6.0;  // metres
+  return std::ranges::any_of(paths, [&](const Trajectory& path) {
+    return std::ranges::any_of(path, [&](const StampedPose& pose) {
+      return (pose.T_world_body.translation() - place).squaredNorm() < kSameTunnel * kSameTunnel;
+    });
+  });
+}
+
+/// Puts `per_km` of them beside `path`, wherever no path of `others` is blocked, but for where paths of
+/// `furnished` pass by.
 TriangleMesh parked_along(const Raycaster& floor, const Trajectory& path, std::span<const Trajectory> others,
-                          const Thing& thing, double per_km, Rng& rng) {
+                          std::span<const Trajectory> furnished, const Thing& thing, double per_km,
+                          Rng& rng) {
   TriangleMesh mesh;
   const ByLength along(path);
   const auto num = static_cast<int>(std::lround(along.length() / 1000.0 * per_km));
@@ -27,7 +38,9 @@ TriangleMesh parked_along(const Raycaster& floor, const Trajectory& path, std::s
     for (int attempt = 0; attempt < kTries; ++attempt) {
       const double share = rng.uniform();
       const double side = rng.uniform() < 0.5 ? 1.0 : -1.0;
-      const std::optional<PlacedThing> parked = beside(floor, along.at(share).T_world_body, side, thing);
+      const Pose T_world_base = along.at(share).T_world_body;
+      if (pass_by(furnished, T_world_base.translation())) break;
+      const std::optional<PlacedThing> parked = beside(floor, T_world_base, side, thing);
       if (!parked ||
           !std::ranges::all_of(others, [&](const Trajectory& other) { return leaves_room(*parked, other); }))
         continue;
@@ -44,7 +57,7 @@ Fields fields_of(VisitConfig& c) {
   return {
       {"vehicles_per_km", &c.vehicles_per_km, "1/km", 0, 1000, "vehicles parked along each robot's path"},
       {"pallets_per_km", &c.pallets_per_km, "1/km", 0, 1000, "pallets beside each robot's path"},
-      {"changed", &c.changed, "", 0, 1, "share of them that only one robot meets"},
+      {"changed", &c.changed, "", 0, 1, "share of what a robot meets of them that no other meets"},
       {"people", &c.people, "", 0, 20, "people who walk with each robot"},
       {"dust", &c.dust, "", 0, 0.5, "share of rays that end in dust near the sensor"},
       {"doors", &c.doors, "", 0, 1, "share of openings beside a path that are closed for one robot alone"},
@@ -64,21 +77,24 @@ std::vector<TriangleMesh> parked_things(const Raycaster& floor, std::span<const 
   constexpr std::uint64_t kDoors = 3;
   constexpr std::uint64_t kEnds = 4;
   constexpr std::uint64_t kPipes = 5;
-  const auto along = [&](std::size_t robot, std::span<const Trajectory> others, double share,
-                         std::uint64_t stream) {
+  const auto along = [&](std::size_t robot, std::span<const Trajectory> others,
+                         std::span<const Trajectory> furnished, double share, std::uint64_t stream) {
     Rng rng(mix64(mix64(seed, stream), robot));
-    TriangleMesh mesh =
-        parked_along(floor, truths[robot], others, kVehicle, share * config.vehicles_per_km, rng);
-    append(mesh, parked_along(floor, truths[robot], others, kPallet, share * config.pallets_per_km, rng));
+    const auto parked = [&](const Thing& thing, double per_km) {
+      return parked_along(floor, truths[robot], others, furnished, thing, share * per_km, rng);
+    };
+    TriangleMesh mesh = parked(kVehicle, config.vehicles_per_km);
+    append(mesh, parked(kPallet, config.pallets_per_km));
     return mesh;
   };
   TriangleMesh lasting;
+  // What lasts stands there once, however many paths pass by.
   for (std::size_t robot = 0; robot < truths.size(); ++robot)
-    append(lasting, along(robot, truths, 1.0 - config.changed, kLasting));
+    append(lasting, along(robot, truths, truths.first(robot), 1.0 - config.changed, kLasting));
   append(lasting, wall_lines(floor, truths, config.pipes, mix64(seed, kPipes)));
   std::vector<TriangleMesh> met(truths.size(), lasting);
   for (std::size_t robot = 0; robot < truths.size(); ++robot)
-    append(met[robot], along(robot, truths.subspan(robot, 1), config.changed, kPassingBy));
+    append(met[robot], along(robot, truths.subspan(robot, 1), {}, config.changed, kPassingBy));
   for (std::size_t robot = 0; robot < truths.size(); ++robot) {
     append(met[robot], closed_doors(floor, truths[robot], config.doors, mix64(mix64(seed, kDoors), robot)));
     if (Rng(mix64(mix64(seed, kEnds), robot)).uniform() < config.blocked_ends)
