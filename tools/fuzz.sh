@@ -29,7 +29,7 @@ for kind in "${kinds[@]}"; do
       -max_len=65536 -timeout=10 -rss_limit_mb=4096 -malloc_limit_mb=1100 -artifact_prefix="$faults/$kind-" -print_final_stats=1 \
       >"$log" 2>&1; } 2>&1); then
     echo "fuzz: $kind: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") inputs in $(awk '{ printf "%.0f", $1 + $2 }' <<<"$used") s of processor time," \
-      "$(sed -n 's/.* DONE  *cov: \([0-9]*\) .*/\1/p' "$log") edges reached; none failed"
+      "$(sed -n 's/.*DONE *cov: \([0-9]*\) .*/\1/p' "$log") edges reached; none failed"
   else
     failed+=("$kind")
     echo "fuzz: $kind: failed; see $log" >&2

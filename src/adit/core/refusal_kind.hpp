@@ -13,7 +13,7 @@ enum class RefusalKind : std::uint8_t {
   no_loop,           ///< Nothing was registered: nobody knows whether the robots shared anything.
   too_little,        ///< What was found agrees, but is no proof.
   rival,             ///< Two places explain the loops alike.
-  other_tunnel,      ///< Scans or walls differ as those of two tunnels do.
+  other_tunnel,      ///< Scans differ as those of two tunnels do.
   changed_place,     ///< Scans differ at some places; those around them speak for the same stretch.
   changed_or_other,  ///< Scans differ at so many places that changes and another tunnel cannot be told apart.
   sensor,            ///< All places agree; walls lie apart, mostly by what errors of range would make.
