@@ -37,6 +37,19 @@ MergeAccuracy accuracy_of(const LoopClosure& middle, const Matrix6& covariance, 
           num_loops, middle.from, middle.to, covariance};
 }
 
+// "0.034 m". Scans that are nearly the same (a part of a drive that is in the map) leave no residuals, and
+// with them no noise; calibration, and the planes of a map whose points are some 0.2 m apart, are no better
+// known than this.
+std::string no_better_than_a_centimetre(double metres) {
+  constexpr double kLeast = 0.01;
+  return metres < kLeast ? format("under {:.2f} m", kLeast) : format("{:.3f} m", metres);
+}
+
+std::string no_better_than_a_hundredth(double degrees) {
+  constexpr double kLeast = 0.01;
+  return degrees < kLeast ? format("under {:.2f} deg", kLeast) : format("{:.2f} deg", degrees);
+}
+
 }  // namespace
 
 void measure_merges(FleetSolution& solution) {
@@ -54,8 +67,10 @@ void measure_merges(FleetSolution& solution) {
 }
 
 std::string to_string(const MergeAccuracy& accuracy) {
-  std::string text = format("known to {:.3f} m along, {:.3f} m across and {:.3f} m up, {:.2f} deg",
-                            accuracy.along_m, accuracy.across_m, accuracy.up_m, accuracy.turn_deg);
+  std::string text =
+      format("known to {} along, {} across and {} up, {}", no_better_than_a_centimetre(accuracy.along_m),
+             no_better_than_a_centimetre(accuracy.across_m), no_better_than_a_centimetre(accuracy.up_m),
+             no_better_than_a_hundredth(accuracy.turn_deg));
   if (accuracy.num_loops == 1) text += "; one loop alone holds it: let both robots pass another common place";
   return text;
 }

@@ -14,8 +14,8 @@ namespace adit {
 /// without.
 void measure_merges(FleetSolution& solution);
 
-/// "known to 0.03 m along, 0.01 m across and 0.02 m up, 0.05 deg", and what to do where one loop alone holds
-/// it.
+/// "known to 0.034 m along, under 0.01 m across and 0.021 m up, 0.05 deg", and what to do where one loop
+/// alone holds it. Nothing is stated to be better than a centimetre and a hundredth of a degree.
 [[nodiscard]] std::string to_string(const MergeAccuracy& accuracy);
 
 }  // namespace adit

@@ -47,6 +47,12 @@ TEST(MergeAccuracy, WhatSlidesIsUncertainAlongTheTunnelAlone) {
   EXPECT_NEAR(accuracy.across_m, 0.1, 1e-3);
 }
 
+TEST(MergeAccuracy, NothingIsStatedToBeBetterThanACentimetre) {
+  const MergeAccuracy same{2e-4, 4e-5, 0.0123, 0.001, 3, {}, {}, Matrix6::Zero()};
+  EXPECT_EQ(to_string(same),
+            "known to under 0.01 m along, under 0.01 m across and 0.012 m up, under 0.01 deg");
+}
+
 TEST(MergeAccuracy, RobotsThatDidNotMergeHaveNone) {
   FleetSolution solution = solve(test::robots_without_loops(2, MergePolicy::paper), {});
   measure_merges(solution);
