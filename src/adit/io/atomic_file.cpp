@@ -49,8 +49,7 @@ Result<> check_parent(const fs::path& path) {
 bool is_own_output(const fs::path& directory, const std::string& kind) {
   std::error_code ignored;
   return fs::exists(directory / (".adit-" + kind), ignored) ||
-         (kind == "session" && fs::exists(directory / "session.toml", ignored)) ||
-         (kind == "study" && fs::exists(directory / "metrics.json", ignored));
+         (kind == "session" && fs::exists(directory / "session.toml", ignored));
 }
 
 Result<> check_replaceable(const fs::path& path, const std::string& kind) {
@@ -65,15 +64,27 @@ Result<> check_replaceable(const fs::path& path, const std::string& kind) {
              path.string(), kind));
 }
 
-/// Puts `partial` in the place of `target`. Returns where the folder that stood there lies now.
+/// A name beside `path` that nothing has.
+fs::path free_name_for_old(const fs::path& path) {
+  fs::path name = path.string() + ".old";
+  std::error_code ignored;
+  for (int n = 2; fs::exists(fs::symlink_status(name, ignored)); ++n)
+    name = path.string() + format(".old-{}", n);
+  return name;
+}
+
+/// Puts `partial` in the place of `target`. Returns where what stood there lies now: under a name that no
+/// later run takes for its own, so that nothing of the user's is lost if this one ends here.
 Result<fs::path> swap_in(const fs::path& partial, const fs::path& target) {
+  const fs::path old = free_name_for_old(target);
   std::error_code error;
-  fs::path old = partial;
   if (!fs::exists(target, error)) {
     fs::rename(partial, target, error);
-  } else if (renameat2(AT_FDCWD, partial.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) != 0) {
+  } else if (renameat2(AT_FDCWD, partial.c_str(), AT_FDCWD, target.c_str(), RENAME_EXCHANGE) == 0) {
+    fs::rename(partial, old, error);
+    return error ? partial : old;
+  } else {
     // A file system that cannot exchange two names: for a moment the target has none.
-    old += "-old";
     fs::rename(target, old, error);
     if (!error) fs::rename(partial, target, error);
     std::error_code ignored;
@@ -83,39 +94,78 @@ Result<fs::path> swap_in(const fs::path& partial, const fs::path& target) {
   return old;
 }
 
-/// The names of what a folder holds, one a line, in order: what is there beside them later is the user's.
-std::string names_in(const fs::path& folder) {
-  std::set<std::string> names;
-  std::error_code ignored;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
-    names.insert(entry.path().filename().string());
-  std::string text;
-  for (const std::string& name : names) text += name + '\n';
-  return text;
+using Paths = std::set<std::string>;
+
+/// All files below a folder, and folders that hold nothing, by their paths in it.
+Result<Paths> paths_in(const fs::path& folder) {
+  Paths paths;
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    std::error_code ignored;
+    const bool is_folder = fs::is_directory(entry->symlink_status(ignored));
+    if (is_folder && !fs::is_empty(entry->path(), ignored)) continue;
+    paths.insert(entry->path().lexically_relative(folder).generic_string());
+  }
+  if (error) return fail(format("{}: cannot be listed: {}", folder.string(), error.message()));
+  return paths;
 }
 
-/// Moves what the user put into `old` to `target`. Folders of earlier versions, which do not list what was
-/// written, hold nothing of the user's.
-Result<> keep_users_files(const fs::path& old, const fs::path& target, const std::string& marker) {
-  const std::set<std::string> written_later = {"georeference.toml"};
-  const Result<std::string> text = read_bytes(old / marker);
-  std::error_code ignored;
+/// What is there beside these later is the user's.
+Result<> list_contents(const fs::path& folder, const fs::path& marker) {
+  const Result<Paths> paths = paths_in(folder);
+  if (!paths) return tl::unexpected(paths.error());
+  std::string text;
+  for (const std::string& path : *paths) text += path + '\n';
+  return write_bytes(marker, text);
+}
+
+/// Empty where nothing was listed.
+Paths listed_in(const fs::path& marker) {
+  const Result<std::string> text = read_bytes(marker);
   if (!text || text->empty()) return {};
   const std::vector<std::string> lines = lines_of(*text);
-  const std::set<std::string> written(lines.begin(), lines.end());
-  std::vector<fs::path> entries;
-  for (const fs::directory_entry& entry : fs::directory_iterator(old, ignored))
-    entries.push_back(entry.path());
-  for (const fs::path& entry : entries) {
-    const std::string name = entry.filename().string();
-    const bool is_users = !written.contains(name) && !written_later.contains(name);
-    if (!is_users || fs::exists(target / name, ignored)) continue;
-    std::error_code error;
-    fs::rename(entry, target / name, error);
-    if (error)
-      return fail(format("{}: is written; '{}', which you had put there, is left in {}: {}", target.string(),
-                         name, old.string(), error.message()));
+  return {lines.begin(), lines.end()};
+}
+
+/// Whether the list does not say who wrote this: earlier versions kept none, or one of top-level names alone.
+bool is_of_unknown_author(const std::string& path, const Paths& listed) {
+  if (listed.empty()) return true;
+  const std::size_t end = path.find('/');
+  return end != std::string::npos && !listed.contains(path) && listed.contains(path.substr(0, end));
+}
+
+/// Replaces nothing. A folder that holds nothing is kept by one of that name.
+bool move_to(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  const fs::file_status there = fs::symlink_status(to, error);
+  if (fs::exists(there)) return fs::is_directory(there) && fs::is_directory(fs::symlink_status(from, error));
+  fs::create_directories(to.parent_path(), error);
+  if (!error) fs::rename(from, to, error);
+  return !error;
+}
+
+/// Moves what the user put into `old` to where it was, now in `target`, and removes `old`: unless that would
+/// delete what was not moved and may be the user's.
+Result<> keep_users_files(const fs::path& old, const fs::path& target, const Paths& listed) {
+  const std::string written_later = "georeference.toml";
+  const Result<Paths> paths = paths_in(old);
+  if (!paths) return {};  // there was nothing, or it cannot be told what there is
+  bool are_all_known = true;
+  std::vector<std::string> left;
+  for (const std::string& path : *paths) {
+    if (is_of_unknown_author(path, listed))
+      are_all_known = false;
+    else if (!listed.contains(path) && path != written_later && !move_to(old / path, target / path))
+      left.push_back(path);
   }
+  if (!left.empty())
+    return fail(format(
+        "{}: is written; {} of the files that you had put there could not stay beside its own and lie in {} "
+        "now, the first: {}; move them to another place",
+        target.string(), left.size(), old.string(), left.front()));
+  std::error_code ignored;
+  if (are_all_known) fs::remove_all(old, ignored);
   return {};
 }
 
@@ -216,19 +266,16 @@ OutputDir::~OutputDir() {
 }
 
 Result<> OutputDir::commit() {
-  if (Result<> listed = write_bytes(partial_ / marker_, names_in(partial_)); !listed) return listed;
+  if (Result<> listed = list_contents(partial_, partial_ / marker_); !listed) return listed;
   if (Result<> synced = sync_tree_to_disk(partial_); !synced) return synced;
+  const Paths written_earlier = listed_in(target_ / marker_);
   const Result<fs::path> old = swap_in(partial_, target_);
   if (!old) return tl::unexpected(old.error());
   committed_ = true;
   partial_ = target_;
   Result<> synced = sync_to_disk(folder_of(target_));
   if (!synced) return synced;
-  // Not before the new name is on the disk.
-  if (Result<> kept = keep_users_files(*old, target_, marker_); !kept) return kept;
-  std::error_code ignored;
-  fs::remove_all(*old, ignored);
-  return {};
+  return keep_users_files(*old, target_, written_earlier);  // not before the new name is on the disk
 }
 
 }  // namespace adit

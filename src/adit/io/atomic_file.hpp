@@ -49,9 +49,9 @@ class AtomicFile {
 /// A directory of output. It is built in DIR.partial-PID and takes the place of DIR at `commit`.
 ///
 /// An existing DIR is only ever replaced when it is empty or is adit's own output of the same kind, which
-/// carries the file `.adit-KIND` (a directory with session.toml also counts as kind "session", one with
-/// metrics.json as "study"). That file lists what adit wrote. Anything else is refused by `create`, before
-/// any work is done: it may be the user's.
+/// carries the file `.adit-KIND` (a directory with session.toml also counts as kind "session"). That file
+/// lists what adit wrote. Anything else is refused by `create`, before any work is done: it may be the
+/// user's. Where an earlier version kept no full list, what was there stays as DIR.old.
 class OutputDir {
  public:
   /// Fails where the parent folder is missing, `path` is a file, or what is there may not be replaced.
@@ -64,7 +64,8 @@ class OutputDir {
   /// Where to write until `commit`; sub-folders are the caller's business.
   [[nodiscard]] const std::filesystem::path& path() const { return partial_; }
   /// Syncs all files to the disk and puts the directory in its place, with what the user had added to the one
-  /// that stood there. After it, `path()` is the final path.
+  /// that stood there. After it, `path()` is the final path. Fails, with the directory in place, where what
+  /// the user had added has the name of something that adit writes now: it is kept in DIR.old.
   Result<> commit();
 
  private:

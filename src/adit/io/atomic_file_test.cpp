@@ -76,10 +76,17 @@ class OnDisk : public ::testing::Test {
   [[nodiscard]] std::string folder_name() const { return folder_.path().filename().string(); }
   [[nodiscard]] std::filesystem::path at(const std::string& name) const { return folder_ / name; }
   [[nodiscard]] std::filesystem::path folder() const { return folder_.path(); }
-  /// The folder "out" with one file, "data".
-  [[nodiscard]] Result<> write(const std::string& kind, const std::string& bytes) const {
-    return OutputDir::create(at("out"), kind).and_then([&](OutputDir output) {
-      return write_bytes(output.path() / "data", bytes).and_then([&] { return output.commit(); });
+  /// A file of the user's.
+  void put(const std::string& name, const std::string& bytes) const {
+    std::filesystem::create_directories(at(name).parent_path());
+    put_file(at(name), bytes);
+  }
+  /// A folder with one file.
+  [[nodiscard]] Result<> write(const std::string& kind, const std::string& bytes,
+                               const std::string& name = "out", const std::string& file = "data") const {
+    return OutputDir::create(at(name), kind).and_then([&](OutputDir output) {
+      std::filesystem::create_directories((output.path() / file).parent_path());
+      return write_bytes(output.path() / file, bytes).and_then([&] { return output.commit(); });
     });
   }
 
@@ -155,6 +162,59 @@ TEST_F(OutputDirTest, KeepsWhatTheUserPutIntoIt) {
   }
   EXPECT_FALSE(std::filesystem::exists(at("out/georeference.toml")));
   EXPECT_EQ(num_entries(folder()), 1U);
+}
+
+TEST_F(OutputDirTest, AFileOfAnOrdinaryNameMakesNoOutput) {
+  put("out/metrics.json", "of the user's own experiment");
+  EXPECT_ERROR(write("study", "1"), "is left alone");
+  // Nor is a session a study, although it has a metrics.json, too.
+  ASSERT_TRUE(write("session", "1", "s"));
+  put("s/metrics.json", "of the session");
+  EXPECT_ERROR(write("study", "2", "s"), "is left alone");
+  EXPECT_EQ(get_file(at("s/data")), "1");
+}
+
+TEST_F(OutputDirTest, KeepsWhatTheUserPutIntoItsFolders) {
+  for (const bool cannot_exchange : {false, true}) {
+    disk.cannot_exchange = cannot_exchange;
+    ASSERT_TRUE(write("session", "1", "out", "robot/map"));
+    put("out/robot/notes.txt", "of the drive");
+    put("out/c/metadata.yaml", "of a recording");
+    std::filesystem::create_directories(at("out/later"));
+    ASSERT_TRUE(write("session", "2", "out", "c/map"));  // a robot called like the folder of its recording
+    EXPECT_EQ(get_file(at("out/c/map")), "2");
+    EXPECT_EQ(get_file(at("out/c/metadata.yaml")), "of a recording");
+    EXPECT_EQ(get_file(at("out/robot/notes.txt")), "of the drive");
+    EXPECT_TRUE(std::filesystem::is_directory(at("out/later")));
+    EXPECT_FALSE(std::filesystem::exists(at("out/robot/map")));
+    EXPECT_EQ(num_entries(folder()), 1U);
+    std::filesystem::remove_all(at("out"));
+  }
+}
+
+TEST_F(OutputDirTest, WhatHasTheNameOfSomethingNewIsLeftBesideAndSaid) {
+  ASSERT_TRUE(write("session", "1"));
+  put("out/c", "a recording");
+  EXPECT_ERROR(write("session", "2", "out", "c/map"), "out.old now, the first: c;");
+  EXPECT_EQ(get_file(at("out/c/map")), "2");
+  EXPECT_EQ(get_file(at("out.old/c")), "a recording");
+  put("out/d/map", "drawn by hand");
+  EXPECT_ERROR(write("session", "3", "out", "d/map"), "out.old-2 now, the first: d/map;");
+  EXPECT_EQ(get_file(at("out.old/c")), "a recording");
+  EXPECT_EQ(get_file(at("out.old-2/d/map")), "drawn by hand");
+}
+
+TEST_F(OutputDirTest, WhatEarlierVersionsDidNotListIsLeftBeside) {
+  put("none/session.toml", "");
+  put("none/c.mcap", "a recording");
+  ASSERT_TRUE(write("session", "2", "none"));
+  EXPECT_EQ(get_file(at("none.old/c.mcap")), "a recording");
+  put("names/.adit-session", ".adit-session\nrobot\n");
+  put("names/points.csv", "surveyed");
+  put("names/robot/notes.txt", "of the drive");
+  ASSERT_TRUE(write("session", "2", "names"));
+  EXPECT_EQ(get_file(at("names/points.csv")), "surveyed");
+  EXPECT_EQ(get_file(at("names.old/robot/notes.txt")), "of the drive");
 }
 
 TEST_F(OutputDirTest, RemovesWhatWasNotCommitted) {
