@@ -48,7 +48,7 @@ struct NavMap {
     EXPECT_EQ(pixels.size(), width * height);
     std::filesystem::path yaml = pgm;
     const std::string text = get_file(yaml.replace_extension(".yaml"));
-    EXPECT_NE(text.find("image: " + pgm.filename().string() + "\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("image: '" + pgm.filename().string() + "'\n"), std::string::npos) << text;
     EXPECT_NE(text.find("mode: trinary\n"), std::string::npos);
     EXPECT_EQ(std::sscanf(text.c_str() + text.find("resolution:"), "resolution: %lf origin: [%lf, %lf, 0]",
                           &resolution, &x, &y),

@@ -20,6 +20,13 @@ char pixel_of(CellState cell) {
   return static_cast<char>(205);
 }
 
+/// In single quotes, where nothing but the quote itself means anything.
+std::string yaml_text(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  return quoted + "'";
+}
+
 }  // namespace
 
 Result<> write_occupancy_map(const std::filesystem::path& path, const OccupancyGrid& grid) {
@@ -33,7 +40,7 @@ Result<> write_occupancy_map(const std::filesystem::path& path, const OccupancyG
       "image: {}\nmode: trinary\nresolution: {}\norigin: [{:.4f}, {:.4f}, 0]\nnegate: 0\noccupied_thresh: "
       "0.65\n"
       "free_thresh: 0.196\n",
-      path.filename().string(), grid.resolution_m, grid.origin.x(), grid.origin.y());
+      yaml_text(path.filename().string()), grid.resolution_m, grid.origin.x(), grid.origin.y());
   std::filesystem::path beside = path;
   return write_bytes(beside.replace_extension(".yaml"), yaml);
 }
