@@ -29,7 +29,9 @@ Result<> check_range(const Field& field, double value) {
 
 Result<> check_choice(const Field& field, std::string_view value) {
   if (field.choices.empty() || std::ranges::find(field.choices, value) != field.choices.end()) return {};
-  return fail(format("{} = '{}' is not one of {}", field.key, value, fmt::join(field.choices, ", ")));
+  std::vector<std::string> choices = field.choices;
+  std::ranges::replace(choices, "", "'' (nothing)");
+  return fail(format("{} = '{}' is not one of {}", field.key, value, fmt::join(choices, ", ")));
 }
 
 Result<> assign(const Field& field, std::string_view text, double* target) {

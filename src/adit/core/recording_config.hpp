@@ -94,14 +94,24 @@ struct RecordingConfig {
        "are called tf or tf_static"},
       {"truth", &c.truth, "", 0, 0,
        "topic of ground truth; empty: the only one whose name says that it is; none: without"},
-      {"point_times", &c.point_times, "", 0, 0,
-       "unit of the times of points, s, ms, us or ns; empty: the one that makes a sweep last 2 ms to 2 s"},
-      {"stamp_at", &c.stamp_at, "", 0, 0,
+      {"point_times",
+       &c.point_times,
+       "",
+       0,
+       0,
+       "unit of the times of points, s, ms, us or ns; empty: the one that makes a sweep last 2 ms to 2 s",
+       {"s", "ms", "us", "ns", ""}},
+      {"stamp_at",
+       &c.stamp_at,
+       "",
+       0,
+       0,
        "start: a sweep's stamp is of its start, or of the moment at which its points' times are 0; end: of "
        "its "
        "end, while the times count from its start; auto: end where messages were recorded before such a "
        "sweep "
-       "could have ended, else start"},
+       "could have ended, else start",
+       {"auto", "start", "end"}},
       {"topics_under", &c.topics_under, "", 0, 0,
        "the robot's topics begin with this and a slash, as '/husky1'; empty: all topics are the robot's"},
       {"namespaces", &c.namespaces, "", 0, 0,

@@ -83,7 +83,8 @@ class TopicIndex {
 ///  - FILE.db3, the sqlite storage of rosbag2;
 ///  - FILE.bag, of ROS 1: chunks plain, bz2 or lz4, with or without index (ros1_bag.hpp);
 ///  - FOLDER: a bag folder of rosbag2, its files in the order of metadata.yaml, or by name where there is
-///    none, or one that says nothing. Files that were compressed as a whole (.db3.zstd) are an error with
+///    none, or one that says nothing; where there is none, a warning says so of files that are more than a
+///    minute apart, or overlap. Files that were compressed as a whole (.db3.zstd) are an error with
 ///    the remedy; one that is missing or cannot be read is left out with a warning, as long as another one
 ///    can be.
 /// Messages that were compressed one by one (zstd, compression mode MESSAGE of rosbag2) are expanded.
@@ -93,6 +94,9 @@ class TopicIndex {
 
 /// Whether the name is that of a file of a bag.
 [[nodiscard]] bool is_bag_file(const std::filesystem::path& path);
+
+/// Fails, with the remedy, on a file that was compressed as a whole (.db3.zstd).
+[[nodiscard]] Result<> check_not_packed(const std::filesystem::path& path);
 
 /// Whether `folder` is a bag folder: it has the metadata.yaml of rosbag2, or no files of clouds but of bags.
 [[nodiscard]] bool is_bag_folder(const std::filesystem::path& folder);

@@ -3,7 +3,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -39,16 +41,20 @@ std::vector<fs::path> files_in(const fs::path& folder, bool (*wanted)(const fs::
   return files;
 }
 
+bool is_packed(const fs::path& path) { return extension_of(path) == ".zstd" || extension_of(path) == ".zst"; }
+
+std::string unpack_remedy(const std::string& name, const fs::path& path) {
+  return format("'{}' is compressed as a whole, which cannot be read in parts; unpack it: zstd -d {}", name,
+                shell_quoted(path.string()));
+}
+
 /// Where the file that metadata.yaml names lies, if it is there. Bags of early versions name it with the
 /// bag's own folder.
 Result<fs::path> file_named(const fs::path& folder, const std::string& name) {
   fs::path path = folder / name;
   if (!fs::exists(path)) path = folder / fs::path(name).filename();
-  const bool is_packed = extension_of(path) == ".zstd" || extension_of(path) == ".zst";
-  if (is_packed && fs::exists(fs::path(path).replace_extension())) return path.replace_extension();
-  if (is_packed)
-    return fail(format("'{}' is compressed as a whole, which cannot be read in parts; unpack it: zstd -d {}",
-                       name, path.string()));
+  if (is_packed(path) && fs::exists(fs::path(path).replace_extension())) return path.replace_extension();
+  if (is_packed(path)) return fail(unpack_remedy(name, path));
   return path;
 }
 
@@ -57,9 +63,10 @@ struct FolderFiles {
   std::vector<fs::path> files;
   std::vector<Error> faults;  ///< One for each file that is not there.
   std::vector<std::string> warnings;
+  bool are_by_name = false;  ///< Nothing says that they are of one recording.
 };
 
-FolderFiles files_by_name(const fs::path& folder) { return {files_in(folder, is_bag_file), {}, {}}; }
+FolderFiles files_by_name(const fs::path& folder) { return {files_in(folder, is_bag_file), {}, {}, true}; }
 
 /// A recorder whose power was cut leaves an empty metadata.yaml, or one of zeros, beside files that are
 /// whole.
@@ -75,6 +82,7 @@ Result<FolderFiles> files_of_metadata(const fs::path& folder) {
   try {
     if (says_nothing(file)) {
       FolderFiles found = files_by_name(folder);
+      found.are_by_name = false;
       found.warnings.push_back(
           format("{}: has no {}, as after an interrupted recording; the files of the folder are read by "
                  "their names, and 'ros2 bag reindex' writes it anew",
@@ -123,18 +131,52 @@ Bag naming(const fs::path& file, Bag bag) {
   return bag;
 }
 
+/// Files that lie together by chance would be mapped as one drive: those of a split recording follow one
+/// another within moments.
+std::optional<std::string> warning_of_strangers(const std::vector<fs::path>& files,
+                                                const std::vector<Bag>& parts) {
+  constexpr double kApart = 60.0;    // seconds between the end of one file and the start of the next
+  constexpr double kTogether = 5.0;  // seconds that both cover; at a cut some messages come late
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (!parts[i].messages.empty()) order.push_back(i);
+  std::ranges::sort(order, {}, [&](std::size_t i) { return parts[i].messages.front().log_time; });
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const Stamp end = parts[order[k - 1]].messages.back().log_time;
+    const Stamp start = parts[order[k]].messages.front().log_time;
+    const double gap = to_seconds(start - end);
+    if (gap < kApart && gap > -kTogether) continue;
+    const std::string a = files[order[k - 1]].string();
+    const std::string b = files[order[k]].string();
+    return format(
+        "{} and {} are read as one recording, as they lie in one folder without a metadata.yaml; {} {}. "
+        "Where "
+        "they are drives or robots of their own, give each file with a name: adit slam a={} b={} --out "
+        "SESSION",
+        a, b, gap > 0 ? "between them are" : "both cover the same",
+        gap < 7200.0 ? format("{:.0f} s", std::abs(gap)) : format("{:.1f} h", gap / 3600.0), shell_quoted(a),
+        shell_quoted(b));
+  }
+  return std::nullopt;
+}
+
 /// A file that cannot be read or found, as one that was opened when power was cut, costs what it holds alone.
 Result<Bag> open_files(FolderFiles folder) {
   const std::size_t num_files = folder.files.size() + folder.faults.size();
   std::vector<Bag> parts;
+  std::vector<fs::path> names;  // of the parts
   for (const fs::path& file : folder.files) {
     Result<Bag> part = open_file(file);
-    if (part)
-      parts.push_back(num_files > 1 ? naming(file, std::move(*part)) : std::move(*part));
-    else
+    if (!part) {
       folder.faults.push_back(part.error());
+      continue;
+    }
+    parts.push_back(num_files > 1 ? naming(file, std::move(*part)) : std::move(*part));
+    names.push_back(file);
   }
   if (parts.empty()) return tl::unexpected(folder.faults.front());
+  if (folder.are_by_name)
+    if (auto warning = warning_of_strangers(names, parts)) folder.warnings.push_back(std::move(*warning));
   Bag all = joined(std::move(parts));
   std::ranges::move(folder.warnings, std::back_inserter(all.warnings));
   for (const Error& fault : folder.faults)
@@ -158,6 +200,12 @@ Bag expanding(Bag bag) {
 bool is_bag_file(const fs::path& path) {
   const std::string extension = extension_of(path);
   return extension == ".mcap" || extension == ".db3" || extension == ".bag";
+}
+
+Result<> check_not_packed(const fs::path& path) {
+  std::error_code ignored;
+  if (!is_packed(path) || !fs::exists(path, ignored)) return {};
+  return fail(unpack_remedy(path.string(), path));
 }
 
 bool is_bag_folder(const fs::path& folder) {

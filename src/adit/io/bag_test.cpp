@@ -145,6 +145,26 @@ TEST(Bag, AFileThatCannotBeReadCostsItselfAlone) {
   }
 }
 
+TEST(Bag, FilesThatLieTogetherByChanceAreToldOf) {
+  const Bag bag = a_bag();
+  const auto warnings_at = [&](Duration later, bool has_metadata) {
+    const test::TemporaryFolder folder;
+    std::vector<BagMessage> messages = bag.messages;
+    write_db3(folder / "monday.db3", bag, messages);
+    for (BagMessage& message : messages) message.log_time = message.log_time + later;
+    write_db3(folder / "tuesday.db3", bag, messages);
+    if (has_metadata)
+      test::put_file(folder / "metadata.yaml", metadata_naming({"monday.db3", "tuesday.db3"}));
+    return open_bag(folder.path()).value().warnings;
+  };
+  const std::vector<std::string> apart = warnings_at(std::chrono::hours(14), false);
+  ASSERT_EQ(apart.size(), 1U);
+  EXPECT_NE(apart[0].find("between them are 14.0 h"), std::string::npos) << apart[0];
+  EXPECT_NE(apart[0].find("adit slam a="), std::string::npos) << apart[0];
+  EXPECT_TRUE(warnings_at(std::chrono::hours(14), true).empty()) << "the recorder says that they are one";
+  EXPECT_TRUE(warnings_at(std::chrono::seconds(1), false).empty()) << "as of a split bag of ROS 1";
+}
+
 TEST(Bag, WhatAFolderLacksIsNamed) {
   const test::TemporaryFolder folder;
   const fs::path metadata = folder / "metadata.yaml";
@@ -152,6 +172,8 @@ TEST(Bag, WhatAFolderLacksIsNamed) {
   EXPECT_ERROR(open_bag(folder.path()), "metadata.yaml: names 'a_0.db3', which is not there");
   test::put_file(metadata, metadata_naming({"a_0.db3.zstd"}));
   EXPECT_ERROR(open_bag(folder.path()), "unpack it: zstd -d");
+  test::put_file(folder / "b.db3.zstd", "packed");
+  EXPECT_ERROR(open_recording((folder / "b.db3.zstd").string()), "unpack it: zstd -d");
   const Bag bag = a_bag();
   write_db3(folder / "a_0.db3", bag, bag.messages);
   expect_same(open_bag(folder.path()), bag);  // unpacked since

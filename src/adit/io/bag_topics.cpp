@@ -111,20 +111,23 @@ std::string choices(const Bag& bag, const TopicIndices& topics, const TopicChoic
   return format("{}", fmt::join(texts, " or "));
 }
 
-/// Leaves the topic asked for, or the only one, if there is any.
-Result<> choose_one(const Bag& bag, TopicIndices& topics, const TopicChoice& choice) {
+/// Leaves the topic asked for, where there is one asked for.
+Result<> keep_named(const Bag& bag, TopicIndices& topics, const TopicChoice& choice) {
+  if (choice.topic.empty()) return {};
   TopicIndices known = topics;
   std::ranges::copy(choice.further, std::back_inserter(known));
+  std::erase_if(topics, [&](std::size_t topic) {
+    return bag.topics[topic].name != whole_name(choice.topic, choice.under);
+  });
+  if (!topics.empty()) return {};
   const std::string all = names_of(bag, known);
-  if (!choice.topic.empty())
-    std::erase_if(topics, [&](std::size_t topic) {
-      return bag.topics[topic].name != whole_name(choice.topic, choice.under);
-    });
-  if (topics.empty() && !choice.topic.empty()) {
-    return fail(format("no topic of {} '{}'; there {}", choice.type, choice.topic,
-                       all.empty() ? "is none" : "are: " + all));
-  }
-  if (topics.size() < 2) return {};
+  return fail(format("no topic of {} '{}'; there {}", choice.type, choice.topic,
+                     all.empty() ? "is none" : "are: " + all));
+}
+
+/// Leaves the topic asked for, or the only one, if there is any.
+Result<> choose_one(const Bag& bag, TopicIndices& topics, const TopicChoice& choice) {
+  if (Result<> kept = keep_named(bag, topics, choice); !kept || topics.size() < 2) return kept;
   return fail(format("several topics of {}; give one of them, the likeliest first: {}{}", choice.type,
                      choices(bag, topics, choice), choice.otherwise));
 }
@@ -176,14 +179,59 @@ Result<> take_transforms(const Bag& bag, BagTopics& topics, const RecordingConfi
   return {};
 }
 
-/// Where several topics of clouds may be of several robots: how to take them.
+/// Where several topics of clouds may be of several robots: how to take them. Where a robot itself has
+/// several, --points has to say which, or the remedy would fail in turn.
 std::string for_fleets(const Bag& bag, const RecordingConfig& config) {
   const std::vector<std::string> robots = namespaces_of(bag);
   if (!config.topics_under.empty() || robots.size() < 2) return "";
+  const RecordingConfig likeliest = with_likeliest_topics(bag, config);
+  const auto has_several = [&](const std::string& robot) {
+    return find_topics(bag, robot).points.size() > 1;
+  };
+  const std::string robot = likeliest.topics_under.empty() ? robots.front() : likeliest.topics_under;
+  std::string points;
+  if (std::ranges::any_of(robots, has_several)) {
+    const TopicIndices own = likeliest_first(bag, find_topics(bag, robot).points);
+    points = " --points " + name_to_type(bag, own.front(), robot);
+  }
   return format(
-      "; if each namespace is another robot, adit slam --namespaces takes them all, and --set "
-      "recording.topics_under={} that one",
-      robots.front());
+      "; if each namespace is another robot, adit slam --namespaces{0} takes them all, and --set "
+      "recording.topics_under={1}{0} that one",
+      points, robot);
+}
+
+/// The kinds of which at most one topic is taken, with their choices.
+std::vector<std::pair<TopicIndices BagTopics::*, TopicChoice>> choices_in(const Bag& bag,
+                                                                          const BagTopics& topics,
+                                                                          const RecordingConfig& config) {
+  const std::string& under = config.topics_under;
+  std::vector<std::pair<TopicIndices BagTopics::*, TopicChoice>> all;
+  all.push_back(
+      {&BagTopics::points, {"clouds", "--points", config.points, under, {}, for_fleets(bag, config)}});
+  all.push_back({&BagTopics::imu, {"IMUs", "--imu", config.imu == kNoImu ? "" : config.imu, under}});
+  if (config.wheel != kNoWheel) {
+    TopicIndices further = topics.twists;
+    std::ranges::copy(topics.joints, std::back_inserter(further));
+    all.push_back({&BagTopics::wheel, {"wheel odometry", "--wheel", config.wheel, under, further}});
+  }
+  all.push_back(
+      {&BagTopics::truth, {"ground truth", "--truth", config.truth == kNoTruth ? "" : config.truth, under}});
+  return all;
+}
+
+/// What may be chosen among.
+Result<BagTopics> candidates(const Bag& bag, const RecordingConfig& config) {
+  BagTopics topics = find_topics(bag, config.topics_under);
+  if (config.imu == kNoImu) topics.imu.clear();
+  take_truth(bag, topics, config);
+  take_wheels(bag, topics, config);
+  return take_transforms(bag, topics, config).map([&] { return std::move(topics); });
+}
+
+/// "/husky1/" is "/husky1".
+RecordingConfig without_last_slash(RecordingConfig config) {
+  while (config.topics_under.ends_with('/')) config.topics_under.pop_back();
+  return config;
 }
 
 }  // namespace
@@ -195,41 +243,30 @@ std::string names_of(const Bag& bag, const TopicIndices& topics) {
 }
 
 Result<BagTopics> choose_topics(const Bag& bag, const RecordingConfig& given) {
-  RecordingConfig config = given;
-  while (config.topics_under.ends_with('/')) config.topics_under.pop_back();
-  BagTopics topics = find_topics(bag, config.topics_under);
-  if (topics.points.empty())
+  const RecordingConfig config = without_last_slash(given);
+  if (find_topics(bag, config.topics_under).points.empty())
     return fail(format(
         "no topic of sensor_msgs/msg/PointCloud2 or of Livox's CustomMsg{}; there are no scans to read",
         config.topics_under.empty() ? "" : " under " + config.topics_under));
-  if (config.imu == kNoImu) topics.imu.clear();
-  take_truth(bag, topics, config);
-  take_wheels(bag, topics, config);
-  if (Result<> taken = take_transforms(bag, topics, config); !taken) return tl::unexpected(taken.error());
-  const std::string imu = config.imu == kNoImu ? "" : config.imu;
-  const bool has_wheels = config.wheel != kNoWheel;
-  return choose_one(bag, topics.points,
-                    {"clouds", "--points", config.points, config.topics_under, {}, for_fleets(bag, config)})
-      .and_then([&] {
-        return choose_one(bag, topics.imu, {"IMUs", "--imu", imu, config.topics_under});
-      })
-      .and_then([&]() -> Result<> {
-        if (!has_wheels) return {};
-        TopicIndices further = topics.twists;
-        std::ranges::copy(topics.joints, std::back_inserter(further));
-        return choose_one(bag, topics.wheel,
-                          {"wheel odometry", "--wheel", config.wheel, config.topics_under, further});
-      })
-      .and_then([&] {
-        return choose_one(
-            bag, topics.truth,
-            {"ground truth", "--truth", config.truth == kNoTruth ? "" : config.truth, config.topics_under});
-      })
-      .map([&] { return std::move(topics); });
+  Result<BagTopics> topics = candidates(bag, config);
+  if (!topics) return topics;
+  for (const auto& [kind, choice] : choices_in(bag, *topics, config))
+    if (Result<> chosen = choose_one(bag, *topics.*kind, choice); !chosen)
+      return tl::unexpected(chosen.error());
+  return topics;
+}
+
+Result<> check_named_topics(const Bag& bag, const RecordingConfig& given) {
+  const RecordingConfig config = without_last_slash(given);
+  Result<BagTopics> topics = candidates(bag, config);
+  if (!topics) return tl::unexpected(topics.error());
+  for (const auto& [kind, choice] : choices_in(bag, *topics, config))
+    if (Result<> there = keep_named(bag, *topics.*kind, choice); !there) return there;
+  return {};
 }
 
 RecordingConfig with_likeliest_topics(const Bag& bag, RecordingConfig config) {
-  while (config.topics_under.ends_with('/')) config.topics_under.pop_back();
+  config = without_last_slash(std::move(config));
   BagTopics topics = find_topics(bag, config.topics_under);
   if (config.topics_under.empty() && config.points.empty() && topics.points.size() > 1) {
     const std::string likeliest = bag.topics[likeliest_first(bag, topics.points).front()].name;

@@ -37,6 +37,10 @@ struct BagTopics {
 /// there are no clouds or not the topic asked for.
 [[nodiscard]] Result<BagTopics> choose_topics(const Bag& bag, const RecordingConfig& config);
 
+/// Fails as `choose_topics` does where a topic that `config` names is not there, or is of another kind: what
+/// was typed is wrong then, whatever else the bag lacks.
+[[nodiscard]] Result<> check_named_topics(const Bag& bag, const RecordingConfig& config);
+
 /// `config` with the likeliest topic wherever `choose_topics` would fail because several fit; of one
 /// robot, where namespaces with clouds have wheels, too.
 [[nodiscard]] RecordingConfig with_likeliest_topics(const Bag& bag, RecordingConfig config);

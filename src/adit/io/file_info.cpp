@@ -14,16 +14,16 @@
 #include "adit/io/bag_topics.hpp"
 #include "adit/io/cloud_files.hpp"
 #include "adit/io/g2o.hpp"
-#include "adit/io/joint_odometry.hpp"
 #include "adit/io/jrl.hpp"
 #include "adit/io/mesh_files.hpp"
 #include "adit/io/mount.hpp"
+#include "adit/io/packed_cloud.hpp"
 #include "adit/io/recording_files.hpp"
 #include "adit/io/robot_map_file.hpp"
-#include "adit/io/ros_messages.hpp"
 #include "adit/io/routes_yaml.hpp"
 #include "adit/io/session_dir.hpp"
 #include "adit/io/text.hpp"
+#include "adit/io/topic_info.hpp"
 #include "adit/io/tum.hpp"
 #include "adit/robot/sensor_checks.hpp"
 
@@ -139,38 +139,24 @@ Result<Json> routes_info(const fs::path& path) {
   });
 }
 
-// Any two stamps, whose difference may not fit 64 bits.
-double seconds_between(Stamp earlier, Stamp later) {
-  return static_cast<double>((static_cast<long double>(later.ns) - static_cast<long double>(earlier.ns)) /
-                             1e9L);
-}
-
-/// The rate is that of the median interval, which gaps do not change.
-struct Rhythm {
-  double rate_hz = 0.0;
-  double longest_gap_s = 0.0;
-};
-Rhythm rhythm_of(std::vector<double> intervals) {
-  if (intervals.empty()) return {};
-  const auto middle = intervals.begin() + std::ssize(intervals) / 2;
-  std::ranges::nth_element(intervals, middle);
-  return {*middle > 0.0 ? 1.0 / *middle : 0.0, *std::ranges::max_element(intervals)};
+/// `rate_hz`, where there is one, and `longest_gap_s`.
+void add_rhythm(Json& info, const Rhythm& rhythm) {
+  if (rhythm.rate_hz) info["rate_hz"] = *rhythm.rate_hz;
+  info["longest_gap_s"] = rhythm.longest_gap_s;
 }
 
 Json imu_json(const Recording& recording) {
   const std::vector<ImuSample>& imu = recording.imu;
-  std::vector<double> intervals;
-  for (std::size_t i = 1; i < imu.size(); ++i)
-    intervals.push_back(seconds_between(imu[i - 1].stamp, imu[i].stamp));
-  const Rhythm rhythm = rhythm_of(std::move(intervals));
-  return {{"name", recording.imu_name},
-          {"mount", mount_text(recording.T_base_imu)},
-          {"mount_from", recording.imu_mount_source},
-          {"samples", imu.size()},
-          {"rate_hz", rhythm.rate_hz},
-          {"longest_gap_s", rhythm.longest_gap_s},
-          {"first_stamp_s", stamp_text(imu.front().stamp)},
-          {"last_stamp_s", stamp_text(imu.back().stamp)}};
+  std::vector<Stamp> stamps;
+  for (const ImuSample& sample : imu) stamps.push_back(sample.stamp);
+  Json info{{"name", recording.imu_name},
+            {"mount", mount_text(recording.T_base_imu)},
+            {"mount_from", recording.imu_mount_source},
+            {"samples", imu.size()}};
+  add_rhythm(info, rhythm_of(stamps));
+  info["first_stamp_s"] = stamp_text(imu.front().stamp);
+  info["last_stamp_s"] = stamp_text(imu.back().stamp);
+  return info;
 }
 
 /// What is wrong with wheels and IMU, a sentence each.
@@ -207,90 +193,41 @@ Json recording_json(const Recording& recording) {
   return info;
 }
 
-/// When the messages of one topic were recorded.
-struct TopicTimes {
-  std::size_t count = 0;
-  Stamp last;
-  std::vector<double> intervals;  ///< Seconds.
-};
+Json topic_json(const BagTopic& topic, const TopicInfo& info) {
+  Json json{{"topic", topic.name},
+            {"type", topic.type},
+            {"encoding", topic.encoding},
+            {"messages", info.num_messages}};
+  if (info.num_messages > 1) add_rhythm(json, info.rhythm);
+  if (!info.used_as.empty()) json["used_as"] = info.used_as;
+  if (!info.joints.empty()) json["joints"] = info.joints;
+  if (info.frame.empty()) return json;
+  json["frame"] = info.frame;
+  if (info.rate_by_stamps_hz) json["rate_by_stamps_hz"] = *info.rate_by_stamps_hz;
+  json["recorded_after_stamp_s"] = {info.recorded_after_stamp_s.first, info.recorded_after_stamp_s.second};
+  if (!info.fields.empty()) json["fields"] = info.fields;
+  return json;
+}
 
-std::vector<TopicTimes> times_of(const Bag& bag) {
-  std::vector<TopicTimes> times(bag.topics.size());
-  for (const BagMessage& message : bag.messages) {
-    TopicTimes& topic = times[message.topic];
-    if (topic.count++ > 0) topic.intervals.push_back(seconds_between(topic.last, message.log_time));
-    topic.last = message.log_time;
+/// What a bag holds, whether or not adit can map it.
+Json bag_json(const Bag& bag, const std::vector<TopicInfo>& topics) {
+  Json info{{"kind", "recording"}, {"storage", bag.storage}};
+  if (bag.storage == "mcap") {
+    info["profile"] = bag.profile;
+    info["chunks"] = bag.num_chunks;
   }
-  return times;
-}
-
-/// What the messages say of themselves, by the first and the last one. A stamp that is far from the time of
-/// recording, or another distance from it at the end, tells of clocks that differ or were set.
-void add_contents(Json& topic, const Bag& bag, std::size_t index) {
-  const std::string& type = bag.topics[index].type;
-  if (type == ros::kJointState) topic["joints"] = first_joints(bag, index);
-  if (!ros::is_cloud(type) && type != ros::kOdometry && type != ros::kImu) return;
-  const auto is_of_topic = [index](const BagMessage& message) { return message.topic == index; };
-  const auto first = std::ranges::find_if(bag.messages, is_of_topic);
-  const auto last = std::find_if(bag.messages.rbegin(), bag.messages.rend(), is_of_topic);
-  if (first == bag.messages.end()) return;
-  const auto header = decoded(bag, *first, ros::decode_header);
-  const auto end = decoded(bag, *last, ros::decode_header);
-  if (!header || !end) return;
-  topic["frame"] = header->frame;
-  topic["recorded_after_stamp_s"] = {seconds_between(header->stamp, first->log_time),
-                                     seconds_between(end->stamp, last->log_time)};
-  if (type != ros::kPointCloud2) return;
-  if (const auto fields = decoded(bag, *first, ros::describe_cloud)) topic["fields"] = *fields;
-}
-
-/// What adit would take each topic for; empty where it cannot choose.
-std::vector<std::string> uses_of(const Bag& bag, const RecordingConfig& config) {
-  std::vector<std::string> uses(bag.topics.size());
-  const Result<BagTopics> chosen = choose_topics(bag, config);
-  if (!chosen) return uses;
-  const auto mark = [&](const TopicIndices& topics, const char* use) {
-    for (const std::size_t i : topics) uses[i] = use;
-  };
-  mark(chosen->points, "points");
-  if (config.wheel != kNoWheel) mark(chosen->wheel, "wheel");
-  mark(chosen->truth, "truth");
-  mark(chosen->imu, "imu");
-  mark(chosen->transforms, "mounts");
-  mark(chosen->static_transforms, "mounts");
-  return uses;
-}
-
-Json topics_json(const Bag& bag, const RecordingConfig& config) {
-  std::vector<TopicTimes> times = times_of(bag);
-  const std::vector<std::string> uses = uses_of(bag, config);
-  Json topics = Json::array();
-  for (std::size_t i = 0; i < bag.topics.size(); ++i) {
-    Json topic{
-        {"topic", bag.topics[i].name}, {"type", bag.topics[i].type}, {"encoding", bag.topics[i].encoding}};
-    topic["messages"] = times[i].count;
-    if (times[i].count > 1) {
-      const Rhythm rhythm = rhythm_of(std::move(times[i].intervals));
-      topic["rate_hz"] = rhythm.rate_hz;
-      topic["longest_gap_s"] = rhythm.longest_gap_s;
-    }
-    if (!uses[i].empty()) topic["used_as"] = uses[i];
-    add_contents(topic, bag, i);
-    topics.push_back(std::move(topic));
-  }
-  return topics;
-}
-
-/// What a bag holds, whether or not it is a recording that adit can use.
-Json bag_json(const Bag& bag, bool is_mcap_file, const RecordingConfig& config) {
-  Json info;
-  if (is_mcap_file) {
-    info = {{"kind", "mcap"}, {"profile", bag.profile}, {"chunks", bag.num_chunks}};
-  } else {
-    info = {{"kind", "bag"}, {"storage", bag.storage}, {"files", bag.num_files}};
-  }
+  info["files"] = bag.num_files;
   info["messages"] = bag.messages.size();
-  info["topics"] = topics_json(bag, config);
+  if (!bag.messages.empty()) {
+    const Stamp start = bag.messages.front().log_time;
+    const Stamp end = bag.messages.back().log_time;
+    info["start_s"] = stamp_text(start);
+    info["end_s"] = stamp_text(end);
+    info["duration_s"] = seconds_between(start, end);
+  }
+  info["topics"] = Json::array();
+  for (std::size_t i = 0; i < topics.size(); ++i)
+    info["topics"].push_back(topic_json(bag.topics[i], topics[i]));
   return info;
 }
 
@@ -336,8 +273,7 @@ Bag quickly_read(Bag bag, Json& info) {
   return beginning_of(std::move(bag), share * span);
 }
 
-/// The options with which a bag that is no recording yet becomes one, the likeliest; none where none is
-/// known.
+/// The options with which a bag can be mapped that cannot be yet, the likeliest; none where none is known.
 std::optional<RecordingConfig> what_to_try(const Bag& bag, const RecordingConfig& config) {
   RecordingConfig likeliest = with_likeliest_topics(bag, config);
   if (read_recording(bag, likeliest)) return likeliest;
@@ -348,20 +284,27 @@ std::optional<RecordingConfig> what_to_try(const Bag& bag, const RecordingConfig
   return likeliest;
 }
 
-/// A bag, with what adit makes of it, or why it cannot use it.
+/// A bag, with what adit makes of it, or why it cannot be mapped.
 Result<Json> bag_info(const fs::path& path, const RecordingConfig& config) {
   Result<Bag> bag = open_bag(path);
   if (!bag) return tl::unexpected(bag.error());
-  Json info = bag_json(*bag, lower_case(path.extension().string()) == ".mcap", config);
+  if (const Result<> named = check_named_topics(*bag, config); !named)
+    return fail(path.string(), named.error());
+  const std::vector<TopicInfo> topics = topics_of(*bag, config);
+  Json info = bag_json(*bag, topics);
   const Bag looked_at = quickly_read(std::move(*bag), info);
   const Result<Recording> recording = read_recording(looked_at, config);
   if (recording) {
     info.update(recording_json(*recording));
     info["next"] = next_command(path, config);
-    return info;
+  } else {
+    info["cannot_be_mapped"] = format("{}: {}", path.string(), recording.error().message);
+    info["warnings"] = looked_at.warnings;
+    info["findings"] = Json::array();
+    if (const auto options = what_to_try(looked_at, config)) info["next"] = next_command(path, *options);
   }
-  info["not_a_recording"] = format("{}: {}", path.string(), recording.error().message);
-  if (const auto options = what_to_try(looked_at, config)) info["next"] = next_command(path, *options);
+  for (const TopicInfo& topic : topics)
+    if (!topic.clock_finding.empty()) info["findings"].push_back(topic.clock_finding);
   return info;
 }
 
@@ -398,13 +341,38 @@ Result<Json> session_info(const fs::path& path) {
   });
 }
 
+/// A folder of clouds, or FOLDER@PART.
+Result<Json> scans_info(const fs::path& path, const RecordingConfig& config) {
+  return open_recording(path.string(), config).map([&](const Recording& recording) {
+    Json info = recording_json(recording);
+    info["next"] = next_command(path, config);
+    return info;
+  });
+}
+
 Result<Json> folder_info(const fs::path& path, const RecordingConfig& config) {
   if (fs::exists(path / "session.toml")) return session_info(path);
-  if (is_bag_folder(path)) return bag_info(path, config);
-  return open_recording(path.string(), config).map(recording_json);
+  return is_bag_folder(path) ? bag_info(path, config) : scans_info(path, config);
+}
+
+/// What robots of a session found is no map; the session says what it holds.
+Result<Json> adit_info(const fs::path& path) {
+  if (path.filename() != "fleet.adit") return robot_map_info(path);
+  const fs::path session = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  return Json{{"kind", "loops and merge checks of a session"},
+              {"next", "adit info " + shell_quoted(session.string())}};
+}
+
+/// A setting that no recording can be read with is wrong usage of any of them.
+Result<> check_reading(const RecordingConfig& config) {
+  return mount_of(config)
+      .and_then([&](const auto&) { return imu_mount_of(config); })
+      .and_then([&](const auto&) { return parse_time_unit(config.point_times); })
+      .and_then([&](const auto&) { return check_stamp_at(config); });
 }
 
 Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
+  if (const Result<> usable = check_reading(config); !usable) return tl::unexpected(usable.error());
   if (fs::is_directory(path)) return folder_info(path, config);
   const std::string extension = lower_case(path.extension().string());
   if (is_bag_file(path)) return bag_info(path, config);
@@ -414,17 +382,18 @@ Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
     return mesh_info(path);
   if (extension == ".tum" || extension == ".txt") return trajectory_info(path);
   if (extension == ".g2o") return graph_info(path);
-  if (extension == ".adit") return robot_map_info(path);
+  if (extension == ".adit") return adit_info(path);
   if (extension == ".jrl" || extension == ".cbor") return jrl_info(path);
   if (extension == ".yaml" || extension == ".yml") return routes_info(path);
   if (fs::is_regular_file(path)) {
+    if (const Result<> plain = check_not_packed(path); !plain) return tl::unexpected(plain.error());
     return fail(
         path.string() +
         ": not a kind of file that adit knows; it knows bags (.mcap .db3 .bag), clouds and meshes (.pcd .ply "
         ".bin .obj .stl .dae .glb), .tum, .g2o, .jrl, maps of robots (.adit), routes (.yaml) and folders of "
         "scans, of a bag or of a session");
   }
-  return open_recording(path.string(), config).map(recording_json);
+  return scans_info(path, config);
 }
 
 }  // namespace

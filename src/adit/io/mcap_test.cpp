@@ -365,7 +365,7 @@ TEST(Mcap, RobotsOfOneBagAreTakenByTheirNamespaces) {
             std::vector<std::string>({"/fleet/husky1", "/fleet/husky2"}));
   EXPECT_ERROR(file.read(),
                "if each namespace is another robot, adit slam --namespaces takes them all, and --set "
-               "recording.topics_under=/fleet/husky1 that one");
+               "recording.topics_under=/fleet/husky2 that one");
   for (const auto& [robot, mount] :
        {std::pair("husky1", test::T_base_ouster), {"husky2", test::T_ouster_lidar}}) {
     const Result<Recording> recording = file.read({.topics_under = std::string("/fleet/") + robot});
@@ -377,6 +377,17 @@ TEST(Mcap, RobotsOfOneBagAreTakenByTheirNamespaces) {
   EXPECT_ERROR(file.read({.topics_under = "/fleet/husky"}), "under /fleet/husky; there are no scans");
   EXPECT_TRUE(
       namespaces_of(open_mcap_bag(memory_source(ForeignFile().clouds("/points").bytes())).value()).empty());
+}
+
+// As of `adit convert SESSION session.mcap`.
+TEST(Mcap, WhereRobotsHaveSeveralCloudsTheHintNamesThoseToTakeToo) {
+  ForeignFile file;
+  for (const std::string robot : {"/a", "/b"}) file.clouds(robot + "/points").clouds(robot + "/map");
+  file.clouds("/b/points");
+  EXPECT_ERROR(file.read(), "adit slam --namespaces --points points takes them all");
+  EXPECT_ERROR(file.read({.topics_under = "/a"}), "several topics of clouds");
+  EXPECT_ERROR(file.read({.points = "points", .topics_under = "/a"}),
+               "give --mount");  // the hint is followed
 }
 
 TEST(Mcap, TheLikeliestTopicIsNamedFirst) {

@@ -15,6 +15,16 @@ octomap::point3d point_of(const Vector3& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
 }
 
+/// As OcTree::writeBinary does, which besides prints " done." on stderr, where the library was built with its
+/// debug output.
+void write_binary(const octomap::OcTree& tree, std::ostream& out) {
+  out << "# Octomap OcTree binary file\n"
+         "# (feel free to add / change comments, but leave the first line as it is!)\n#\n"
+      << "id " << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << tree.getResolution()
+      << "\ndata\n";
+  tree.writeBinaryData(out);
+}
+
 }  // namespace
 
 Result<> write_octomap(const std::filesystem::path& path, const std::vector<PlacedScan>& scans,
@@ -48,10 +58,11 @@ Result<> write_octomap(const std::filesystem::path& path, const std::vector<Plac
     phase.advance();
   }
   tree.updateInnerOccupancy();
+  tree.toMaxLikelihood();  // the format has occupied and free alone
+  tree.prune();
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
-  if (!tree.writeBinary(file->stream()) || !file->stream())
-    return fail(path.string() + ": writing failed; is the disk full?");
+  write_binary(tree, file->stream());
   return file->commit();
 }
 

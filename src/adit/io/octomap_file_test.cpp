@@ -27,7 +27,9 @@ PlacedScan tube() {
 TEST(Octomap, IsFreeInsideATubeAndOccupiedAtItsWall) {
   const test::TemporaryFolder folder;
   const PlacedScan scan = tube();
+  testing::internal::CaptureStderr();
   ASSERT_TRUE(write_octomap(folder / "tube.bt", {scan}, {.resolution_m = 0.1, .reach_m = 5.0}));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "the library's own messages";
   const octomap::OcTree tree((folder / "tube.bt").string());
   EXPECT_EQ(tree.getResolution(), 0.1);
   const auto state = [&](const Vector3& p_base) {

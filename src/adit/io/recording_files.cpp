@@ -67,6 +67,7 @@ Result<Recording> open_folder(const std::string& input, const RecordingConfig& c
   const std::size_t at = input.rfind('@');
   if (at != std::string::npos && std::filesystem::is_directory(input.substr(0, at), ignored))
     return open_part(input.substr(0, at), input.substr(at + 1), reading);
+  if (const Result<> plain = check_not_packed(input); !plain) return tl::unexpected(plain.error());
   if (std::filesystem::exists(input, ignored))
     return fail(input + ": is not a recording; a bag (.mcap, .db3, .bag or folder) or a folder of clouds is");
   return fail(input +

@@ -88,7 +88,8 @@ struct Record {
   [[nodiscard]] std::uint64_t end() const { return data + size; }
 };
 
-Result<Record> read_record(const ByteSource& source, std::uint64_t offset) {
+/// Without a look at whether its data are there.
+Result<Record> read_head(const ByteSource& source, std::uint64_t offset) {
   const auto length_at = [&](std::uint64_t at) {
     return source.read(at, 4).map(
         [](const std::string& bytes) { return little_endian<std::uint32_t>(bytes); });
@@ -108,7 +109,16 @@ Result<Record> read_record(const ByteSource& source, std::uint64_t offset) {
   record.fields = std::move(*fields);
   record.data = offset + 8 + *header_size;
   record.size = *size;
-  if (record.end() > source.size) return fail_at(offset, "a record reaches past the end of the file");
+  return record;
+}
+
+tl::unexpected<Error> fail_past_end(std::uint64_t offset) {
+  return fail_at(offset, "a record reaches past the end of the file");
+}
+
+Result<Record> read_record(const ByteSource& source, std::uint64_t offset) {
+  Result<Record> record = read_head(source, offset);
+  if (record && record->end() > source.size) return fail_past_end(offset);
   return record;
 }
 
@@ -198,12 +208,21 @@ Result<> scan_chunk(const ByteSource& source, std::uint64_t offset, Contents& co
   return {};
 }
 
-/// Goes through the file from its start. What was read before an error stays in `contents`.
+/// Goes through the file from its start. What was read before an error stays in `contents`. Of a plain chunk
+/// that is cut the records in front of the cut are taken as if they lay in the file itself.
 Result<> scan_file(const ByteSource& source, Contents& contents) {
+  std::optional<std::uint64_t> cut_chunk;
   for (std::uint64_t at = kMagic.size(); at < source.size;) {
     throw_if_cancelled();
-    const Result<Record> record = read_record(source, at);
+    const Result<Record> record = read_head(source, at);
     if (!record) return tl::unexpected(record.error());
+    if (record->end() > source.size) {
+      const bool is_plain = record->op == Op::chunk && text_in(record->fields, "compression") == "none";
+      if (!is_plain || cut_chunk) return fail_past_end(at);
+      cut_chunk = at;
+      at = record->data;
+      continue;
+    }
     Result<> added;
     if (record->op == Op::chunk) added = scan_chunk(source, at, contents);
     if (record->op == Op::connection) added = add_connection_record(source, *record, contents);
@@ -211,7 +230,7 @@ Result<> scan_file(const ByteSource& source, Contents& contents) {
     if (!added) return added;
     at = record->end();
   }
-  return {};
+  return cut_chunk ? fail_past_end(*cut_chunk) : Result<>();
 }
 
 /// The messages of one chunk, from the index records behind it.
@@ -290,8 +309,10 @@ Result<Contents> read_contents(const ByteSource& source) {
   const Result<> scanned = scan_file(source, contents);
   const std::size_t num_messages = contents.bag.messages.size();
   if (num_messages == 0)
-    return scanned ? fail_at(source.size, "the file ends without a message")
-                   : tl::unexpected(scanned.error());
+    return fail(
+        format("the file breaks off before its first whole message: {}; copy it again from where it "
+               "was recorded, as nothing can be read of this one",
+               scanned ? format("it ends at byte {}", source.size) : scanned.error().message));
   if (!scanned)
     contents.bag.warnings.push_back(format("the file breaks off: {}; {} messages in front of that are read",
                                            scanned.error().message, num_messages));

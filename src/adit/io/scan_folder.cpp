@@ -52,6 +52,22 @@ std::optional<Stamp> stamp_in(const std::string& stem) {
   return parse_stamp(seconds + "." + fraction);
 }
 
+/// "; give one of what it holds: a, b, c", of folders where there are some.
+std::string what_else_is_in(const fs::path& folder) {
+  constexpr std::size_t kMost = 3;
+  std::vector<std::string> folders;
+  std::vector<std::string> files;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
+    (entry.is_directory(ignored) ? folders : files).push_back(entry.path().string());
+  std::vector<std::string>& names = folders.empty() ? files : folders;
+  if (names.empty()) return "; it is empty";
+  std::ranges::sort(names);
+  const bool are_more = names.size() > kMost;
+  if (are_more) names.resize(kMost);
+  return format("; give one of what it holds: {}{}", fmt::join(names, ", "), are_more ? ", ..." : "");
+}
+
 Result<std::vector<ScanFile>> list_scans(const fs::path& folder) {
   std::vector<ScanFile> scans;
   std::error_code error;
@@ -60,13 +76,17 @@ Result<std::vector<ScanFile>> list_scans(const fs::path& folder) {
     if (extension != ".pcd" && extension != ".ply" && extension != ".bin") continue;
     const std::optional<std::size_t> number = last_number(entry.path().stem().string());
     if (!number) {
-      return fail(format("{}: the name {} has no number to order it by", folder.string(),
-                         entry.path().filename().string()));
+      return fail(
+          format("{0}: the name {1} has no number to order it by, as the scans of a recording have; a "
+                 "cloud or mesh alone is given by its name: {2}",
+                 folder.string(), entry.path().filename().string(), entry.path().string()));
     }
     scans.push_back({*number, entry.path(), stamp_in(entry.path().stem().string())});
   }
   if (error) return fail(format("{}: cannot be listed: {}", folder.string(), error.message()));
-  if (scans.empty()) return fail(folder.string() + ": no clouds in it (.pcd, .ply, .bin)");
+  if (scans.empty())
+    return fail(format("{}: neither clouds (.pcd, .ply, .bin) nor bags (.mcap, .db3, .bag) in it{}",
+                       folder.string(), what_else_is_in(folder)));
   if (std::ranges::all_of(scans, [](const ScanFile& scan) { return scan.stamp.has_value(); }))
     for (ScanFile& scan : scans) scan.number = static_cast<std::size_t>(scan.stamp->ns);
   else
@@ -206,9 +226,12 @@ Result<Recording> read_tracks(const fs::path& folder, const std::vector<ScanFile
   Recording recording;
   const std::optional<fs::path> file = stamp_file(folder);
   if (!file) {
-    recording.assumptions.push_back(
-        format("stamps: the {} in each name counts as seconds, as neither stamps.txt nor times.txt is there",
-               scans.front().stamp ? "decimal number" : "number"));
+    recording.assumptions.push_back(format(
+        "stamps: the {} in each name counts as seconds, as neither stamps.txt nor times.txt is there{}",
+        scans.front().stamp ? "decimal number" : "number",
+        scans.front().stamp ? ""
+                            : "; where scans came at another rate, put a stamps.txt beside them, with the "
+                              "time of each scan in seconds, one a line"));
   }
   const auto stamps = file ? read_stamps_for(*file, scans.size()) : stamps_from_numbers(folder, scans);
   if (!stamps) return tl::unexpected(stamps.error());
@@ -240,7 +263,9 @@ Result<std::vector<Pose>> kitti_truth(const fs::path& file, const fs::path& sequ
   if (poses->size() != num_scans)
     return fail(format("{}: {} poses for {} scans", file.string(), poses->size(), num_scans));
   const fs::path calibration = sequence / "calib.txt";
-  const Result<Pose> T_camera_lidar = read_bytes(calibration).and_then(read_kitti_calibration);
+  const Result<std::string> text = read_bytes(calibration);  // its errors name the file
+  if (!text) return tl::unexpected(text.error());
+  const Result<Pose> T_camera_lidar = read_kitti_calibration(*text);
   if (!T_camera_lidar) return fail(calibration.string(), T_camera_lidar.error());
   for (Pose& pose : *poses) pose = pose * *T_camera_lidar;
   return poses;

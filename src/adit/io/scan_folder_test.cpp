@@ -65,7 +65,9 @@ TEST(ScanFolder, ASequenceOfKittiHasItsTruth) {
     EXPECT_TRUE(without && without->truth.empty());
     return without ? format("{}", fmt::join(without->assumptions, "\n")) : without.error().message;
   };
-  EXPECT_NE(left_out().find("ground truth: it is left out; "), std::string::npos) << "no calibration";
+  const std::string no_calibration = left_out();
+  EXPECT_NE(no_calibration.find("ground truth: it is left out; "), std::string::npos) << no_calibration;
+  EXPECT_EQ(no_calibration.find("calib.txt"), no_calibration.rfind("calib.txt")) << "named once";
   put_file(sequence / "calib.txt", "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr: 0 -1 0 0 0 0 -1 0 1 0 0 -0.3\n");
 
   const FolderReading reading{Pose::planar(1.5, 0.0, 0.0)};
@@ -99,7 +101,14 @@ TEST(ScanFolder, ASequenceOfKittiHasItsTruth) {
 
 TEST(ScanFolder, BadFolders) {
   const TemporaryFolder folder;
-  EXPECT_ERROR(read_scan_folder(folder.path()), "no clouds in it");
+  EXPECT_ERROR(read_scan_folder(folder.path()), "neither clouds (.pcd, .ply, .bin) nor bags");
+  EXPECT_ERROR(read_scan_folder(folder.path()), "it is empty");
+  std::filesystem::create_directories(folder / "monday");
+  EXPECT_ERROR(read_scan_folder(folder.path()), "give one of what it holds: " + (folder / "monday").string());
+  std::filesystem::remove(folder / "monday");
+  ASSERT_TRUE(write_cloud(folder / "world.pcd", one_point(1)));
+  EXPECT_ERROR(read_scan_folder(folder.path()), "is given by its name: " + (folder / "world.pcd").string());
+  std::filesystem::remove(folder / "world.pcd");
   EXPECT_ERROR(read_scan_folder(folder / "absent"), "cannot be listed");
   ASSERT_TRUE(write_cloud(folder / "1.pcd", one_point(1)));
   EXPECT_ERROR(read_scan_folder(folder.path()), "1 scan(s) taken");
