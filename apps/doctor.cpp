@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 #include "adit/slam/doctor.hpp"
-#include "adit/core/json_text.hpp"
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "adit/core/format.hpp"
+#include "adit/core/json_text.hpp"
+#include "adit/io/bag.hpp"
 #include "adit/io/recording_files.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
@@ -56,11 +58,16 @@ void print_json(const std::vector<Diagnosis>& found) {
 Result<> doctor_command(const DoctorOptions& options, const Common& common) {
   const Result<RunConfig> config = configured(common);
   if (!config) return tl::unexpected(config.error());
-  const Result<Recording> recording =
-      open_recording(options.input, recording_config(config->recording, options.recording));
+  const RecordingConfig how = recording_config(config->recording, options.recording);
+  const Result<Recording> recording = open_recording(options.input, how);
   if (!recording) return tl::unexpected(recording.error());
-  const Result<std::vector<Diagnosis>> found = diagnose(*recording);
+  Result<std::vector<Diagnosis>> found = diagnose(*recording, config->slam.robot);
   if (!found) return tl::unexpected(found.error());
+  if (is_bag_file(options.input) || is_bag_folder(options.input)) {
+    const Result<Bag> bag = open_bag(options.input);
+    if (!bag) return tl::unexpected(bag.error());
+    std::ranges::move(diagnose_clocks(*bag, how), std::back_inserter(*found));
+  }
   common.json ? print_json(*found) : print_text(*found);
   const auto num = std::ranges::count(*found, Health::spoils, &Diagnosis::health);
   if (num > 0)

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -92,15 +91,15 @@ Result<> odometry(const OdometryOptions& options, const Common& common) {
   Result<Recording> recording = open_input(options.input, how);
   if (!recording) return tl::unexpected(recording.error());
   if (config->slam.check_sensors) print_notes("odometry", checked_sensors(*recording));
+  if (options.method.empty()) {  // as adit slam does
+    if (const auto note = use_kiss_icp_without_sensors(*recording, method)) print_notes("odometry", {*note});
+  }
   Result<Trajectory> truth = recording->truth;
   if (!options.truth.empty() && !is_truth_topic) truth = read_tum(options.truth);
   if (!truth) return tl::unexpected(truth.error());
   const Result<Run> done = run(*recording, method);
   if (!done) return tl::unexpected(done.error());
-  const auto is_of_points = [](const auto& entry) {
-    return entry.first == StepStatus::too_few_points || entry.first == StepStatus::no_map;
-  };
-  if (std::ranges::all_of(done->statuses, is_of_points)) return fail(why_nothing_mapped(*recording));
+  if (is_nothing_mapped(done->statuses)) return fail(why_nothing_mapped(*recording));
   if (const Result<> written = write_tum(options.out, done->trajectory); !written) return written;
 
   nlohmann::ordered_json report = {{"scans", done->trajectory.size()},
@@ -130,7 +129,8 @@ void add_odometry(Program& program) {
       .required();
   command
       .add_option("--method", options->method,
-                  "plane-icp (default) or kinematic-icp: with wheels; kiss-icp: LiDAR alone")
+                  "plane-icp (default with wheels or an IMU), kinematic-icp (needs wheels) or "
+                  "kiss-icp (LiDAR alone; default without both)")
       .one_of({"plane-icp", "kinematic-icp", "kiss-icp"});
   command.add_option("--out", options->out, "Trajectory to write (TUM)").required();
   command.add_option("--truth", options->truth,

@@ -72,6 +72,20 @@ TEST(Conformance, ThePointsOfOneTubeComeOutOfEveryStorage) {
   }
 }
 
+// Its 48 points a scan are too few to be registered, and wheels alone make no map.
+TEST(Conformance, OfTheTubeSlamAndOdometryMapNothing) {
+  const test::TemporaryFolder folder;
+  const std::string tube = (kCases / "tube.mcap").string();
+  const std::string out = " --out " + (folder / "x.tum").string();
+  test::expect_refused("slam " + tube + " --out " + (folder / "session").string(), 1,
+                       "none of 3 scans could be mapped");
+  test::expect_refused("odometry " + tube + out, 1, "none of 3 scans could be mapped");
+  const std::string without = test::run_adit("odometry " + tube + " --wheel none" + out).err;
+  EXPECT_NE(without.find("so kiss-icp (LiDAR alone) instead of plane-icp"), std::string::npos) << without;
+  const std::string found = test::run_adit("doctor " + tube).out;
+  EXPECT_NE(found.find("PROBLEM  mapping: nothing can be mapped"), std::string::npos) << found;
+}
+
 TEST(Conformance, ErrorsOfTrajectoriesAreThoseOfEvo) {
   const Trajectory truth = read_tum(kCases / "evo/truth.tum").value();
   const Trajectory estimate = read_tum(kCases / "evo/estimate.tum").value();

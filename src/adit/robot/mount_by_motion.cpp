@@ -4,17 +4,77 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numbers>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "adit/core/angles.hpp"
 #include "adit/core/decompositions.hpp"
+#include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/robot/scan_motion.hpp"
 
 namespace adit {
 namespace {
+
+/// From one scan to the next, how wheels and scans have the robot move on the floor.
+struct Step {
+  Eigen::Vector2d by_wheels;
+  Eigen::Vector2d by_scans;    ///< In the axes that the mount in use gives the base.
+  Eigen::Matrix2d covariance;  ///< Of `by_scans`.
+  double turned = 0.0;         ///< By the scans.
+  bool is_seen = false;        ///< Scans state that they know it, along the tunnel, too.
+};
+
+std::vector<Step> steps_of(const Recording& recording, std::span<const std::size_t> scans) {
+  constexpr double kUnknown = 10.0;      // metres and radians, along directions that the scan leaves open
+  constexpr double kOpenSigma = 0.05;    // metres: a quarter of the way between usual scans
+  constexpr double kTurnSigma = 0.0005;  // radians
+  const ScanMotion motion = motion_of_scans(recording, scans);
+  std::vector<Step> out;
+  for (std::size_t k = kSettlingScans; k < motion.steps.size(); ++k) {
+    const OdometryStep& before = motion.steps[k - 1];
+    const OdometryStep& after = motion.steps[k];
+    const Result<Pose> begin = pose_at(recording.wheel, before.stamp);
+    const Result<Pose> end = pose_at(recording.wheel, after.stamp);
+    if (!begin || !end) continue;
+    const Matrix6 covariance =
+        inverse(Matrix6(after.information + Matrix6::Identity() / (kUnknown * kUnknown)));
+    const Pose by_scans = before.T_odom_base.inverse() * after.T_odom_base;
+    Step step{(begin->inverse() * *end).translation().head<2>(), by_scans.translation().head<2>(),
+              covariance.topLeftCorner<2, 2>(), by_scans.yaw()};
+    const bool is_registered = after.status == StepStatus::ok || after.status == StepStatus::degenerate;
+    step.is_seen = is_registered && step.covariance.trace() < kOpenSigma * kOpenSigma &&
+                   std::sqrt(covariance(5, 5)) < kTurnSigma;
+    out.push_back(step);
+  }
+  return out;
+}
+
+constexpr double kFarthest = 1.0;  // metres: a lever arm that is possible
+
+/// Along a smooth tunnel the rings of a scan fit best where those before lay, so that it says with confidence
+/// that the robot stood still: it has not seen the motion. How far the robot went does not depend on the yaw
+/// of the mount, and only little on its lever arm.
+bool goes_as_far_as_the_wheels(const Step& step) {
+  constexpr double kAgree = 0.25;  // share of the way: some 5 cm, where scans of a mine err by 2 to 3
+  const double way = step.by_wheels.norm();
+  return std::abs(step.by_scans.norm() - way) < kAgree * way + kFarthest * std::abs(step.turned);
+}
+
+/// By how much all of these have to be turned to go where the wheels went, radians.
+double turn_onto_the_wheels(const std::vector<Step>& steps) {
+  double sine = 0.0;
+  double cosine = 0.0;
+  for (const auto& [by_wheels, by_scans, covariance, turned, is_seen] : steps) {
+    sine += by_scans.x() * by_wheels.y() - by_scans.y() * by_wheels.x();
+    cosine += by_scans.dot(by_wheels);
+  }
+  return std::atan2(sine, cosine);
+}
 
 /// By how much more the scans have the robot move, ahead and to the left, than the wheels do, which say how
 /// far it went `ahead`; the scans say how much it has `turned`. Where the mount has to be turned by `yaw` and
@@ -25,32 +85,23 @@ struct StepBeyondWheels {
   std::optional<double> along;  ///< Where scans say how far.
 };
 
-std::vector<StepBeyondWheels> steps_beyond_wheels(const Recording& recording,
-                                                  std::span<const std::size_t> scans) {
-  constexpr double kUnknown = 10.0;      // metres and radians, along directions that the scan leaves open
-  constexpr double kSideSigma = 0.005;   // metres
-  constexpr double kAlongSigma = 0.02;   // metres; few scans of a tunnel say it better
-  constexpr double kTurnSigma = 0.0005;  // radians
-  const ScanMotion motion = motion_of_scans(recording, scans);
+/// After the scans' motion was turned by `yaw`, as those equations hold for small angles alone.
+std::vector<StepBeyondWheels> beyond_wheels(const std::vector<Step>& steps, double yaw) {
+  constexpr double kSideSigma = 0.005;  // metres
+  constexpr double kAlongSigma = 0.02;  // metres; few scans of a tunnel say it better
+  const Eigen::Matrix2d R = Eigen::Rotation2Dd(yaw).toRotationMatrix();
   std::vector<StepBeyondWheels> out;
-  for (std::size_t k = kSettlingScans; k < motion.steps.size(); ++k) {
-    const OdometryStep& before = motion.steps[k - 1];
-    const OdometryStep& after = motion.steps[k];
-    if (after.status != StepStatus::ok && after.status != StepStatus::degenerate) continue;
-    const Matrix6 covariance =
-        inverse(Matrix6(after.information + Matrix6::Identity() / (kUnknown * kUnknown)));
-    if (std::sqrt(covariance(1, 1)) > kSideSigma || std::sqrt(covariance(5, 5)) > kTurnSigma) continue;
-    const Result<Pose> begin = pose_at(recording.wheel, before.stamp);
-    const Result<Pose> end = pose_at(recording.wheel, after.stamp);
-    if (!begin || !end) continue;
-    const Pose by_scans = before.T_odom_base.inverse() * after.T_odom_base;
-    const Vector3 by_wheels = (begin->inverse() * *end).translation();
-    const Vector3 beyond = by_scans.translation() - by_wheels;
-    out.push_back({by_wheels.x(), by_scans.yaw(), beyond.y(), {}});
+  for (const Step& step : steps) {
+    const Eigen::Matrix2d covariance = R * step.covariance * R.transpose();
+    if (std::sqrt(covariance(1, 1)) > kSideSigma) continue;
+    const Eigen::Vector2d beyond = R * step.by_scans - step.by_wheels;
+    out.push_back({step.by_wheels.x(), step.turned, beyond.y(), {}});
     if (std::sqrt(covariance(0, 0)) < kAlongSigma) out.back().along = beyond.x();
   }
   return out;
 }
+
+constexpr double kLeastMotion = 1.0;  // m^2, of all steps: 25 of 0.2 m
 
 /// A shift by its share of turns, and what goes with the way instead, with their standard deviations.
 struct ShiftByTurns {
@@ -64,9 +115,8 @@ std::optional<ShiftByTurns> shift_by_turns(const Eigen::MatrixXd& J, const Eigen
   if (J.rows() < kFew) return {};
   Eigen::MatrixXd H = J.transpose() * J;
   const double squared_turns = H(1, 1);
-  if (!(H(0, 0) > 1.0)) return {};   // hardly moved: some 10 steps of 0.3 m
-  constexpr double kFarthest = 1.0;  // metres, or metres a radian, that are possible
-  constexpr double kNoise = 0.01;    // metres beyond, a step; only to weigh the prior of what goes with turns
+  if (H(0, 0) < kLeastMotion) return {};
+  constexpr double kNoise = 0.01;  // metres beyond, a step; only to weigh the prior of what goes with turns
   H.diagonal().tail(H.rows() - 1).array() += kNoise * kNoise / (kFarthest * kFarthest);
   const Eigen::MatrixXd inverse_H = H.inverse();
   const Eigen::VectorXd x = inverse_H * (J.transpose() * beyond);
@@ -101,12 +151,28 @@ std::optional<ShiftByTurns> shift_to_the_left(std::vector<StepBeyondWheels> step
   return shift_by_turns(J, beyond);
 }
 
-std::optional<MountByMotion> mount_from(const std::vector<StepBeyondWheels>& steps) {
+Result<MountByMotion> mount_from(const std::vector<Step>& all) {
+  if (all.empty()) return fail("too few scans follow one another while the wheels measure");
+  double moved = 0.0;
+  for (const Step& step : all) moved += step.by_wheels.squaredNorm();
+  if (moved < kLeastMotion)
+    return fail(
+        format("by the wheels the robot moves too little in the {} steps from scan to scan", all.size()));
+  std::vector<Step> seen;
+  std::ranges::copy_if(all, std::back_inserter(seen),
+                       [](const Step& step) { return step.is_seen && goes_as_far_as_the_wheels(step); });
+  const double coarse = turn_onto_the_wheels(seen);
+  const std::vector<StepBeyondWheels> steps = beyond_wheels(seen, coarse);
   const std::optional<ShiftByTurns> ahead = shift_ahead(steps);
-  if (!ahead) return {};
+  if (!ahead)
+    return fail(
+        format("cannot be told: the scans leave motion along the tunnel open ({} of {} steps from scan to "
+               "scan go as "
+               "far as by the wheels)",
+               steps.size(), all.size()));
   MountByMotion out;
   out.num_steps = steps.size();
-  out.yaw_deg = ahead->by_way / kDegree;
+  out.yaw_deg = std::remainder(coarse + ahead->by_way, 2.0 * std::numbers::pi) / kDegree;
   out.yaw_sigma_deg = ahead->by_way_sigma / kDegree;
   out.ahead_m = ahead->shift;
   out.ahead_sigma_m = ahead->shift_sigma;
@@ -138,22 +204,22 @@ std::vector<std::size_t> where_it_turns(const Recording& recording, const std::v
 
 }  // namespace
 
-std::optional<MountByMotion> mount_by_motion(const Recording& recording) {
+Result<MountByMotion> mount_by_motion(const Recording& recording) {
   constexpr std::size_t kStretches =
       6;                               // over the whole drive, and as many where it turns: for the lever arm
   constexpr std::size_t kLength = 25;  // scans
-  if (recording.wheel.size() < 2) return {};
+  if (recording.wheel.size() < 2) return fail("there are no wheels to compare with");
   const std::vector<std::size_t> scans = scans_to_check(recording);
   std::vector<std::size_t> starts =
       spread_over(scans.size() > kLength ? scans.size() - kLength : 0, kStretches);
   for (const std::size_t start : where_it_turns(recording, scans, kLength, kStretches))
     if (std::ranges::find(starts, start) == starts.end()) starts.push_back(start);
-  std::vector<std::vector<StepBeyondWheels>> of_stretches(starts.size());
+  std::vector<std::vector<Step>> of_stretches(starts.size());
   parallel_for_each(starts.size(), [&](std::size_t i) {
-    of_stretches[i] = steps_beyond_wheels(recording, std::span(scans).subspan(starts[i], kLength));
+    of_stretches[i] = steps_of(recording, std::span(scans).subspan(starts[i], kLength));
   });
-  std::vector<StepBeyondWheels> all;
-  for (const std::vector<StepBeyondWheels>& one : of_stretches) all.insert(all.end(), one.begin(), one.end());
+  std::vector<Step> all;
+  for (const std::vector<Step>& one : of_stretches) all.insert(all.end(), one.begin(), one.end());
   return mount_from(all);
 }
 

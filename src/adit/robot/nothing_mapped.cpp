@@ -49,11 +49,18 @@ View view_of(const PointCloud& cloud) {
 
 }  // namespace
 
+bool is_nothing_mapped(const std::map<StepStatus, int>& counts) {
+  return std::ranges::all_of(counts, [](const auto& count) {
+    return count.first == StepStatus::too_few_points || count.first == StepStatus::no_map;
+  });
+}
+
 std::string why_nothing_mapped(const Recording& recording) {
   constexpr double kNarrow = 130.0;     // degrees, wider than depth cameras see and narrower than LiDARs
   constexpr std::size_t kEnough = 500;  // points, to tell what sensor they are of
   const std::string all =
       format("{}: none of {} scans could be mapped", recording.name, recording.num_scans());
+  if (recording.num_scans() < 2) return all + ": there have to be two or more, to see the robot move";
   const Result<Scan> first = recording.read_scan(0);
   if (!first) return format("{}: {}", all, first.error().message);
   const View view = view_of(first->cloud);

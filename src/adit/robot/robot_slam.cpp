@@ -3,6 +3,7 @@
 #include "adit/robot/robot_slam.hpp"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 
 #include "adit/core/format.hpp"
@@ -151,6 +152,16 @@ Result<> check_wheels(const Recording& recording, const OdometryConfig& config,
   return {};
 }
 
+std::optional<std::string> use_kiss_icp_without_sensors(const Recording& recording, OdometryConfig& config) {
+  const bool imu_suffices = !recording.imu.empty() && config.method == OdometryMethod::plane_icp;
+  if (!recording.wheel.empty() || imu_suffices || config.method == OdometryMethod::kiss_icp)
+    return std::nullopt;
+  const std::string_view asked_for = to_string(config.method);
+  config.method = OdometryMethod::kiss_icp;
+  return format("{}: no wheel odometry in this recording, so kiss-icp (LiDAR alone) instead of {}",
+                recording.name, asked_for);
+}
+
 Result<RobotMap> map_recording(const Recording& recording, RobotId id, const RobotSlamConfig& config,
                                const ScanObserver& observer) {
   return map_recording(recording, id, std::vector{config}, observer).map([](std::vector<RobotMap>&& maps) {
@@ -167,16 +178,19 @@ Result<std::vector<RobotMap>> map_recording(const Recording& recording, RobotId 
     if (!wheels) return tl::unexpected(wheels.error());
     robots.emplace_back(id, recording.name, config, recording.T_base_lidar);
   }
+  std::vector<std::map<StepStatus, int>> statuses(robots.size());
   std::size_t num_done = 0;
   const Result<> done = for_each_scan(recording, [&](const Scan& scan, const SensedMotion& motion) {
-    for (RobotSlam& robot : robots) robot.process(scan, motion);
+    for (std::size_t i = 0; i < robots.size(); ++i)
+      ++statuses[i][robots[i].process(scan, motion).odometry.status];
     return !observer || observer(++num_done);
   });
   if (!done) return tl::unexpected(done.error());
   std::vector<RobotMap> maps;
-  for (const RobotSlam& robot : robots) {
-    if (robot.map().keyframes.empty()) return fail(why_nothing_mapped(recording));
-    maps.push_back(robot.map());
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (robots[i].map().keyframes.empty() || is_nothing_mapped(statuses[i]))
+      return fail(why_nothing_mapped(recording));
+    maps.push_back(robots[i].map());
   }
   return maps;
 }

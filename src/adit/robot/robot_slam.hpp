@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "adit/keyframes/keyframe_policy.hpp"
@@ -85,12 +86,19 @@ class RobotSlam {
 [[nodiscard]] Result<> check_wheels(const Recording& recording, const OdometryConfig& config,
                                     std::string_view without_wheels);
 
+/// Puts KISS-ICP into `config` in place of another method where the recording has neither wheels nor an IMU:
+/// plane-icp needs none either, but loses its way where scans do not come at a steady pace. Returns the note
+/// that says so, which names the recording; none where nothing was changed.
+[[nodiscard]] std::optional<std::string> use_kiss_icp_without_sensors(const Recording& recording,
+                                                                      OdometryConfig& config);
+
 /// Called after each scan with the number done; returns false to stop early.
 using ScanObserver = std::function<bool(std::size_t num_done)>;
 
 /// The whole recording through RobotSlam. Fails when a scan cannot be read (of damaged
 /// recordings, give it what with_damaged_scans_empty returns), when the odometry needs wheels and there is no
-/// wheel odometry, or when the observer stops it.
+/// wheel odometry, when no scan could be registered (wheels alone make no map), or when the observer stops
+/// it.
 [[nodiscard]] Result<RobotMap> map_recording(const Recording& recording, RobotId id,
                                              const RobotSlamConfig& config,
                                              const ScanObserver& observer = {});

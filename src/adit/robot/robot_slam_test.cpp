@@ -97,6 +97,33 @@ TEST(RobotSlam, MapsARoomWithEachOdometry) {
   }
 }
 
+// The wheels alone would have moved the robot on, and made keyframes of it.
+TEST(RobotSlam, WithoutAScanThatIsRegisteredThereIsNoMap) {
+  Recording recording = room_recording(true);
+  recording.read_scan = [read = recording.read_scan](std::size_t i) {
+    return read(i).map([](Scan scan) {
+      scan.cloud.points.resize(40);
+      scan.cloud.intensities.clear();
+      scan.cloud.time_offsets_ns.resize(40);
+      return scan;
+    });
+  };
+  EXPECT_ERROR(map_recording(recording, {7}, config_of(OdometryMethod::plane_icp)),
+               "none of 60 scans could be mapped");
+}
+
+TEST(RobotSlam, WithoutWheelsAndImuKissIcpStepsIn) {
+  OdometryConfig config;
+  EXPECT_FALSE(use_kiss_icp_without_sensors(room_recording(true), config));
+  EXPECT_EQ(config.method, OdometryMethod::plane_icp);
+  const std::optional<std::string> note = use_kiss_icp_without_sensors(room_recording(false), config);
+  ASSERT_TRUE(note);
+  EXPECT_EQ(*note,
+            "walker: no wheel odometry in this recording, so kiss-icp (LiDAR alone) instead of plane-icp");
+  EXPECT_EQ(config.method, OdometryMethod::kiss_icp);
+  EXPECT_FALSE(use_kiss_icp_without_sensors(room_recording(false), config));
+}
+
 /// Points of the inner keyframes, each of which others look at from both sides, for which `is_meant` holds.
 template <class Test>
 std::size_t num_points(const RobotMap& map, const Test& is_meant) {

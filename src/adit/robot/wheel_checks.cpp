@@ -236,7 +236,7 @@ std::vector<SensorFinding> check_wheels_with_imu(Recording& recording) {
   if (recording.wheel.size() < 2 || recording.imu.size() < 2) return {};
   constexpr Duration kHalfWindow = std::chrono::milliseconds(60);
   constexpr WheelReference kReference{"the gyroscope", "the accelerometer",
-                                      "--imu-mount if the IMU is the one that is wrong", "--imu-mount"};
+                                      "--mount or --imu-mount if one of these is wrong", "--imu-mount"};
   const Growths wheels = growths_of(recording.wheel);
   const Growths imu = growths_of(recording.imu, recording.T_base_imu);
   WheelComparison comparison;

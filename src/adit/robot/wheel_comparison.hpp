@@ -15,7 +15,7 @@ namespace adit {
 struct WheelReference {
   std::string_view turns;   ///< "the gyroscope"
   std::string_view ahead;   ///< "the accelerometer"
-  std::string_view remedy;  ///< "--imu-mount if the IMU is the one that is wrong"
+  std::string_view remedy;  ///< "--mount or --imu-mount if one of these is wrong"
   std::string_view mount;   ///< "--imu-mount"
 };
 

@@ -9,8 +9,11 @@
 #include "adit/core/angles.hpp"
 #include "adit/core/format.hpp"
 #include "adit/io/mount.hpp"
+#include "adit/io/topic_info.hpp"
 #include "adit/robot/mount_by_motion.hpp"
 #include "adit/robot/scan_checks.hpp"
+#include "adit/robot/scan_loop.hpp"
+#include "adit/robot/scan_motion.hpp"
 #include "adit/robot/sensor_checks.hpp"
 
 namespace adit {
@@ -29,6 +32,21 @@ std::string mount_option(const Pose& T_base_lidar) {
                        rounded(yaw / kDegree, 100.0));
 }
 
+constexpr double kLong = 1.0;  // seconds without scans: a robot drives a metre or two in the dark
+
+/// Of scans that come seldom without one of them missing.
+Health seldom(double interval_s) { return interval_s > 3.0 * kLong ? Health::spoils : Health::noted; }
+
+std::string remedy_of_seldom(const Recording& recording) {
+  const bool is_by_names = std::ranges::any_of(recording.assumptions, [](const std::string& assumption) {
+    return assumption.starts_with("stamps: ");
+  });
+  return is_by_names ? "the numbers in the names of the clouds count as seconds: where they are not, put a "
+                       "stamps.txt beside the clouds, with the time of each scan in seconds, one a line"
+                     : "let the driver publish, and the recorder take, every sweep: scans this far apart "
+                       "overlap little";
+}
+
 Diagnosis scans_missing(const Recording& recording) {
   const ScanTiming timing = timing_of(recording.scan_stamps);
   const std::string check = "scans: missing";
@@ -39,9 +57,10 @@ Diagnosis scans_missing(const Recording& recording) {
       "{} scans, one every {:.3f} s; {} missing ({:.1f} %), the longest gap {:.2f} s", recording.num_scans(),
       timing.interval_s, timing.num_missing, 100.0 * share, timing.longest_gap_s);
   if (timing.num_missing > 0) sentence += format(" at {:.1f} s", timing.longest_gap_at_s);
+  if (timing.interval_s >= kLong)
+    return {check, seldom(timing.interval_s), sentence, remedy_of_seldom(recording)};
   constexpr double kNotable = 0.005;
   constexpr double kTooMany = 0.1;
-  constexpr double kLong = 1.0;  // seconds: a robot drives a metre or two in the dark
   Health health = Health::good;
   if (share > kNotable || timing.longest_gap_s > kLong) health = Health::noted;
   if (share > kTooMany || timing.longest_gap_s > 3.0 * kLong) health = Health::spoils;
@@ -100,11 +119,13 @@ Diagnosis view(const ScansSeen& seen) {
   return {"scans: view", Health::good, sentence};
 }
 
-Diagnosis self_hits(const ScansSeen& seen) {
+Diagnosis self_hits(const Recording& recording, const ScansSeen& seen) {
   const std::string check = "scans: the robot itself";
   if (!seen.has_moved)
     return {check, Health::unknown,
-            "without wheels that say that the robot moves it cannot be told from walls"};
+            recording.wheel.empty()
+                ? "without wheels, which say that the robot moves, it cannot be told from walls"
+                : "by the wheels the robot moves less than 5 m, too little to tell it from walls"};
   if (!seen.self_hits) return {check, Health::good, "no return stays where it is while the robot moves"};
   const SelfHits& hits = *seen.self_hits;
   constexpr double kFew = 0.001;
@@ -120,8 +141,11 @@ Diagnosis self_hits(const ScansSeen& seen) {
 }
 
 Diagnosis mount_source(const Recording& recording) {
-  return {"mount: known", Health::good,
-          format("{} from {}", mount_option(recording.T_base_lidar), recording.mount_source)};
+  const std::string sentence =
+      format("{} ({})", mount_option(recording.T_base_lidar), recording.mount_source);
+  if (recording.mount_source.starts_with("assumed"))
+    return {"mount: source", Health::noted, sentence, std::string(kMountRemedy)};
+  return {"mount: source", Health::good, sentence};
 }
 
 /// The mount with which the floor lies level at z = 0.
@@ -157,11 +181,8 @@ Diagnosis mount_tilt(const ScansSeen& seen, Pose& mount) {
 /// `mount`: levelled.
 Diagnosis mount_turn(const Recording& recording, const Pose& mount) {
   const std::string check = "mount: turn and lever arm";
-  if (recording.wheel.empty()) return {check, Health::unknown, "there are no wheels to compare with"};
-  const std::optional<MountByMotion> found = mount_by_motion(recording);
-  if (!found)
-    return {check, Health::unknown,
-            "the robot moves too little, or its scans leave too much of the motion open"};
+  const Result<MountByMotion> found = mount_by_motion(recording);
+  if (!found) return {check, Health::unknown, found.error().message};
   std::string sentence = format(
       "by the motion between {} pairs of scans the mount is off by {:+.2f} degrees of yaw "
       "(+-{:.2f})",
@@ -174,11 +195,9 @@ Diagnosis mount_turn(const Recording& recording, const Pose& mount) {
   const Pose by_yaw = Pose::planar(0.0, 0.0, is_turned ? found->yaw_deg * kDegree : 0.0);
   const bool knows_ahead = found->ahead_sigma_m < kLeverUnknown;
   const bool knows_left = found->left_sigma_m < kLeverUnknown;
-  // Motion is of the robot's origin and as the mount in use has its axes: a yaw alone looks like a shift,
-  // too.
-  const Vector3 by_yaw_alone = by_yaw.inverse() * mount.translation() - mount.translation();
-  const Vector3 found_shift = by_yaw * Vector3(knows_ahead ? found->ahead_m - by_yaw_alone.x() : 0.0,
-                                               knows_left ? found->left_m - by_yaw_alone.y() : 0.0, 0.0);
+  // What was found goes on from where the yaw about the robot's origin takes the LiDAR.
+  const Vector3 found_shift =
+      by_yaw * mount.translation() - mount.translation() + Vector3(found->ahead_m, found->left_m, 0.0);
   Vector3 shift = Vector3::Zero();
   const auto add_lever = [&](const char* way, double sigma, Eigen::Index axis) {
     sentence += format(" and {:+.2f} m {} (+-{:.2f})", found_shift[axis], way, sigma);
@@ -186,6 +205,12 @@ Diagnosis mount_turn(const Recording& recording, const Pose& mount) {
   };
   if (knows_ahead) add_lever("ahead", found->ahead_sigma_m, 0);
   if (knows_left) add_lever("to the left", found->left_sigma_m, 1);
+  if (!knows_ahead && !knows_left)
+    sentence += "; lever arm: too few turns to tell";
+  else if (!knows_left)
+    sentence += "; to the left: too few turns to both sides to tell";
+  else if (!knows_ahead)
+    sentence += "; ahead: too few turns to tell";
   if (!is_turned && shift.isZero()) return {check, Health::good, sentence};
   const Vector3 at = mount.translation() + shift;
   const Pose better((by_yaw * Pose(mount.rotation(), Vector3::Zero())).rotation(), at);
@@ -194,14 +219,18 @@ Diagnosis mount_turn(const Recording& recording, const Pose& mount) {
           "--mount " + mount_option(better) + ", if the wheels are right"};
 }
 
-void add_sensors(const Recording& recording, std::vector<Diagnosis>& out) {
+void add_sensors(const Recording& recording, const std::vector<SensorFinding>& findings,
+                 std::vector<Diagnosis>& out) {
   if (recording.wheel.empty())
     out.push_back({"wheels", Health::noted,
                    "the recording has no wheel odometry, so that scans alone say how far",
                    "--wheel TOPIC if it is there under another type or name"});
-  if (recording.imu.empty()) out.push_back({"IMU", Health::good, "the recording has none, and needs none"});
-  Recording sound = recording;
-  const std::vector<SensorFinding> findings = use_sound_sensors(sound);
+  if (recording.imu.empty() && recording.wheel.empty())
+    out.push_back({"IMU", Health::noted,
+                   "the recording has none either, so that kiss-icp goes by the scans alone",
+                   "--imu TOPIC if it is there under another name"});
+  else if (recording.imu.empty())
+    out.push_back({"IMU", Health::good, "the recording has none, and needs none beside its wheels"});
   for (const SensorFinding& finding : findings)
     out.push_back({"wheels and IMU",
                    finding.consequence == Consequence::left_out ? Health::spoils : Health::noted,
@@ -211,6 +240,38 @@ void add_sensors(const Recording& recording, std::vector<Diagnosis>& out) {
         {"wheels and IMU", Health::good,
          "units, signs, clocks and covariances agree with one another and with the scans, as far as this "
          "drive tells"});
+}
+
+/// `length` scans of a recording, as one of their own.
+Recording stretch_of(const Recording& recording, std::size_t first, std::size_t length) {
+  Recording stretch = recording;
+  const auto begin = recording.scan_stamps.begin() + static_cast<std::ptrdiff_t>(first);
+  stretch.scan_stamps.assign(begin, begin + static_cast<std::ptrdiff_t>(length));
+  stretch.read_scan = [read = recording.read_scan, first](std::size_t i) { return read(first + i); };
+  return stretch;
+}
+
+/// What adit slam would say of `recording`, whose sensors are sound, by some stretches of it.
+Diagnosis mapping(const Recording& recording, RobotSlamConfig config) {
+  constexpr std::size_t kLength = 25;  // scans
+  constexpr std::size_t kStretches = 3;
+  const std::size_t length = std::min(kLength, recording.num_scans());
+  [[maybe_unused]] const std::optional<std::string> note =
+      use_kiss_icp_without_sensors(recording, config.odometry);
+  std::string why;
+  const std::vector<std::size_t> starts = spread_over(recording.num_scans() - length + 1, kStretches);
+  for (const std::size_t first : starts) {
+    LeftOut left_out("scans");
+    const Recording stretch = with_damaged_scans_empty(stretch_of(recording, first, length), left_out);
+    const Result<RobotMap> map = map_recording(stretch, {0}, config);
+    if (map)
+      return {"mapping", Health::good,
+              format("odometry follows the scans from {:.1f} s on",
+                     to_seconds(recording.scan_stamps[first] - recording.scan_stamps.front()))};
+    if (why.empty()) why = map.error().message;
+  }
+  return {"mapping", Health::spoils,
+          format("nothing can be mapped, by {} of the scans: {}", starts.size() * length, why)};
 }
 
 }  // namespace
@@ -229,7 +290,7 @@ std::string_view to_string(Health health) {
   return "unknown";
 }
 
-Result<std::vector<Diagnosis>> diagnose(const Recording& recording) {
+Result<std::vector<Diagnosis>> diagnose(const Recording& recording, const RobotSlamConfig& config) {
   const Result<ScansSeen> seen = look_at_scans(recording);
   if (!seen) return tl::unexpected(seen.error());
   std::vector<Diagnosis> out;
@@ -241,12 +302,26 @@ Result<std::vector<Diagnosis>> diagnose(const Recording& recording) {
   out.push_back(point_times(recording, *seen));
   out.push_back(ranges(*seen));
   out.push_back(view(*seen));
-  out.push_back(self_hits(*seen));
+  out.push_back(self_hits(recording, *seen));
   out.push_back(mount_source(recording));
   Pose mount = recording.T_base_lidar;
   out.push_back(mount_tilt(*seen, mount));
   out.push_back(mount_turn(recording, mount));
-  add_sensors(recording, out);
+  Recording sound = recording;
+  add_sensors(recording, use_sound_sensors(sound), out);
+  out.push_back(mapping(sound, config));
+  return out;
+}
+
+std::vector<Diagnosis> diagnose_clocks(const Bag& bag, const RecordingConfig& config) {
+  constexpr std::string_view kCheck = "clocks";  // findings begin with it
+  std::vector<Diagnosis> out;
+  for (const TopicInfo& topic : topics_of(bag, config)) {
+    if (topic.used_as.empty() || topic.clock_finding.empty()) continue;
+    std::string sentence = topic.clock_finding;
+    if (sentence.starts_with(std::string(kCheck) + ": ")) sentence.erase(0, kCheck.size() + 2);
+    out.push_back({std::string(kCheck), Health::noted, sentence});
+  }
   return out;
 }
 

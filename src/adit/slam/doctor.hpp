@@ -8,7 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "adit/core/recording_config.hpp"
 #include "adit/core/records.hpp"
+#include "adit/io/bag.hpp"
+#include "adit/robot/robot_slam.hpp"
 
 namespace adit {
 
@@ -32,8 +35,14 @@ struct Diagnosis {
 
 /// Scans (missing ones, times of points, ranges, view, parts of the robot in it), the mount (tilt and height
 /// by the floor; turn and lever arm by the motion between scans and the wheels), wheels and IMU
-/// (use_sound_sensors), in a fixed order, one line a check whatever it found. Reads some 40 scans and
-/// registers some 600. Fails where a scan cannot be read, or all are empty.
-[[nodiscard]] Result<std::vector<Diagnosis>> diagnose(const Recording& recording);
+/// (use_sound_sensors), and whether map_recording under `config` makes a map of some stretches of scans, in a
+/// fixed order, one line a check whatever it found. Reads some 40 scans and registers some 700. Fails where a
+/// scan cannot be read, or all are empty.
+[[nodiscard]] Result<std::vector<Diagnosis>> diagnose(const Recording& recording,
+                                                      const RobotSlamConfig& config = {});
+
+/// The topics of a bag that adit uses whose stamps and times of recording went at different speeds, one line
+/// each.
+[[nodiscard]] std::vector<Diagnosis> diagnose_clocks(const Bag& bag, const RecordingConfig& config);
 
 }  // namespace adit

@@ -42,19 +42,6 @@ std::vector<Recording> with_sound_sensors(std::vector<Recording> recordings,
   return recordings;
 }
 
-/// Falls back to KISS-ICP for a recording with neither wheels nor an IMU, and notes it: plane-icp needs none
-/// either, but it loses its way where scans do not come at a steady pace.
-RobotSlamConfig config_for(const Recording& recording, RobotSlamConfig config,
-                           std::vector<std::string>& notes) {
-  const bool imu_suffices = !recording.imu.empty() && config.odometry.method == OdometryMethod::plane_icp;
-  if (!recording.wheel.empty() || imu_suffices || config.odometry.method == OdometryMethod::kiss_icp)
-    return config;
-  notes.push_back(format("{}: no wheel odometry in this recording, so kiss-icp (LiDAR alone) instead of {}",
-                         recording.name, to_string(config.odometry.method)));
-  config.odometry.method = OdometryMethod::kiss_icp;
-  return config;
-}
-
 /// Clean scans of a simulated mine lose 0.1 % of their returns (decision 0038), so this is not the mine.
 constexpr double kNotableShare = 0.03;
 
@@ -125,7 +112,9 @@ Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig
       config.check_sensors ? with_sound_sensors(given, mapping.notes) : given;
   std::vector<RobotSlamConfig> configs;
   for (const Recording& recording : recordings) {
-    configs.push_back(config_for(recording, config.robot, mapping.notes));
+    configs.push_back(config.robot);
+    if (const auto note = use_kiss_icp_without_sensors(recording, configs.back().odometry))
+      mapping.notes.push_back(*note);
     note_gaps(recording, mapping.notes);
   }
   std::vector<Result<RobotMap>> maps(recordings.size(), fail("not run"));

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+// What the doctor says of recordings made in memory; simulated drives are in tests/scenarios/doctor_test.cpp.
+#include "adit/slam/doctor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/foreign_mcap.hpp"
+#include "support/synthetic_scan.hpp"
+
+namespace adit {
+namespace {
+
+/// 8 s straight through a furnished room.
+Recording straight_drive() {
+  constexpr int kScans = 80;
+  const test::Drive drive{Pose::planar(-5.0, 0.0, 0.0), {1.5, 0.0, 0.0, 0.0, 0.0, 0.0}};
+  test::Lidar lidar{16, 360, 0.4, 100.0, 0.01};
+  lidar.jitter = 0.5;
+  Recording recording;
+  recording.name = "walker";
+  recording.T_base_lidar = Pose::translation_of(0.0, 0.0, 0.9);
+  recording.mount_source = "recording.toml";
+  for (int i = 0; i < kScans; ++i) {
+    recording.scan_stamps.push_back(Stamp{lidar.period.count() * i});
+    recording.wheel.push_back({recording.scan_stamps.back(), drive.at(0.1 * i)});
+  }
+  recording.read_scan = [=, mount = recording.T_base_lidar](std::size_t i) {
+    return test::scan_of(test::furnished_room(), lidar, mount, drive, static_cast<int>(i));
+  };
+  return recording;
+}
+
+Diagnosis of(const Recording& recording, std::string_view check) {
+  const Result<std::vector<Diagnosis>> all = diagnose(recording);
+  EXPECT_TRUE(all) << all.error().message;
+  if (!all) return {};
+  const auto found = std::ranges::find(*all, check, &Diagnosis::check);
+  EXPECT_NE(found, all->end()) << check;
+  return found == all->end() ? Diagnosis{} : *found;
+}
+
+bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+
+TEST(DoctorInMemory, ALeverArmThatWasNotMeasuredIsNotCalledRight) {
+  const Diagnosis turn = of(straight_drive(), "mount: turn and lever arm");
+  EXPECT_EQ(turn.health, Health::good);
+  EXPECT_TRUE(has(turn.sentence, "lever arm: too few turns to tell")) << turn.sentence;
+}
+
+TEST(DoctorInMemory, WhatSlamCannotMapIsAProblem) {
+  const Recording good = straight_drive();
+  EXPECT_EQ(of(good, "mapping").health, Health::good);
+  Recording sparse = good;
+  sparse.read_scan = [read = good.read_scan](std::size_t i) {
+    return read(i).map([](Scan scan) {
+      scan.cloud.points.resize(20);
+      scan.cloud.intensities.clear();
+      scan.cloud.time_offsets_ns.resize(20);
+      return scan;
+    });
+  };
+  const Diagnosis mapping = of(sparse, "mapping");
+  EXPECT_EQ(mapping.health, Health::spoils);
+  EXPECT_TRUE(has(mapping.sentence, "nothing can be mapped")) << mapping.sentence;
+  EXPECT_TRUE(has(mapping.sentence, "the first has 20 points")) << mapping.sentence;
+}
+
+TEST(DoctorInMemory, OfScansThatComeSeldomTheStampsAreToBeChecked) {
+  Recording recording = straight_drive();
+  for (std::size_t i = 0; i < recording.num_scans(); ++i)
+    recording.scan_stamps[i] = Stamp{static_cast<std::int64_t>(i) * 8'000'000'000};
+  const Diagnosis measured = of(recording, "scans: missing");
+  EXPECT_EQ(measured.health, Health::spoils);
+  EXPECT_FALSE(has(measured.remedy, "faster disk")) << measured.remedy;
+  recording.assumptions = {"stamps: the number in each name counts as seconds"};
+  EXPECT_TRUE(has(of(recording, "scans: missing").remedy, "stamps.txt"));
+}
+
+TEST(DoctorInMemory, SensorsThatAreMissingAreNotCalledNeedless) {
+  Recording recording = straight_drive();
+  EXPECT_EQ(of(recording, "IMU").health, Health::good);
+  recording.wheel.clear();
+  const Diagnosis imu = of(recording, "IMU");
+  EXPECT_EQ(imu.health, Health::noted);
+  EXPECT_FALSE(has(imu.sentence, "needs none")) << imu.sentence;
+  EXPECT_TRUE(has(of(recording, "scans: the robot itself").sentence, "without wheels"));
+}
+
+TEST(DoctorInMemory, WheelsThatMoveLittleAreNotCalledMissing) {
+  Recording recording = straight_drive();
+  for (StampedPose& pose : recording.wheel) pose.T_world_body = Pose();
+  EXPECT_TRUE(has(of(recording, "scans: the robot itself").sentence, "moves less than 5 m"));
+}
+
+TEST(DoctorInMemory, AMountThatIsAssumedIsNotCalledKnown) {
+  Recording recording = straight_drive();
+  EXPECT_EQ(of(recording, "mount: source").health, Health::good);
+  recording.mount_source = "assumed: the origin of the clouds";
+  const Diagnosis source = of(recording, "mount: source");
+  EXPECT_EQ(source.health, Health::noted);
+  EXPECT_EQ(source.sentence, "0,0,0.9,0,0,0 (assumed: the origin of the clouds)");
+  EXPECT_TRUE(has(source.remedy, "--mount"));
+}
+
+TEST(DoctorInMemory, ClocksThatRunApartAreFound) {
+  const auto found_with = [](std::int64_t step_ns) {
+    std::vector<Stamp> stamps;
+    for (std::int64_t i = 0; i < 100; ++i) stamps.push_back({1'700'000'000'000'000'000 + i * step_ns});
+    test::ForeignFile file;
+    file.clouds("/points").odometry_stamped("/odom", stamps);
+    return diagnose_clocks(open_mcap_bag(memory_source(file.bytes())).value(), {});
+  };
+  EXPECT_TRUE(found_with(50'000'000).empty());
+  const std::vector<Diagnosis> clocks = found_with(75'000'000);  // recorded 50 ms apart
+  ASSERT_EQ(clocks.size(), 1U);
+  EXPECT_EQ(clocks[0].health, Health::noted);
+  EXPECT_TRUE(clocks[0].sentence.starts_with("/odom was recorded from")) << clocks[0].sentence;
+}
+
+}  // namespace
+}  // namespace adit
