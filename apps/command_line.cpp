@@ -48,6 +48,10 @@ Option Command::add_flag(const std::string& name, bool& value, const std::string
 }
 void Command::footer(const std::string& text) const { app_->footer(text); }
 
+namespace {
+constexpr int kMostThreads = 1024;  // more are a typing error
+}  // namespace
+
 Program::Program()
     : cli_(std::make_unique<CLI::App>("Multi-robot LiDAR SLAM for tunnels, mines and caves", "adit")) {
   cli_->require_subcommand(1);
@@ -58,7 +62,7 @@ Program::Program()
   cli_->set_version_flag("--version", std::string(version()));
   cli_->add_flag("--json", common_.json, "Print only the result, as JSON, on stdout");
   cli_->add_option("--threads", common_.threads, "Threads to use (default: all cores)")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, kMostThreads));
   std::vector<std::string> profiles;
   for (const Profile profile : kProfiles) profiles.emplace_back(to_string(profile));
   cli_->add_option("--profile", profile_,
@@ -160,9 +164,24 @@ std::string Program::command_of(const CLI::App& command) const {
   return text;
 }
 
+namespace {
+
+/// The first word that is neither an option nor the value of one; "" where there is none.
+std::string first_word(const CLI::App& program, int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (!word.starts_with('-')) return word;
+    const CLI::Option* option = program.get_option_no_throw(word);
+    if (option != nullptr && option->get_expected_max() > 0) ++i;
+  }
+  return "";
+}
+
+}  // namespace
+
 // CLI11 would only say that a command is missing.
 void Program::check_command(const std::string& name) const {
-  if (name.starts_with('-')) return;
+  if (name.empty()) return;
   std::vector<std::string> known;
   for (const CLI::App* command : cli_->get_subcommands({})) known.push_back(command->get_name());
   if (std::find(known.begin(), known.end(), name) != known.end()) return;
@@ -171,10 +190,33 @@ void Program::check_command(const std::string& name) const {
               (nearest.empty() ? "" : ", did you mean '" + nearest + "'?"));
 }
 
+// CLI11 names what was not expected, but not what may have been meant.
+void Program::parse(int argc, char** argv) const {
+  try {
+    cli_->parse(argc, argv);
+  } catch (const CLI::ExtrasError&) {
+    std::vector<std::string> known;
+    const auto add_options = [&](const CLI::App& app) {
+      for (const CLI::Option* option : app.get_options()) known.push_back(option->get_name());
+    };
+    add_options(*cli_->get_subcommand(first_word(*cli_, argc, argv)));
+    add_options(*cli_);
+    for (int i = 1; i < argc; ++i) {
+      const std::string word = argv[i];
+      const std::string name = word.substr(0, word.find('='));
+      if (!name.starts_with("--") || std::ranges::find(known, name) != known.end()) continue;
+      const std::string nearest = nearest_key(known, name);
+      usage_error("unknown option '" + name + "'" +
+                  (nearest.empty() ? "" : ", did you mean '" + nearest + "'?"));
+    }
+    throw;
+  }
+}
+
 int Program::run(int argc, char** argv) {
   try {
-    if (argc > 1) check_command(argv[1]);
-    cli_->parse(argc, argv);
+    check_command(first_word(*cli_, argc, argv));
+    parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return cli_->exit(error) == 0 ? 0 : 2;
   } catch (const std::exception& error) {

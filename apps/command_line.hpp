@@ -97,6 +97,7 @@ class Program {
 
  private:
   void check_command(const std::string& name) const;
+  void parse(int argc, char** argv) const;
   [[nodiscard]] std::string command_of(const CLI::App& command) const;
 
   std::unique_ptr<CLI::App> cli_;

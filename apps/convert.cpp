@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <utility>
 #include <variant>
 
 #include "adit/core/format.hpp"
+#include "adit/core/json_text.hpp"
+#include "adit/core/robot_name.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/bag_recording.hpp"
 #include "adit/io/cloud_files.hpp"
@@ -30,6 +34,7 @@
 #include "adit/slam/session_mcap.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
+#include "outputs.hpp"
 
 namespace adit::app {
 namespace {
@@ -114,6 +119,7 @@ struct ConvertOptions {
   std::string frame;
   bool covariance = false;
   bool mesh = false;
+  std::string robot;  // whose map, of several; "": that of the most robots
   RecordingConfig recording;
 };
 
@@ -203,8 +209,12 @@ Result<std::vector<Matrix6>> covariances_in(const OutputFrame& frame, const Plac
   return in_map;
 }
 
+/// Paths that a conversion wrote.
+using Written = std::vector<fs::path>;
+
 /// Every robot's poses at every scan, in OUT with the robot's name before the extension.
-Result<> convert_poses(const PlacedSession& session, const ConvertOptions& options) {
+Result<Written> convert_poses(const PlacedSession& session, const ConvertOptions& options) {
+  Written files;
   std::optional<MapCovariance> covariance;
   if (options.covariance) {
     Result<MapCovariance> found = MapCovariance::of(session, options.in);
@@ -219,20 +229,36 @@ Result<> convert_poses(const PlacedSession& session, const ConvertOptions& optio
       print_notes("convert", {format("{} is in another map: its poses are in {}", robot.map->name,
                                      frame->name.empty() ? "the frame of that one" : frame->name)});
     const Trajectory poses = seen_from(frame->T_frame_map, at_every_scan(*robot.map, robot.T_world_keyframe));
-    Result<> done = write_trajectory(path_of(options.out, robot.map->name), poses);
+    files.push_back(path_of(options.out, robot.map->name));
+    Result<> done = write_trajectory(files.back(), poses);
     if (done && covariance)
       done = covariances_in(*frame, session, r, *covariance).and_then([&](const auto& covariances) {
-        fs::path path = path_of(options.out, robot.map->name, "_covariance").replace_extension(".csv");
-        return write_bytes(path, covariance_csv(poses, robot.map->keyframes, covariances));
+        files.push_back(path_of(options.out, robot.map->name, "_covariance").replace_extension(".csv"));
+        return write_bytes(files.back(), covariance_csv(poses, robot.map->keyframes, covariances));
       });
-    if (!done) return done;
+    if (!done) return tl::unexpected(done.error());
   }
-  return {};
+  return files;
 }
 
-Result<> convert_map(const PlacedSession& session, const ConvertOptions& options, const MapsConfig& config) {
+/// The number of the map that the robot is in; without a name that of the most robots.
+Result<std::size_t> shared_map_of(const PlacedSession& session, const std::string& robot) {
+  if (robot.empty()) return 0;
+  std::vector<std::string> names;
+  for (const PlacedRobot& placed : session.robots) {
+    if (placed.map->name == robot) return placed.shared_map;
+    names.push_back(placed.map->name);
+  }
+  return fail(format("no robot of the session is called {}; there are: {}", printable(robot),
+                     fmt::join(names, ", ")));
+}
+
+Result<Written> convert_map(const PlacedSession& session, const ConvertOptions& options,
+                            const MapsConfig& config) {
   const fs::path out = options.out;
-  const JointMap map = joint_map_of(session);
+  const Result<std::size_t> number = shared_map_of(session, options.robot);
+  if (!number) return tl::unexpected(number.error());
+  const JointMap map = joint_map_of(session, *number);
   OutputFrame frame;
   if (!map.maps.empty() && !is_for_robots(out)) {
     const Result<OutputFrame> found = frame_for(session, map.maps.front()->name, options.frame);
@@ -244,12 +270,28 @@ Result<> convert_map(const PlacedSession& session, const ConvertOptions& options
   if (kind_of(out.string()) == Kind::cloud && !offset.isZero())
     notes.push_back(format("{} holds coordinates of {} less {:.0f} {:.0f} {:.0f}, as its numbers are short",
                            out.string(), frame.name, offset.x(), offset.y(), offset.z()));
-  for (const std::string& robot : map.left_out) notes.push_back(robot + " is in another map and left out");
+  for (const std::string& robot : map.left_out)
+    notes.push_back(format("{0} is in another map and left out; --robot {0} writes that one", robot));
   print_notes("convert", notes);
-  return options.mesh ? write_joint_mesh(out, map, config, frame) : write_joint_map(out, map, config, frame);
+  const Result<> written =
+      options.mesh ? write_joint_mesh(out, map, config, frame) : write_joint_map(out, map, config, frame);
+  if (!written) return tl::unexpected(written.error());
+  Written files{out};
+  if (extension_of(out) == ".pgm") files.push_back(fs::path(out).replace_extension(".yaml"));
+  return files;
 }
 
-Result<> convert_session(const ConvertOptions& options, const MapsConfig& config) {
+/// Where it is not the one file that was named: which there are now.
+void print_written(const Written& files, const std::string& out, bool json) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files) names.push_back(file.string());
+  if (json)
+    std::printf("%s\n", json_text(nlohmann::ordered_json{{"written", names}}).c_str());
+  else if (names != std::vector<std::string>{out})
+    std::printf("written: %s\n", format("{}", fmt::join(names, ", ")).c_str());
+}
+
+Result<Written> convert_session(const ConvertOptions& options, const MapsConfig& config) {
   const bool keeps_frame = kind_of(options.out) == Kind::graph || extension_of(options.out) == ".mcap" ||
                            is_for_robots(options.out);
   if (options.covariance && kind_of(options.out) != Kind::trajectory)
@@ -257,14 +299,44 @@ Result<> convert_session(const ConvertOptions& options, const MapsConfig& config
   if (options.mesh && extension_of(options.out) != ".ply") usage_error("--mesh is for a .ply");
   if (keeps_frame && options.frame == "target")
     usage_error("graphs and what robots and viewers load (.mcap, .pgm, .bt) are in the map's own frame");
+  const bool is_of_all = kind_of(options.out) == Kind::graph || kind_of(options.out) == Kind::trajectory ||
+                         extension_of(options.out) == ".mcap";
+  if (!options.robot.empty() && is_of_all)
+    usage_error("--robot chooses among joint maps; graphs, poses and .mcap have all robots");
+  const fs::path out = options.out;
   if (kind_of(options.out) == Kind::graph)
     return convert_graph(fs::path(options.in) / "graph_initial.g2o", fs::path(options.in).filename().string(),
-                         options.out);
-  return read_placed_session(options.in).and_then([&](const PlacedSession& session) {
+                         out)
+        .map([&] { return Written{out}; });
+  return read_placed_session(options.in).and_then([&](const PlacedSession& session) -> Result<Written> {
     if (kind_of(options.out) == Kind::trajectory) return convert_poses(session, options);
-    if (extension_of(options.out) != ".mcap") return convert_map(session, options, config);
-    return write_session_mcap(options.out, session, config.voxel_m, config.start_together);
+    if (extension_of(out) != ".mcap") return convert_map(session, options, config);
+    return write_session_mcap(out, session, config.voxel_m, config.start_together).map([&] {
+      return Written{out, fs::path(out).replace_extension(".layout.json")};
+    });
   });
+}
+
+/// What a kind of input can become, for people.
+std::string_view outputs_of(Kind kind) {
+  switch (kind) {
+    case Kind::recording:
+      return "a recording becomes .mcap, a folder of clouds, or its poses (.tum, .csv, .kitti); maps (.las, "
+             ".ply, .pgm, .bt) are of sessions, which adit slam makes of it";
+    case Kind::cloud:
+      return "a cloud becomes .pcd, .ply or .bin";
+    case Kind::mesh:
+      return "a mesh becomes .ply";
+    case Kind::trajectory:
+      return "a trajectory becomes .tum, .csv or .kitti";
+    case Kind::graph:
+      return "a graph becomes .g2o or .jrl";
+    case Kind::session:
+    case Kind::unknown:
+      break;
+  }
+  return "adit converts sessions, recordings (.mcap, .db3, .bag, folders), clouds (.pcd, .ply, .bin), meshes "
+         "(.obj, .stl, .dae, .glb), trajectories (.tum, .csv) and graphs (.g2o, .jrl, .cbor)";
 }
 
 Result<> convert(const ConvertOptions& options, const Common& common) {
@@ -272,12 +344,13 @@ Result<> convert(const ConvertOptions& options, const Common& common) {
   const std::string& out = options.out;
   const Kind from = kind_of(in);
   const Kind to = kind_of(out);
-  if (from == Kind::session) {
-    const Result<RunConfig> config = configured(common);
-    return config ? convert_session(options, config->maps) : tl::unexpected(config.error());
-  }
-  if (!options.frame.empty() || options.covariance || options.mesh)
-    usage_error("--frame, --covariance and --mesh are for what is written of a session, and " + in +
+  refuse_to_replace_input(in, out);
+  if (from == Kind::session)
+    return configured(common)
+        .and_then([&](const RunConfig& config) { return convert_session(options, config.maps); })
+        .map([&](const Written& files) { print_written(files, out, common.json); });
+  if (!options.frame.empty() || options.covariance || options.mesh || !options.robot.empty())
+    usage_error("--frame, --covariance, --mesh and --robot are for what is written of a session, and " + in +
                 " is none");
   if (from == Kind::recording && (to == Kind::recording || to == Kind::trajectory)) {
     const Result<RunConfig> config = configured(common);
@@ -288,7 +361,7 @@ Result<> convert(const ConvertOptions& options, const Common& common) {
   if (from == Kind::cloud && to == Kind::cloud) return convert_cloud(in, out);
   if (from == Kind::trajectory && to == Kind::trajectory) return convert_trajectory(in, out);
   if (from == Kind::graph && to == Kind::graph) return convert_graph(in, fs::path(in).stem().string(), out);
-  usage_error(in + " cannot become " + out);
+  usage_error(format("{} cannot become {}: {}", in, out, outputs_of(from)));
 }
 
 }  // namespace
@@ -311,6 +384,9 @@ void add_convert(Program& program) {
       .one_of({"map", "target"});
   command.add_flag("--covariance", options->covariance,
                    "Beside the poses of a session their covariances: NAME_ROBOT_covariance.csv");
+  command.add_option("--robot", options->robot,
+                     "Of the maps of a session the one that this robot is in (default: that of the most "
+                     "robots)");
   command.add_flag("--mesh", options->mesh, "The map of a session as a surface of triangles (.ply)");
   add_recording_options(command, options->recording);
   add_truth_topic(command, options->recording);

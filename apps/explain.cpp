@@ -54,13 +54,15 @@ Table hypotheses_of(const SavedMerge& merge) {
                         "other alignment has to stay well behind. Evidence is the logarithm of "
                         "a likelihood ratio: of loops and places, where only distinctive places that "
                         "agree speak for it and changes against it, and of the relief of walls "
-                        "(share of patches on the same side: half for one wall). Things may come and "
-                        "go. Few loops speak against an alignment, unless registration without a guess finds "
+                        "(equal signs: the share of patches on which two pairs of scans find the wall "
+                        "displaced to the same side; half for one wall). Movable objects (vehicles, pallets) "
+                        "speak little against it. Few loops speak against an alignment, unless registration "
+                        "without a guess finds "
                         "more of its places again than it misses.",
                         kHypothesesPerCheck, merge.check.needed),
       .groups = {},
       .header = {"alignment", "loops", "evidence", "of walls", "compared m", "places", "agree", "distinctive",
-                 "changes", "things", "patches", "same side", "found again", "m apart"},
+                 "changes", "movable objects", "patches", "equal signs", "found again", "m apart"},
       .rows = {}};
   for (const MergeHypothesis& h : merge.check.hypotheses) {
     const bool is_weighed = h.outcome != HypothesisOutcome::refuted;

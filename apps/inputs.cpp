@@ -93,8 +93,10 @@ void add_recording_options(const Command& command, RecordingConfig& config) {
   command.add_option(
       "--tf", config.tf,
       "Topics of the links between frames, apart by commas (default: all called tf or tf_static)");
-  command.add_option("--point-times", config.point_times,
-                     "Unit of the times of points, s, ms, us or ns (default: as found)");
+  command
+      .add_option("--point-times", config.point_times,
+                  "Unit of the times of points, s, ms, us or ns (default: as found)")
+      .one_of({"s", "ms", "us", "ns"});
 }
 
 void add_truth_topic(const Command& command, RecordingConfig& config) {

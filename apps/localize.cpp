@@ -13,6 +13,7 @@
 #include "adit/robot/keyframe_trajectory.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
+#include "outputs.hpp"
 #include "sessions.hpp"
 
 namespace adit::app {
@@ -88,7 +89,8 @@ void add_localize(Program& program) {
   command.add_option("session", options->session, "Session directory").required();
   command.add_option("input", options->input, "Recording or folder of scans, NAME=FILE to name the robot")
       .required();
-  command.add_option("--out", options->out, "TUM file for where the robot was, in the frame of the map");
+  command.add_option("--out", options->out, "TUM file for where the robot was, in the frame of the map")
+      .check(trajectory_name_fault);
   add_recording_options(command, options->recording);
   add_truth_topic(command, options->recording);
   command.footer("The session stays as it is; adit slam --session adds the robot to it.");

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "command_line.hpp"
+#include "outputs.hpp"
 #include "sessions.hpp"
 
 namespace adit::app {
@@ -23,6 +24,10 @@ Result<> merge_command(const MergeOptions& options, const Common& common) {
   if (!control) return tl::unexpected(control.error());
   Result<SavedSessions> saved = open_sessions(options.sessions);
   if (!saved) return tl::unexpected(saved.error());
+  std::vector<std::string> names;
+  for (const SavedFleet& fleet : saved->fleets)
+    for (const auto& map : fleet.maps) names.push_back(map->name);
+  if (const Result<> kept = check_keeps_robots(options.out, names); !kept) return kept;
   Result<OutputDir> out = OutputDir::create(options.out, "session");
   if (!out) return tl::unexpected(out.error());
   saved->job.provenance.command = common.command;

@@ -20,6 +20,7 @@
 #include "adit/robot/sensor_checks.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
+#include "outputs.hpp"
 
 namespace adit::app {
 namespace {
@@ -132,7 +133,9 @@ void add_odometry(Program& program) {
                   "plane-icp (default with wheels or an IMU), kinematic-icp (needs wheels) or "
                   "kiss-icp (LiDAR alone; default without both)")
       .one_of({"plane-icp", "kinematic-icp", "kiss-icp"});
-  command.add_option("--out", options->out, "Trajectory to write (TUM)").required();
+  command.add_option("--out", options->out, "Trajectory to write (TUM)")
+      .required()
+      .check(trajectory_name_fault);
   command.add_option("--truth", options->truth,
                      "True trajectory for the error, a file (TUM) or a topic (default: the recording's own)");
   add_recording_options(command, options->recording);

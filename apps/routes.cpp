@@ -121,7 +121,10 @@ void add_routes(Program& program) {
   const Command command = program.add_command(
       "routes", "Plan routes that robots can drive through a mesh, for simulate, slam and study",
       [options](const Common& common) { return routes_command(*options, common); });
-  command.add_option("mesh", options->mesh, "Mesh: PLY, OBJ, STL, DAE, GLB; metres, z up, closed").required();
+  command
+      .add_option("mesh", options->mesh,
+                  "Mesh: PLY, OBJ, STL (z up), DAE, GLB (which say what is up); metres, closed")
+      .required();
   command.add_option("--robots", options->robots, "How many robots, 1 to 256 (default 4)").in_range(1, 256);
   command.add_option("--out", options->out, "routes.yaml to write").required();
   command.add_option("--length", options->length, "Longest route, metres (default 400)");

@@ -15,6 +15,7 @@
 #include "adit/io/session_toml.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
+#include "outputs.hpp"
 #include "policies.hpp"
 #include "sessions.hpp"
 
@@ -88,6 +89,19 @@ Result<Job> job_again(const SlamOptions& options, const Common& common) {
   return job;
 }
 
+/// Fails where `path` holds robots that are neither in the sessions to go on from nor to be mapped. One that
+/// cannot be opened counts as meant, too.
+Result<> check_loses_no_robot(const std::string& path, const std::vector<SavedFleet>& saved,
+                              const Inputs& inputs) {
+  std::vector<std::string> names;
+  for (const SavedFleet& fleet : saved)
+    for (const auto& map : fleet.maps) names.push_back(map->name);
+  for (const Recording& recording : inputs.recordings) names.push_back(recording.name);
+  for (const FailedRobot& robot : inputs.failed)
+    names.push_back(robot.name.substr(robot.name.rfind('/') + 1));  // a namespace
+  return check_keeps_robots(path, names);
+}
+
 /// Maps recordings, opened as `reading` says; the robots of earlier sessions, if any, come first.
 Result<> run_job(Job job, const RunConfig& reading, const std::vector<std::string>& paths,
                  std::vector<SavedFleet> saved, const SlamOptions& options, bool json) {
@@ -96,6 +110,7 @@ Result<> run_job(Job job, const RunConfig& reading, const std::vector<std::strin
   if (!control) return tl::unexpected(control.error());
   Result<Inputs> inputs = open_inputs(paths, reading);
   if (!inputs) return tl::unexpected(inputs.error());
+  if (const Result<> kept = check_loses_no_robot(to, saved, *inputs); !kept) return kept;
   Result<OutputDir> out = OutputDir::create(to, "session");
   if (!out) return tl::unexpected(out.error());
   if (!inputs->world.empty()) job.provenance.world = inputs->world;

@@ -30,7 +30,7 @@ Result<> check_range(const Field& field, double value) {
 Result<> check_choice(const Field& field, std::string_view value) {
   if (field.choices.empty() || std::ranges::find(field.choices, value) != field.choices.end()) return {};
   std::vector<std::string> choices = field.choices;
-  std::ranges::replace(choices, "", "'' (nothing)");
+  std::ranges::replace(choices, "", "empty");
   return fail(format("{} = '{}' is not one of {}", field.key, value, fmt::join(choices, ", ")));
 }
 

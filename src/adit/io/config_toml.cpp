@@ -110,7 +110,9 @@ Fields fields_of_table(const Fields& fields, const std::string& table) {
 std::string range_text(const Field& field) {
   if (std::holds_alternative<bool*>(field.target)) return "true, false";
   if (field.is_text()) {
-    return field.choices.empty() ? "any text" : format("{}", fmt::join(field.choices, ", "));
+    std::vector<std::string> choices = field.choices;
+    std::ranges::replace(choices, "", "empty");
+    return choices.empty() ? "any text" : format("{}", fmt::join(choices, ", "));
   }
   return format("{} to {}", field.min, field.max);
 }

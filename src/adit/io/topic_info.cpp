@@ -17,8 +17,10 @@ namespace {
 std::optional<double> rate_of(std::size_t num_intervals, double seconds) {
   if (num_intervals == 0 || seconds <= 0.0) return std::nullopt;
   const double rate = static_cast<double>(num_intervals) / seconds;
-  const double scale = std::pow(10.0, 3.0 - std::floor(std::log10(rate)));
-  return std::round(rate * scale) / scale;
+  // Powers of ten of at least 1 are exact, and a quotient by one is printed in so few digits.
+  const double digits = std::floor(std::log10(rate)) - 3.0;
+  const double power = std::pow(10.0, std::abs(digits));
+  return digits > 0.0 ? std::round(rate / power) * power : std::round(rate * power) / power;
 }
 
 /// A message by both clocks.

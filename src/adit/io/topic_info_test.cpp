@@ -20,6 +20,7 @@ TEST(Rhythm, IsThatOfAllMessagesAndNotOfBursts) {
   EXPECT_EQ(bursts.rate_hz, 40.0);
   EXPECT_NEAR(bursts.longest_gap_s, 0.097, 1e-12);
   EXPECT_EQ(rhythm_of(at_ms({0, 333, 666, 999})).rate_hz, 3.003) << "four digits";
+  EXPECT_EQ(rhythm_of({{0}, {7}, {14}}).rate_hz, 142'900'000.0) << "of stamps that count from anything";
   EXPECT_FALSE(rhythm_of(at_ms({5, 5})).rate_hz) << "sent twice at one moment";
   EXPECT_FALSE(rhythm_of({}).rate_hz);
 }

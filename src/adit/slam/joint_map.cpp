@@ -204,10 +204,10 @@ Result<PlacedSession> read_placed_session(const std::filesystem::path& session) 
   return out;
 }
 
-JointMap joint_map_of(const PlacedSession& session) {
+JointMap joint_map_of(const PlacedSession& session, std::size_t shared_map) {
   JointMap map;
   for (const PlacedRobot& robot : session.robots) {
-    if (robot.shared_map != 0) {
+    if (robot.shared_map != shared_map) {
       map.left_out.push_back(robot.map->name);
       continue;
     }

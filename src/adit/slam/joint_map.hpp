@@ -60,8 +60,8 @@ struct JointMap {
   std::vector<std::vector<Pose>> T_world_keyframe;    ///< One for each keyframe of each map.
   std::vector<std::string> left_out;                  ///< Robots of the session that are in other maps.
 };
-/// The map of the most robots, the first of several.
-[[nodiscard]] JointMap joint_map_of(const PlacedSession& session);
+/// The map with that number (PlacedRobot::shared_map): 0 is that of the most robots, the first of several.
+[[nodiscard]] JointMap joint_map_of(const PlacedSession& session, std::size_t shared_map = 0);
 
 /// What is subtracted from coordinates in that frame before they are stored as float32: thousands of metres
 /// where the map is further than 4 km from zero along an axis, so that millimetres stay.
