@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <sstream>
+#include <system_error>
 
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
@@ -194,7 +195,10 @@ Result<> write_georeferences(const std::filesystem::path& session, const std::ve
 Result<std::vector<Georeference>> read_georeferences(const std::filesystem::path& session) {
   const std::filesystem::path path = session / kGeoreferenceFile;
   std::vector<Georeference> maps;
-  if (!std::filesystem::exists(path)) return maps;
+  std::error_code unreachable;
+  const bool is_there = std::filesystem::exists(path, unreachable);
+  if (unreachable) return fail(format("{}: cannot be looked for: {}", path.string(), unreachable.message()));
+  if (!is_there) return maps;
   const Result<std::string> text = read_bytes(path);
   if (!text) return tl::unexpected(text.error());
   if (const Result<> checked = check_toml_depth(*text); !checked) return fail(path.string(), checked.error());

@@ -3,6 +3,7 @@
 #include "adit/io/session_dir.hpp"
 
 #include <sstream>
+#include <system_error>
 
 #include "adit/core/progress.hpp"
 #include "adit/geometry/voxel_grid.hpp"
@@ -54,6 +55,15 @@ Result<> write_merged_map(const std::filesystem::path& dir, const Session& sessi
   return all.empty() ? Result<>{} : write_cloud(dir / "map.ply", all);
 }
 
+/// The folder of a robot whose keyframes all left under the policy is not written; another of that name may
+/// be the user's.
+bool has_robot(const std::filesystem::path& folder) {
+  std::error_code error;  // reading the file then says what is wrong
+  std::error_code ignored;
+  return std::filesystem::exists(folder / "trajectory.tum", error) || error ||
+         std::filesystem::exists(folder / "odometry.tum", ignored);
+}
+
 }  // namespace
 
 PointCloud merged_cloud(const RobotMap& map, const std::vector<Pose>& T_world_keyframe, double voxel) {
@@ -101,7 +111,7 @@ Result<SavedSession> read_session(const std::filesystem::path& dir) {
   session.robots = std::move(header->robots);
   session.components = std::move(header->components);
   for (const std::string& robot : session.robots) {
-    if (!std::filesystem::exists(dir / robot)) {  // all of its keyframes left under the policy
+    if (!has_robot(dir / robot)) {
       session.optimized.emplace_back();
       session.odometry.emplace_back();
       continue;

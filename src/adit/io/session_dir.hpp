@@ -26,6 +26,9 @@ struct RobotProvenance {
   std::string lidar;      ///< As the recording names it; "" when unknown.
   std::size_t scans = 0;  ///< Of its recording; 0 of a robot that could not be mapped.
   std::string failure;    ///< One line that names the robot; "" when it was mapped.
+
+  /// Whether it is about the map of that name: a robot that failed may have had the name, too.
+  [[nodiscard]] bool is_of_map(const std::string& map) const { return name == map && failure.empty(); }
 };
 
 /// Where a session came from: enough to make it again.

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ctime>
 #include <sstream>
 
+#include "adit/core/format.hpp"
 #include "adit/io/session_toml.hpp"
 #include "support/files.hpp"
 
@@ -189,6 +191,55 @@ TEST(SessionDir, APairIsListedAlsoWhereNothingWasTested) {
     EXPECT_EQ(merges->front().refusal.empty(), merges->front().merged);
   }
   EXPECT_FALSE(parse_session_merges("robots = [").has_value());
+}
+
+TEST(SessionDir, TheMergesOfAFullFleetAreReadWithinSeconds) {
+  constexpr std::size_t kNumRobots = 256;
+  std::string robots;
+  std::string refusals;
+  for (std::size_t b = 0; b < kNumRobots; ++b) {
+    robots += format("'r{}',", b);
+    for (std::size_t a = 0; a < b; ++a) refusals += format("'r{} and r{}: no loop of {} {}',\n", a, b, a, b);
+  }
+  const std::clock_t begin = std::clock();
+  const Result<std::vector<SavedMerge>> merges = parse_session_merges(
+      format("robots = [{}]\nrefusals = [{}]\ncomponents = [['r3', 'r0', 'r7']]\n", robots, refusals));
+  const double used_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  ASSERT_TRUE(merges) << merges.error().message;
+  ASSERT_EQ(merges->size(), kNumRobots * (kNumRobots - 1) / 2);
+  EXPECT_EQ(merges->back().refusal, "no loop of 254 255");
+  EXPECT_EQ(std::ranges::count_if(*merges, &SavedMerge::share_a_map), 3);
+  EXPECT_LT(used_s, 15.0) << "each list is read once, not once a pair";
+}
+
+TEST(SessionDir, AFolderOfTheUsersIsNoRobots) {
+  const TemporaryFolder folder;
+  Session session = session_of_two();
+  auto left = std::make_shared<RobotMap>();  // no keyframe was left of it
+  left->id = {2};
+  left->name = "cy";
+  session.maps.push_back(left);
+  session.fleet.robots[{2}].name = "cy";
+  session.solution = solve(session.fleet, {});
+  ASSERT_TRUE(write_session(folder.path(), session, MapFiles::leave_out));
+  std::filesystem::create_directories(folder / "cy");
+  put_file(folder / "cy/metadata.yaml", "of the recording");
+  const Result<SavedSession> saved = read_session(folder.path());
+  ASSERT_TRUE(saved) << saved.error().message;
+  EXPECT_EQ(saved->robots.size(), 3U);
+  EXPECT_TRUE(saved->optimized.at(2).empty());
+  std::filesystem::remove(folder / "bo/trajectory.tum");
+  EXPECT_ERROR(read_session(folder.path()), "bo/trajectory.tum");
+}
+
+TEST(SessionDir, WhatCannotBeLookedForIsNamed) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_session(folder.path(), session_of_two(), MapFiles::leave_out));
+  std::filesystem::create_symlink("georeference.toml", folder / "georeference.toml");
+  EXPECT_ERROR(read_session(folder.path()), "georeference.toml: cannot be looked for");
+  const std::string too_long(300, 'a');
+  put_file(folder / "session.toml", "robots = ['" + too_long + "']\n");
+  EXPECT_ERROR(read_session(folder.path()), too_long + "/trajectory.tum");
 }
 
 TEST(SessionDir, LoopsOfEarlierVersionsAreReadToo) {

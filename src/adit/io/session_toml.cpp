@@ -7,6 +7,8 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
+#include <set>
 #include <sstream>
 #include <tuple>
 #include <utility>
@@ -288,29 +290,52 @@ std::vector<SavedMerge> merges_in(const toml::table& table, const char* key) {
   return merges;
 }
 
-/// Whether both are named by one of the lists.
-bool are_together(const std::string& a, const std::string& b, const toml::array* lists) {
-  return lists != nullptr && std::ranges::any_of(*lists, [&](const toml::node& node) {
-           const std::vector<std::string> names = strings_of(&node);
-           return std::ranges::find(names, a) != names.end() && std::ranges::find(names, b) != names.end();
-         });
+using Names = std::pair<std::string, std::string>;
+
+Names in_order(const std::string& a, const std::string& b) { return std::minmax(a, b); }
+
+/// Any two that one of the lists names, each in order.
+std::set<Names> pairs_in(const toml::array* lists) {
+  std::set<Names> pairs;
+  if (lists == nullptr) return pairs;
+  for (const toml::node& list : *lists) {
+    const std::vector<std::string> names = strings_of(&list);
+    for (std::size_t a = 0; a < names.size(); ++a)
+      for (std::size_t b = a + 1; b < names.size(); ++b) pairs.insert(in_order(names[a], names[b]));
+  }
+  return pairs;
 }
 
-/// What became of two robots, tested or not.
-SavedMerge merge_of(const std::string& a, const std::string& b, const toml::table& table,
-                    const std::vector<SavedMerge>& tested) {
-  const auto found =
-      std::ranges::find_if(tested, [&](const SavedMerge& merge) { return merge.a == a && merge.b == b; });
-  SavedMerge merge;
-  if (found != tested.end()) merge = *found;
-  merge.a = a;
-  merge.b = b;
-  merge.merged = merge.merged || are_together(a, b, table["merged_pairs"].as_array());
-  merge.share_a_map = are_together(a, b, table["components"].as_array());
-  const std::string start = format("{} and {}: ", a, b);
+/// The sentences of "A and B: sentence" by "A and B".
+std::map<std::string, std::string> refusals_in(const toml::table& table) {
+  std::map<std::string, std::string> refusals;
   for (const std::string& refusal : strings_of(table["refusals"].node()))
-    if (refusal.starts_with(start)) merge.refusal = refusal.substr(start.size());
-  return merge;
+    if (const std::size_t end = refusal.find(": "); end != std::string::npos)
+      refusals[refusal.substr(0, end)] = refusal.substr(end + 2);
+  return refusals;
+}
+
+/// What became of any two robots, tested or not.
+std::vector<SavedMerge> merges_of_pairs(const std::vector<std::string>& robots, const toml::table& table) {
+  std::map<Names, SavedMerge> tested;
+  for (SavedMerge& merge : merges_in(table, "merges"))
+    tested.try_emplace({merge.a, merge.b}, std::move(merge));
+  const std::set<Names> merged = pairs_in(table["merged_pairs"].as_array());
+  const std::set<Names> sharing = pairs_in(table["components"].as_array());
+  const std::map<std::string, std::string> refusals = refusals_in(table);
+  std::vector<SavedMerge> merges;
+  for (std::size_t a = 0; a < robots.size(); ++a)
+    for (std::size_t b = a + 1; b < robots.size(); ++b) {
+      const Names names{robots[a], robots[b]};
+      SavedMerge& merge = merges.emplace_back();
+      if (const auto found = tested.find(names); found != tested.end()) merge = std::move(found->second);
+      std::tie(merge.a, merge.b) = names;
+      merge.merged = merge.merged || merged.contains(in_order(robots[a], robots[b]));
+      merge.share_a_map = sharing.contains(in_order(robots[a], robots[b]));
+      const auto refusal = refusals.find(format("{} and {}", names.first, names.second));
+      if (refusal != refusals.end()) merge.refusal = refusal->second;
+    }
+  return merges;
 }
 
 }  // namespace
@@ -351,11 +376,7 @@ Result<std::vector<SavedMerge>> parse_session_merges(std::string_view text) {
   try {
     const toml::table table = toml::parse(text);
     const std::vector<std::string> robots = strings_of(table["robots"].node());
-    const std::vector<SavedMerge> tested = merges_in(table, "merges");
-    std::vector<SavedMerge> merges;
-    for (std::size_t a = 0; a < robots.size(); ++a)
-      for (std::size_t b = a + 1; b < robots.size(); ++b)
-        merges.push_back(merge_of(robots[a], robots[b], table, tested));
+    std::vector<SavedMerge> merges = merges_of_pairs(robots, table);
     std::ranges::copy(merges_in(table, "revisits"), std::back_inserter(merges));
     return merges;
   } catch (const toml::parse_error& error) {
