@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
 
 #include "adit/slam/merge_pictures.hpp"
 #include "adit/slam/naming.hpp"
+#include "adit/slam/session_pages.hpp"
 #include "adit/slam/slam.hpp"
 #include "support/files.hpp"
 #include "support/synthetic_scan.hpp"
@@ -158,6 +161,53 @@ TEST(Slam, ASessionStaysInItsFolderWhateverRobotsAreCalled) {
   const std::string metrics = test::get_file(folder / "out/metrics.json");
   EXPECT_NE(metrics.find("\"odometry\": \"kiss-icp\""), std::string::npos) << metrics;
   EXPECT_NE(test::get_file(folder / "out/report.html").find("odometry kiss-icp"), std::string::npos);
+}
+
+TEST(Slam, WhatMessagesCouldNotBringStopsNoRun) {
+  SlamConfig config;
+  config.bus.loss = 0.95;
+  const Result<SlamRun> run = slam({drive("ada"), drive("bo")}, config);
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_EQ(std::ranges::count_if(run->notes,
+                                  [](const std::string& note) {
+                                    return note.starts_with("bo: of ") && note.find(" ada did not hear") < 99;
+                                  }),
+            1);
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_slam(folder.path(), *run));
+  const Result<SavedFleet> saved = read_fleet(folder.path());
+  ASSERT_TRUE(saved) << saved.error().message;
+  ASSERT_EQ(saved->maps.size(), 2U);
+  for (const auto& map : run->session.maps) {
+    EXPECT_FALSE(map->keyframes.empty());
+    EXPECT_EQ(run->session.solution.T_world_keyframe.at(map->id).size(), map->keyframes.size()) << map->name;
+  }
+}
+
+/// The odometry of each robot, by name.
+std::map<std::string, std::string> odometries_in(const SlamRun& run) {
+  std::map<std::string, std::string> odometries;
+  const nlohmann::json metrics = nlohmann::json::parse(session_metrics(run));
+  for (const auto& robot : metrics["robots"]) odometries[robot["name"]] = robot["odometry"];
+  return odometries;
+}
+
+TEST(Slam, EveryRobotHasItsOwnOdometryHoweverOthersOfItsNameEnded) {
+  const std::map<std::string, std::string> both = {{"ada", "kiss-icp"}, {"cy", "kiss-icp"}};
+  const Result<SlamRun> first = slam({drive("ada"), broken("cy")});
+  ASSERT_TRUE(first) << first.error().message;
+  const test::TemporaryFolder folder;
+  ASSERT_TRUE(write_slam(folder.path(), *first));
+  SavedFleet saved = read_fleet(folder.path()).value();
+  const Result<SlamRun> grown = slam_on({saved}, {drive("cy")}, {});
+  ASSERT_TRUE(grown) << grown.error().message;
+  EXPECT_EQ(odometries_in(*grown), both);
+  ASSERT_EQ(grown->session.provenance.robots.size(), 3U) << "that it failed is not forgotten";
+
+  saved.provenance.robots.back() = {"cy", "another", "", 3, ""};  // a robot without keyframes
+  EXPECT_EQ(odometries_in(slam_on({saved}, {drive("cy")}, {}).value()), both);
+  saved.provenance.robots.clear();  // as where an earlier version saved it
+  EXPECT_EQ(odometries_in(slam_on({saved}, {}, {}).value()).at("ada"), "");
 }
 
 TEST(MarkSlips, MarksThePathFromTheKeyframeBeforeToTheOneAfter) {

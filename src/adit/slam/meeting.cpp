@@ -3,9 +3,11 @@
 #include "adit/slam/meeting.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <map>
 #include <variant>
 
+#include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/fleet/sync/own_map_parts.hpp"
 
@@ -28,6 +30,15 @@ void limit_cached(std::vector<Agent>& agents, std::size_t at_work) {
     if (num_bytes <= kMaxCachedBytes) continue;
     num_bytes -= agents[a].num_cached_bytes();
     agents[a].forget_cached();
+  }
+}
+
+/// One robot's failure stops no other.
+void attempt(const Agent& agent, std::vector<std::string>& failures, const auto& work) {
+  try {
+    work();
+  } catch (const std::exception& failure) {
+    failures.push_back(format("{}: {}", agent.known().robots.at(agent.id()).name, failure.what()));
   }
 }
 
@@ -57,12 +68,12 @@ void restore(Agent& agent, Meeting& meeting, const std::vector<MetBefore>& met_b
   }
 }
 
-Result<> all_meet(std::vector<Agent>& agents, const BackEndConfig& back_end, LoopbackBus& bus,
-                  const Phase& phase) {
+Result<> all_meet(Meeting& meeting, const BackEndConfig& back_end, LoopbackBus& bus, const Phase& phase) {
+  std::vector<Agent>& agents = meeting.agents;
   for (std::size_t a = 0; a < agents.size(); ++a) {
     for (std::size_t b = a + 1; b < agents.size(); ++b) {
       if (const Result<> met = bus.meet(agents[a].id(), agents[b].id()); !met) return met;
-      if (a == 0) agents[a].update_estimate(back_end);
+      if (a == 0) attempt(agents[a], meeting.failures, [&] { agents[a].update_estimate(back_end); });
       phase.advance();
     }
     agents[a].forget_cached();  // it has searched all that it searches
@@ -83,19 +94,20 @@ Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps, 
   meeting.agents.reserve(num_robots);  // the bus keeps addresses
   for (const auto& map : meeting.maps) {
     meeting.agents.emplace_back(map, agent_config);
-    restore(meeting.agents.back(), meeting, met_before);
-    meeting.agents.back().find_revisits();
+    Agent& agent = meeting.agents.back();
+    restore(agent, meeting, met_before);
+    attempt(agent, meeting.failures, [&] { agent.find_revisits(); });
     limit_cached(meeting.agents, meeting.agents.size() - 1);
-    bus.join(meeting.agents.back());
+    bus.join(agent);
     phase.advance();
   }
   for (std::size_t round = 0; round < kRounds; ++round) {
-    if (const Result<> met = all_meet(meeting.agents, config.back_end, bus, phase); !met)
+    if (const Result<> met = all_meet(meeting, config.back_end, bus, phase); !met)
       return tl::unexpected(met.error());
   }
   for (const Agent& agent : meeting.agents) meeting.bytes_sent.push_back(bus.bytes_sent(agent.id()));
-  const std::vector<std::string> lost = bus.failures();
-  meeting.failures.insert(meeting.failures.end(), lost.begin(), lost.end());
+  for (const std::string& failure : bus.failures())
+    meeting.failures.push_back("a message was left out: " + failure);
   return meeting;
 }
 

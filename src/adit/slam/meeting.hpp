@@ -12,14 +12,14 @@
 namespace adit {
 
 /// The agents of some robots after each has met every other over the loopback bus and has heard what the
-/// others' meetings brought. All of them know the same, so any of them can solve. The first has kept its
-/// estimate up to date from meeting to meeting, as a robot does while it drives.
+/// others' meetings brought. Unless messages are lost all of them know the same, so any of them can solve.
+/// The first has kept its estimate up to date from meeting to meeting, as a robot does while it drives.
 struct Meeting {
   std::vector<std::shared_ptr<const RobotMap>> maps;  ///< As given, in that order.
   std::vector<Agent> agents;                          ///< One per map.
   std::vector<std::uint64_t> bytes_sent;              ///< One per agent.
-  std::vector<std::string>
-      failures;  ///< Messages and earlier findings that an agent could not take, one line each.
+  /// What an agent failed at, and messages and earlier findings that it could not take, one line each.
+  std::vector<std::string> failures;
 };
 
 /// Robots that met before they were saved, and what all of them had found by then. Those whose test was

@@ -241,11 +241,12 @@ Result<SavedFleet> read_fleet(const std::filesystem::path& dir) {
   });
   // Robots without keyframes have no map.
   std::vector<std::string> names;
-  if (saved)
+  if (saved) {
     for (const AboutMap& map : saved->maps) names.push_back(map.name);
-  else
-    std::ranges::copy_if(session->robots, std::back_inserter(names),
-                         [&](const std::string& name) { return std::filesystem::exists(dir / name); });
+  } else {
+    for (std::size_t i = 0; i < session->robots.size(); ++i)
+      if (!session->optimized[i].empty()) names.push_back(session->robots[i]);
+  }
   std::vector<Result<RobotMap>> maps(names.size(), fail("not read"));
   const Phase phase("reading maps", names.size());
   parallel_for_each(names.size(), [&](std::size_t i) {

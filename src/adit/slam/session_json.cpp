@@ -31,8 +31,11 @@ Json robots_json(const SlamRun& run) {
   Json robots = Json::array();
   for (std::size_t i = 0; i < run.session.maps.size(); ++i) {
     const RobotMap& map = *run.session.maps[i];
+    const std::vector<RobotProvenance>& mapped = run.session.provenance.robots;
+    const auto own =
+        std::ranges::find_if(mapped, [&](const RobotProvenance& robot) { return robot.is_of_map(map.name); });
     robots.push_back({{"name", map.name},
-                      {"odometry", run.session.provenance.robots.at(i).odometry},
+                      {"odometry", own == mapped.end() ? "" : own->odometry},
                       {"scans", map.odometry.size()},
                       {"keyframes", map.keyframes.size()},
                       {"path_length_m", path_length(map.odometry)},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <exception>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -25,13 +26,20 @@
 namespace adit {
 namespace {
 
+const std::string& name_of(const std::shared_ptr<RobotMap>& map) { return map->name; }
+
 Provenance provenance_of(const std::vector<SavedFleet>& saved, const Mapping& mapping, SlamConfig config) {
   Provenance provenance;
   provenance.command = "adit::slam";
   provenance.configuration = to_toml(fields_of(config));
-  for (const SavedFleet& fleet : saved)
-    provenance.robots.insert(provenance.robots.end(), fleet.provenance.robots.begin(),
-                             fleet.provenance.robots.end());
+  for (const SavedFleet& fleet : saved) {
+    for (RobotProvenance robot : fleet.provenance.robots) {
+      // No part of this session, where another robot may have its name.
+      if (robot.failure.empty() && std::ranges::find(fleet.maps, robot.name, name_of) == fleet.maps.end())
+        robot.failure = robot.name + ": no keyframe was left of it";
+      provenance.robots.push_back(std::move(robot));
+    }
+  }
   for (const MappedRobot& robot : mapping.robots)
     provenance.robots.push_back(
         {robot.map->name, robot.odometry, robot.lidar, robot.map->odometry.size(), ""});
@@ -105,7 +113,8 @@ std::vector<std::string> name_all(std::vector<SavedFleet>& saved, std::vector<Re
       const std::string was = rename(map->name);
       if (was == map->name) continue;
       new_names[was] = map->name;
-      const auto of_map = std::ranges::find(fleet.provenance.robots, was, &RobotProvenance::name);
+      const auto of_map = std::ranges::find_if(
+          fleet.provenance.robots, [&](const RobotProvenance& robot) { return robot.is_of_map(was); });
       if (of_map != fleet.provenance.robots.end()) of_map->name = map->name;
     }
     rename_in(fleet.findings, new_names);
@@ -270,6 +279,37 @@ Result<> rule(Agent& agent, const std::vector<Ruling>& rulings) {
   return {};
 }
 
+/// What one robot knows, with the whole graph of each that it heard of in part or not at all, as messages
+/// were lost: every robot has its own map, and the session keeps it.
+FleetGraph with_all_maps(FleetGraph known, const std::vector<std::shared_ptr<const RobotMap>>& maps,
+                         std::vector<std::string>& notes) {
+  for (const auto& map : maps) {
+    RobotGraph& graph = known.robots[map->id];
+    const std::size_t num_lost = map->keyframes.size() - graph.nodes.size();
+    if (num_lost == 0 && !graph.name.empty()) continue;
+    graph = graph_of(*map);
+    if (num_lost > 0)
+      notes.push_back(format(
+          "{}: of {} of its {} keyframes {} did not hear, as messages were lost (bus.loss): its map is "
+          "complete, but loops with others may be missing",
+          map->name, num_lost, map->keyframes.size(), maps.front()->name));
+  }
+  return known;
+}
+
+/// The first robot's estimate, brought up to date, beside the solution of all.
+EstimateDifference online_difference(Agent& first, const BackEndConfig& config, const FleetSolution& solution,
+                                     std::vector<std::string>& notes) {
+  try {
+    for (const std::string& problem : first.update_estimate(config).problems)
+      notes.push_back("online estimate: " + problem);
+    return difference(first.estimate(), solution);
+  } catch (const std::exception& failure) {  // the session does not need it
+    notes.push_back(format("online estimate: {}", failure.what()));
+    return {};
+  }
+}
+
 void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
   to.insert(to.end(), more.begin(), more.end());
 }
@@ -309,22 +349,19 @@ Result<SlamRun> slam_on(std::vector<SavedFleet> saved, std::vector<Recording> re
   Agent& first = meeting->agents.front();
   if (const Result<> done = rule(first, rulings); !done) return tl::unexpected(done.error());
   run.session.provenance = provenance_of(saved, mapping, config);
-  run.session.fleet = first.known();
+  run.session.fleet = with_all_maps(first.known(), meeting->maps, run.notes);
   {
     const Phase phase("solving");
-    run.session.solution = first.solve(config.back_end);
+    run.session.solution = solve(run.session.fleet, config.back_end);
     measure_merges(run.session.solution);
-    for (const std::string& problem : first.update_estimate(config.back_end).problems)
-      run.notes.push_back("online estimate: " + problem);
-    run.online = difference(first.estimate(), run.session.solution);
+    run.online = online_difference(first, config.back_end, run.session.solution, run.notes);
   }
   run.findings = first.findings();
   run.session.maps = std::move(meeting->maps);
   run.bytes_sent = std::move(meeting->bytes_sent);
   run.failed = std::move(mapping.failed);
   append(run.notes, mapping.notes);
-  for (const std::string& failure : meeting->failures)
-    run.notes.push_back("a message was left out: " + failure);
+  append(run.notes, meeting->failures);
   return run;
 }
 

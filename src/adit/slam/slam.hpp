@@ -29,7 +29,8 @@ struct SlamRun {
   EstimateDifference online;              ///< Of the first robot's estimate, kept from meeting to meeting.
   std::size_t num_mapped = 0;       ///< Recordings that were mapped; robots of earlier sessions come on top.
   std::vector<FailedRobot> failed;  ///< Recordings that could not be mapped; the others went on.
-  std::vector<std::string> notes;   ///< Fallbacks, changed names, messages left out, one line each.
+  std::vector<std::string>
+      notes;  ///< Fallbacks, changed names, what messages could not bring, one line each.
   std::vector<MessageBody> findings;  ///< All loops and merge checks, for a later session.
   /// Of the maps of earlier sessions, with their robots' names in this one. Those maps may have moved: the
   /// control points have to be fitted anew (georeference.hpp).
@@ -59,7 +60,8 @@ struct Ruling {
 /// configuration maps are merged only where tested evidence says so; a pair that is not merged has its reason
 /// in `session.solution.pairs`. Names are made safe and distinct (core/robot_name). The same recordings and
 /// configuration give the same bytes with any number of threads. Ground truth in recordings is not read.
-/// Reports its phases to the observer in scope and may throw `Cancelled` (core/progress.hpp); fails as
+/// Where messages between robots are lost (bus.loss), each still has its whole map in the session, with a
+/// note. Reports its phases to the observer in scope and may throw `Cancelled` (core/progress.hpp); fails as
 /// `map_robots` does.
 [[nodiscard]] Result<SlamRun> slam(std::vector<Recording> recordings, const SlamConfig& config = {});
 
