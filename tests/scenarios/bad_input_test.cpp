@@ -68,6 +68,9 @@ TEST_F(BadInput, UnknownKinds) {
   expect_refused("info " + path("notes.doc"), 1, "notes.doc: not a kind of file that adit knows");
   expect_refused("convert " + path("notes.doc") + " " + existing(), 2, "cannot become");
   expect_refused("convert " + path("a.pcd") + " " + existing(), 2, "a.pcd cannot become");
+  expect_refused("convert " + path("a.mcap") + " " + path("a.las"), 2, "becomes .mcap, a folder of clouds");
+  put_file(path("a.db3.zstd"), "packed");
+  expect_refused("info " + path("a.db3.zstd"), 1, "unpack it: zstd -d");
 }
 
 TEST_F(BadInput, Clouds) {
@@ -109,7 +112,7 @@ TEST_F(BadInput, Recordings) {
   expect_refused("odometry " + path("one") + " --method kiss-icp --out " + existing(), 1,
                  "groundtruth.tum: line 2");
   std::filesystem::create_directories(path("none"));
-  expect_refused("slam " + path("none") + " --out " + out(), 1, "none: no clouds in it");
+  expect_refused("slam " + path("none") + " --out " + out(), 1, "none: neither clouds");
   put_file(path("bad.mcap"), "\x89MCAP0\r\n");
   expect_refused("slam " + path("bad.mcap") + " --out " + out(), 1, "bad.mcap");
 }
@@ -135,6 +138,30 @@ TEST_F(BadInput, ADamagedCloudCostsItself) {
     put_file(path(name), whole.substr(0, whole.size() / 2));
   expect_refused("convert " + path("drive") + " " + path("none.mcap"), 1, "drive/0.pcd");
   EXPECT_FALSE(std::filesystem::exists(path("none.mcap")));
+}
+
+TEST_F(BadInput, OutputTakesNothingElsesPlace) {
+  std::filesystem::create_directories(path("drive"));
+  for (const char* name : {"0.pcd", "1.pcd"})
+    ASSERT_TRUE(write_cloud(path(std::string("drive/") + name), wall()));
+  const std::string mcap = path("drive.mcap");
+  test::expect_done("convert " + path("drive") + " " + mcap);
+  const std::string recording = test::get_file(mcap);
+  expect_refused("convert " + mcap + " " + mcap, 2, "is what is read, and would be replaced");
+  expect_refused("convert " + path("drive@even") + " " + path("drive"), 2, "is what is read");
+  expect_refused("convert " + path("drive") + " " + path("drive/0.pcd"), 2, "is what is read");
+  expect_refused("odometry " + path("drive") + " --out " + mcap, 2, "as .tum or .txt");
+  expect_refused("localize " + out() + " " + path("drive") + " --out " + mcap, 2, "as .tum or .txt");
+  EXPECT_TRUE(test::get_file(mcap) == recording);
+}
+
+TEST_F(BadInput, WrongReadingsAreWrongUsageOfInfo) {
+  const std::string bag = std::string(ADIT_CONFORMANCE) + "/tube.mcap";
+  expect_refused("info " + bag + " --set recording.stamp_at=middle", 2, "not one of auto, start, end");
+  expect_refused("doctor " + bag + " --point-times ps", 2, "--point-times");
+  expect_refused("info " + bag + " --points /typo", 1, "no topic of clouds '/typo'; there are: /points");
+  expect_refused("info " + bag + " --wheel /points", 1, "no topic of wheel odometry '/points'");
+  expect_refused("info " + bag + " --set recording.mount=here", 1, "here");
 }
 
 TEST_F(BadInput, UnorderedStampsInATrajectory) {
@@ -177,6 +204,9 @@ TEST_F(BadInput, ConfigurationAndUsage) {
   expect_refused("world --preset zap --out " + out(), 2, "zab, mine, metro");
   expect_refused("covert a b", 2, "did you mean 'convert'?");
   expect_refused("frobnicate", 2, "frobnicate");
+  expect_refused("--json infos x.mcap", 2, "did you mean 'info'?");
+  expect_refused("info x.mcap --mounts 0,0,0", 2, "unknown option '--mounts', did you mean '--mount'?");
+  expect_refused("info x.mcap --threads 0", 2, "not in range 1 to 1024");
   expect_refused("", 2, "required");
   expect_refused("convert a.pcd", 2, "OUT is required");
   expect_refused("odometry x.mcap --method orb --out " + existing(), 2, "kiss-icp");

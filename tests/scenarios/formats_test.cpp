@@ -195,7 +195,7 @@ TEST(Info, SaysWhatToTypeWhereABagIsNoRecordingYet) {
   const auto next_for = [&](const test::ForeignFile& file) {
     test::put_file(bag, file.bytes());
     const nlohmann::json info = nlohmann::json::parse(test::run_adit("--json info " + bag).out);
-    EXPECT_TRUE(info.contains("not_a_recording")) << info;
+    EXPECT_TRUE(info.contains("cannot_be_mapped")) << info;
     return info.value("next", "");
   };
   const auto link = test::link("base", "os_lidar", test::T_base_ouster);
@@ -210,6 +210,32 @@ TEST(Info, SaysWhatToTypeWhereABagIsNoRecordingYet) {
   EXPECT_EQ(next_for(test::ForeignFile().clouds("/left").clouds("/lidar").links({link})),
             "adit doctor " + bag + " --points /lidar");
   EXPECT_EQ(next_for(test::ForeignFile().odometry("/odom")), "") << "no clouds";
+}
+
+TEST(Info, OfABagThatCannotBeMappedYetSaysThatItIsTorn) {
+  const test::TemporaryFolder folder;
+  const std::string bytes = test::ForeignFile().clouds("/points").odometry("/odom").bytes();
+  put_file(folder / "torn.mcap", bytes.substr(0, bytes.size() - 200));
+  const std::string torn = (folder / "torn.mcap").string();
+  const nlohmann::json without = nlohmann::json::parse(test::run_adit("--json info " + torn).out);
+  ASSERT_EQ(without["warnings"].size(), 1U) << without;
+  EXPECT_TRUE(without.contains("cannot_be_mapped"));
+  const nlohmann::json with =
+      nlohmann::json::parse(test::run_adit("--json info " + torn + " --mount 0,0,0").out);
+  EXPECT_EQ(with["kind"], without["kind"]);
+  EXPECT_EQ(with["warnings"][0], without["warnings"][0]);
+}
+
+TEST(Info, OfAFolderOfCloudsSaysWhatToTypeToo) {
+  const test::TemporaryFolder folder;
+  const std::string scans = (folder / "scans").string();
+  std::filesystem::create_directories(scans);
+  PointCloud cloud;
+  cloud.points.emplace_back(1.0F, 2.0F, 3.0F);
+  for (const char* name : {"0000.pcd", "0001.pcd"}) ASSERT_TRUE(write_cloud(folder / "scans" / name, cloud));
+  const std::string info = info_of(scans + " --mount 0,0,1");
+  EXPECT_NE(info.find("next: adit doctor " + scans + " --mount 0,0,1\n"), std::string::npos) << info;
+  EXPECT_NE(info.find("put a stamps.txt beside them"), std::string::npos) << info;
 }
 
 TEST(Info, OfSharedFiles) {

@@ -204,6 +204,36 @@ TEST_F(Growing, APersonLeavesOutALoop) {
   expect_refused("slam --session " + in("s") + " --veto ahead:x,behind:1", 2, "the number of a keyframe");
 }
 
+TEST_F(Growing, ASessionOfOthersIsNotReplaced) {
+  expect_done("slam " + drive("far") + " --out " + in("s"));
+  const std::string toml = text_of("s/session.toml");
+  expect_refused("slam " + drive("later") + " --out " + in("s"), 1,
+                 "holds a session with the map of far, which this run would replace");
+  expect_done("slam " + drive("later") + " --out " + in("other"));
+  expect_refused("slam --session " + in("other") + " " + drive("ahead") + " --out " + in("s"), 1,
+                 "adit slam --session " + in("s"));
+  expect_refused("merge " + in("other") + " " + in("other") + " --out " + in("s"), 1, "the map of far");
+  EXPECT_EQ(text_of("s/session.toml"), toml);
+  expect_done("slam " + drive("far") + " --out " + in("s"));
+  expect_done("slam --rerun " + in("s") + "/session.toml --out " + in("s"));
+
+  // Two robots that share nothing have a map each.
+  expect_done("slam --session " + in("s") + " " + drive("later"));
+  const test::ProgramRun larger = run_adit("convert " + in("s") + " " + in("map.pgm"));
+  EXPECT_NE(larger.err.find("later is in another map and left out; --robot later writes that one"),
+            std::string::npos)
+      << larger.err;
+  EXPECT_EQ(larger.out, "written: " + in("map.pgm") + ", " + in("map.yaml") + "\n");
+  const test::ProgramRun other = run_adit("convert " + in("s") + " " + in("later.pgm") + " --robot later");
+  EXPECT_NE(other.err.find("far is in another map and left out"), std::string::npos) << other.err;
+  EXPECT_NE(text_of("later.pgm"), text_of("map.pgm"));
+  expect_refused("convert " + in("s") + " " + in("x.pgm") + " --robot hans", 1, "there are: far, later");
+  EXPECT_EQ(run_adit("convert " + in("s") + " " + in("at.tum")).out,
+            "written: " + in("at_far.tum") + ", " + in("at_later.tum") + "\n");
+  const test::ProgramRun found = run_adit("info " + in("s/fleet.adit"));
+  EXPECT_NE(found.out.find("next: adit info " + in("s")), std::string::npos) << found.out << found.err;
+}
+
 TEST_F(Growing, NewRecordingsAreReadAsTheCommandSays) {
   const std::string grow = "slam --session " + in("s") + " " + drive("later") + " --out " + in("grown");
   expect_done("slam " + drive("far") + " --mount 0.5,0,1.5 --out " + in("s"));
