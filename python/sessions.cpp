@@ -6,7 +6,7 @@
 
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
-#include "adit/slam/joint_map.hpp"
+#include "adit/io/robot_map_file.hpp"
 #include "adit/slam/session_evaluation.hpp"
 #include "adit/slam/session_job.hpp"
 #include "adit/slam/session_pages.hpp"
@@ -57,7 +57,7 @@ Path trajectory_of(const RunSession& s, const std::string& robot) {
   Path path;
   if (poses == s.session().solution.T_world_keyframe.end()) return path;
   for (std::size_t k = 0; k < map.keyframes.size(); ++k)
-    path.poses.push_back({map.keyframes[k].stamp, poses->second[k]});
+    path.poses.push_back({map.keyframes[k].stamp, poses->second.at(k)});
   return path;
 }
 
@@ -94,7 +94,7 @@ struct Loop {
 std::vector<Loop> loops_of_session(const RunSession& s) {
   std::vector<Loop> loops;
   const auto keyframe = [&](KeyframeId id) -> const Keyframe& {
-    return map_of(s, s.session().name_of(id.robot)).keyframes[id.index];
+    return map_of(s, s.session().name_of(id.robot)).keyframes.at(id.index);
   };
   for (const LoopOutcome& outcome : s.session().solution.loops)
     loops.push_back({s.session().name_of(outcome.loop.from.robot), s.session().name_of(outcome.loop.to.robot),
@@ -102,11 +102,13 @@ std::vector<Loop> loops_of_session(const RunSession& s) {
   return loops;
 }
 
-// Keeps the GIL, as writing completes the session's provenance; what runs without it reads the rest.
-void save(RunSession& s, const std::filesystem::path& path) {
-  OutputDir out = value_of(OutputDir::create(path));
-  value_of(write_slam(out.path(), s.run, s.job));
-  value_of(out.commit());
+void save(const RunSession& s, const std::filesystem::path& path) {
+  without_gil([&] {
+    SlamRun run = s.run;  // writing completes its provenance, while other threads read the session
+    OutputDir out = value_of(OutputDir::create(path));
+    value_of(write_slam(out.path(), run, s.job));
+    value_of(out.commit());
+  });
 }
 
 std::vector<std::string> failures_of(const RunSession& s) {
@@ -192,13 +194,17 @@ struct OpenedSession {
 };
 
 PointArray saved_points(const OpenedSession& s, const std::string& robot, double voxel) {
-  (void)index_of(s.saved.robots, robot);  // says which robots there are
+  const Trajectory& optimized = s.saved.optimized[index_of(s.saved.robots, robot)];
+  const std::filesystem::path file = s.path / robot / "map.adit";
   const PointCloud cloud = without_gil([&] {
-    const PlacedSession placed = value_of(read_placed_session(s.path));
-    const auto own =
-        std::ranges::find_if(placed.robots, [&](const PlacedRobot& one) { return one.map->name == robot; });
-    // A robot without keyframes has no map.
-    return own == placed.robots.end() ? PointCloud() : merged_cloud(*own->map, own->T_world_keyframe, voxel);
+    if (optimized.empty()) return PointCloud();  // a robot without keyframes has no map
+    const RobotMap map = value_of(read_robot_map(file));
+    std::vector<Pose> T_world_keyframe;
+    for (const StampedPose& pose : optimized) T_world_keyframe.push_back(pose.T_world_body);
+    if (T_world_keyframe.size() != map.keyframes.size())
+      throw DataError(
+          fail(file.string() + ": is not of the session that was read; call read_session again").value());
+    return merged_cloud(map, T_world_keyframe, voxel);
   });
   return array_of(cloud.points);
 }

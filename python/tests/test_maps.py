@@ -184,6 +184,35 @@ class Maps(unittest.TestCase):
         evaluation = saved.evaluate({robot: recording.truth for robot, recording in zip(saved.robots, self.recordings)})
         self.assertTrue(evaluation)
 
+    def test_points_of_a_robot_need_no_other_map(self):
+        alone = Path(self.folder.name) / "alone"
+        self.session.save(alone)
+        a, b = self.session.robots
+        (alone / b / "map.adit").unlink()
+        saved = adit.read_session(alone)
+        self.assertEqual(len(saved.points(a, 0.3)), len(self.session.points(a, 0.3)))
+        with self.assertRaisesRegex(adit.Error, "map.adit"):
+            saved.points(b)
+
+    def test_other_threads_run_while_a_session_is_saved(self):
+        ticks = []
+        done = threading.Event()
+
+        def tick():
+            while not done.wait(0.001):
+                ticks.append(time.monotonic())
+
+        thread = threading.Thread(target=tick)
+        thread.start()
+        begin = time.monotonic()
+        self.session.save(Path(self.folder.name) / "threads")
+        end = time.monotonic()
+        done.set()
+        thread.join()
+        # In the middle half: a call that holds the interpreter lets others in at its ends alone.
+        quarter = (end - begin) / 4
+        self.assertTrue(any(begin + quarter < tick < end - quarter for tick in ticks))
+
     def test_a_veto_keeps_them_apart(self):
         apart = adit.merge([self.path], veto=[tuple(self.session.robots)])
         self.assertEqual(len(apart.components), 2)
