@@ -220,17 +220,19 @@ TEST(Session, RobotsOfOneNameGetDifferentNames) {
   expect_done("simulate --routes " + (folder / "routes.yaml").string() +
               " --robot ahead --lidar os2-32 --set simulation.lidar.columns=256 --out " + recordings);
   const std::string file = recordings + "/ahead.mcap";
-  const std::string slam = "slam --keyframes all --out " + (folder / "session").string() + " ";
-  const test::ProgramRun twice = run_adit(slam + file + " " + file);
+  const std::string slam = "slam --keyframes all --out " + (folder / "session").string();
+  const test::ProgramRun twice = run_adit(slam + " " + file + " " + file);
   EXPECT_EQ(twice.exit_code, 0) << twice.err;
   EXPECT_NE(twice.err.find("'ahead'; here it is ahead_2"), std::string::npos) << twice.err;
   EXPECT_TRUE(fs::exists(folder / "session/ahead_2/trajectory.tum"));
 
-  const test::ProgramRun named = run_adit(slam + "ada=" + file + " bo=" + file);
+  const std::string two_names = " ada=" + file + " bo=" + file;
+  expect_refused(slam + two_names, 1, "the maps of ahead, ahead_2");
+  const test::ProgramRun named = run_adit(slam + "_of_two" + two_names);
   EXPECT_EQ(named.exit_code, 0) << named.err;
   EXPECT_EQ(named.err, "");
-  EXPECT_TRUE(fs::exists(folder / "session/ada/trajectory.tum"));
-  EXPECT_TRUE(fs::exists(folder / "session/bo/trajectory.tum"));
+  EXPECT_TRUE(fs::exists(folder / "session_of_two/ada/trajectory.tum"));
+  EXPECT_TRUE(fs::exists(folder / "session_of_two/bo/trajectory.tum"));
 }
 
 TEST(Study, RunsThePapersExperimentAndSaysWhatRan) {
