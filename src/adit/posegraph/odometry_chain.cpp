@@ -12,10 +12,12 @@ namespace adit {
 template <class P>
 BasicOdometryChain<P>::BasicOdometryChain(std::vector<P> T_odom_keyframe,
                                           const std::vector<Covariance>& step_covariances)
-    : T_odom_keyframe_(std::move(T_odom_keyframe)) {
+    : T_odom_keyframe_(std::move(T_odom_keyframe)), path_m_(T_odom_keyframe_.size(), 0.0) {
   ADIT_CHECK(T_odom_keyframe_.empty() ? step_covariances.empty()
                                       : step_covariances.size() + 1 == T_odom_keyframe_.size(),
              "one step covariance between each two consecutive keyframes");
+  for (std::size_t k = 1; k < path_m_.size(); ++k)
+    path_m_[k] = path_m_[k - 1] + between(k - 1, k).translation().norm();
   if (!T_odom_keyframe_.empty()) prefix_.push_back(Covariance::Zero());
   for (std::size_t k = 0; k < step_covariances.size(); ++k) {
     const Covariance seen_from_odom =

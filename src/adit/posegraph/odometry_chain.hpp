@@ -28,6 +28,8 @@ class BasicOdometryChain {
   [[nodiscard]] const P& pose(std::size_t i) const { return T_odom_keyframe_[i]; }
   /// T_i_j by odometry.
   [[nodiscard]] P between(std::size_t i, std::size_t j) const { return pose(i).inverse() * pose(j); }
+  /// Length of the path up to each keyframe, by the steps from keyframe to keyframe.
+  [[nodiscard]] const std::vector<double>& path_m() const { return path_m_; }
   /// Covariance of T_i_j, right perturbation, for i before, after or equal to j.
   [[nodiscard]] Covariance covariance(std::size_t i, std::size_t j) const;
   /// What the steps between i and j (any order) add to the covariance, as seen from the frame odom.
@@ -35,6 +37,7 @@ class BasicOdometryChain {
 
  private:
   std::vector<P> T_odom_keyframe_;
+  std::vector<double> path_m_;
   std::vector<Covariance> prefix_;  ///< prefix_[j]: sum over steps k < j of Ad(T_odom_(k+1)) Sigma_k Ad^T.
 };
 /// In space.

@@ -12,7 +12,6 @@
 
 #include "adit/core/decompositions.hpp"
 #include "adit/core/log_gamma.hpp"
-#include "adit/fleet/search/path.hpp"
 
 namespace adit {
 namespace {
@@ -45,7 +44,6 @@ Cycle::Cycle(const Robots& robots, const std::vector<const Merge*>& merges, cons
   for (std::size_t i = 0; i < robots.size(); ++i) {
     legs_.push_back(passages(*merges[i], robots[i]));
     arrives_.push_back(&chains.at(robots[(i + 1) % robots.size()]));
-    paths_m_.push_back(path_lengths(*arrives_.back()));
   }
 }
 
@@ -77,7 +75,8 @@ Round Cycle::best() const {
 
 double Cycle::driven_m(std::size_t leg, std::size_t p, std::size_t q) const {
   const std::size_t next = (leg + 1) % legs_.size();
-  return std::abs(paths_m_[leg][legs_[leg][p].to] - paths_m_[leg][legs_[next][q].from]);
+  const std::vector<double>& path_m = arrives_[leg]->path_m();
+  return std::abs(path_m[legs_[leg][p].to] - path_m[legs_[next][q].from]);
 }
 
 Cycle::Reached Cycle::step(const Reached& before, std::size_t leg) const {
@@ -146,7 +145,7 @@ double Cycle::log_drift(const Vector6& miss, const Matrix6& covariance) const {
 /// Any place in a cube as wide as the longest drive, at any attitude.
 double Cycle::log_elsewhere() const {
   double longest_m = 1.0;
-  for (const std::vector<double>& path_m : paths_m_) longest_m = std::max(longest_m, path_m.back());
+  for (const OdometryChain* chain : arrives_) longest_m = std::max(longest_m, chain->path_m().back());
   return -3.0 * std::log(longest_m) - std::log(8.0 * std::numbers::pi * std::numbers::pi);
 }
 

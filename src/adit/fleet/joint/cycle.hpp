@@ -106,7 +106,6 @@ class Cycle {
   CycleConfig config_;
   std::vector<std::vector<Passage>> legs_;     ///< From robot i to robot i + 1.
   std::vector<const OdometryChain*> arrives_;  ///< Odometry of robot i + 1.
-  std::vector<std::vector<double>> paths_m_;   ///< Path lengths of robot i + 1.
 };
 
 }  // namespace adit

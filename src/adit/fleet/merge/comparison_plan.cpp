@@ -11,8 +11,6 @@
 namespace adit {
 namespace {
 
-constexpr double kSideBySide = 3.0;  // metres between two keyframes that are compared, at most
-
 /// Places far apart first: the middle, the quarters, and so on.
 std::vector<PlannedComparison> coarse_to_fine(const std::vector<PlannedComparison>& plan) {
   std::vector<PlannedComparison> out;
@@ -51,8 +49,8 @@ ComparisonPlanner::ComparisonPlanner(const OdometryChain& own, const OdometryCha
                                      const std::vector<PcmLoop>& loops, const ComparisonSpacing& spacing)
     : own_(own),
       theirs_(theirs),
-      own_path_m_(path_lengths(own)),
-      their_path_m_(path_lengths(theirs)),
+      own_path_m_(own.path_m()),
+      their_path_m_(theirs.path_m()),
       loops_(loops),
       spacing_(spacing) {}
 
@@ -112,17 +110,11 @@ std::optional<PlannedComparison> ComparisonPlanner::at(std::uint32_t j) const {
   if (from_loop_m > spacing_.reach_m) return {};
   const Pose T_loop_theirs = loop.T_a_b * theirs_.between(loop.b, j);
   const Vector3 position = own_.pose(loop.a) * T_loop_theirs.translation();
-  std::optional<std::uint32_t> nearest;
-  double nearest_m = kSideBySide;
-  for (std::uint32_t i = 0; i < own_.size(); ++i) {
-    if (std::abs(own_path_m_[i] - own_path_m_[loop.a]) > from_loop_m + 2.0 * kSideBySide) continue;
-    if (&own_ == &theirs_ && their_path_m_[j] - own_path_m_[i] < spacing_.revisit_m) continue;
-    const double distance = (own_.pose(i).translation() - position).norm();
-    if (distance < nearest_m) {
-      nearest_m = distance;
-      nearest = i;
-    }
-  }
+  const auto may_be = [&](std::uint32_t i) {
+    if (std::abs(own_path_m_[i] - own_path_m_[loop.a]) > from_loop_m + 2.0 * kSideBySide) return false;
+    return &own_ != &theirs_ || !(their_path_m_[j] - own_path_m_[i] < spacing_.revisit_m);
+  };
+  const std::optional<std::uint32_t> nearest = nearest_beside(own_, position, may_be);
   if (!nearest) return {};
   return PlannedComparison{*nearest, j, own_.between(*nearest, loop.a) * T_loop_theirs};
 }

@@ -77,8 +77,8 @@ class ComparisonPlanner {
 
   const OdometryChain& own_;
   const OdometryChain& theirs_;
-  std::vector<double> own_path_m_;
-  std::vector<double> their_path_m_;
+  const std::vector<double>& own_path_m_;
+  const std::vector<double>& their_path_m_;
   const std::vector<PcmLoop>& loops_;
   ComparisonSpacing spacing_;
 };

@@ -18,7 +18,6 @@ Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryCha
                          const AdaptiveConfig& config)
     : config_(config),
       chain_(std::move(chain)),
-      path_m_(path_lengths(chain_)),
       find_look_alikes_(std::move(find_look_alikes)),
       features_(std::move(features)),
       views_(map, config.registration, config.view),
@@ -66,14 +65,15 @@ std::vector<LocalFit> Discernment::compare(const std::vector<OwnComparison>& ask
 }
 
 std::vector<std::uint32_t> Discernment::sampled() const {
-  return evenly_spread(path_m_.size(), static_cast<std::size_t>(config_.merge_check.discernment.samples));
+  return evenly_spread(chain_.path_m().size(),
+                       static_cast<std::size_t>(config_.merge_check.discernment.samples));
 }
 
 std::optional<double> Discernment::usual_difference() {
   std::vector<OwnComparison> pairs;
   for (const std::uint32_t k : sampled())
     for (const double metres : kComparedApart)
-      if (const auto next = keyframe_at(path_m_, path_m_[k] + metres))
+      if (const auto next = keyframe_at(chain_.path_m(), chain_.path_m()[k] + metres))
         pairs.push_back({k, *next, chain_.between(k, *next)});
   std::vector<double> differences;
   for (const LocalFit& fit : compare(pairs, FitFrom::guess, std::numeric_limits<double>::infinity()))
@@ -93,10 +93,10 @@ WallOffsets Discernment::compare_own_walls() {
   for (const std::uint32_t k : sampled()) {
     std::optional<std::uint32_t> a = k;
     for (int pair = 0; pair < 2 && a; ++pair) {
-      const auto b = keyframe_at(path_m_, path_m_[*a] + kStep);
+      const auto b = keyframe_at(chain_.path_m(), chain_.path_m()[*a] + kStep);
       if (!b) break;
       pairs.push_back({*a, *b, chain_.between(*a, *b)});
-      a = keyframe_at(path_m_, path_m_[*b] + kStep);
+      a = keyframe_at(chain_.path_m(), chain_.path_m()[*b] + kStep);
     }
   }
   return offsets_between(pairs);
@@ -109,8 +109,8 @@ WallOffsets Discernment::compare_displaced_walls() {
   std::vector<OwnComparison> pairs;
   for (const std::uint32_t k : sampled()) {
     for (int pair = 0; pair < 3; ++pair) {
-      const auto a = keyframe_at(path_m_, path_m_[k] + kStep * pair);
-      const auto b = a ? keyframe_at(path_m_, path_m_[*a] + displacement_m) : std::nullopt;
+      const auto a = keyframe_at(chain_.path_m(), chain_.path_m()[k] + kStep * pair);
+      const auto b = a ? keyframe_at(chain_.path_m(), chain_.path_m()[*a] + displacement_m) : std::nullopt;
       if (b) pairs.push_back({*a, *b, Pose()});
     }
   }
@@ -151,7 +151,7 @@ double Discernment::measure_reach() {
   const DiscernmentConfig& config = config_.merge_check.discernment;
   std::vector<OwnComparison> pairs;
   for (const std::uint32_t k : sampled())
-    if (const auto next = keyframe_at(path_m_, path_m_[k] + kBaseline))
+    if (const auto next = keyframe_at(chain_.path_m(), chain_.path_m()[k] + kBaseline))
       pairs.push_back({k, *next, chain_.between(k, *next)});
   const std::vector<LocalFit> found = compare(pairs, FitFrom::guess);
   std::vector<double> headings;  // by which odometry is off, radians
@@ -186,34 +186,39 @@ std::vector<std::uint32_t> Discernment::displaced_from(std::uint32_t keyframe) c
   const double displacement_m = config_.merge_check.discernment.displacement_m;
   std::vector<std::uint32_t> displaced;
   for (const double by : {-displacement_m, displacement_m})
-    if (const auto other = keyframe_at(path_m_, path_m_[keyframe] + by)) displaced.push_back(*other);
+    if (const auto other = keyframe_at(chain_.path_m(), chain_.path_m()[keyframe] + by))
+      displaced.push_back(*other);
   return displaced;
 }
 
 std::vector<DisplacementSigns> Discernment::displacement_signs(const std::vector<std::uint32_t>& keyframes) {
   constexpr std::uint32_t kTogether = 3;  // keyframes, a metre, that the middle one speaks for
-  const auto last = static_cast<std::uint32_t>(path_m_.size() - 1);
+  const auto last = static_cast<std::uint32_t>(chain_.path_m().size() - 1);
   const auto speaker_of = [&](std::uint32_t k) { return std::min(k - k % kTogether + kTogether / 2, last); };
+  std::map<std::uint32_t, DisplacementSigns> found_now;  // all of them or, where one comparison throws, none
   std::vector<std::uint32_t> open;
   for (const std::uint32_t k : keyframes)
-    if (signs_.emplace(speaker_of(k), DisplacementSigns()).second) open.push_back(speaker_of(k));
+    if (!signs_.contains(speaker_of(k)) && found_now.try_emplace(speaker_of(k)).second)
+      open.push_back(speaker_of(k));
   const double displacement_m = config_.merge_check.discernment.displacement_m;
   // Both ways: the end of a niche may show one way and not the other.
   for (const double by : {-displacement_m, displacement_m}) {
     std::vector<OwnComparison> displaced;
     for (const std::uint32_t k : open)
-      if (const auto other = keyframe_at(path_m_, path_m_[k] + by)) displaced.push_back({k, *other, Pose()});
+      if (const auto other = keyframe_at(chain_.path_m(), chain_.path_m()[k] + by))
+        displaced.push_back({k, *other, Pose()});
     const std::vector<LocalFit> found = compare(displaced, FitFrom::guess);
     for (std::size_t i = 0; i < displaced.size(); ++i) {
       const std::uint32_t k = displaced[i].a;
       if (differ(found[i].agreement)) {
-        signs_[k].push_back(differing(k, found[i].agreement));
+        found_now[k].push_back(differing(k, found[i].agreement));
       } else {
-        signs_[k].clear();
+        found_now[k].clear();
         std::erase(open, k);
       }
     }
   }
+  signs_.merge(found_now);
   std::vector<DisplacementSigns> out;
   for (const std::uint32_t k : keyframes) out.push_back(signs_.at(speaker_of(k)));
   return out;

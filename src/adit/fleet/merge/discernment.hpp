@@ -96,7 +96,6 @@ class Discernment {
 
   AdaptiveConfig config_;
   OdometryChain chain_;
-  std::vector<double> path_m_;
   FindLookAlikes find_look_alikes_;
   std::shared_ptr<FeatureStore> features_;
   ViewStore views_;

@@ -10,6 +10,7 @@
 
 #include "adit/fleet/merge/place_comparer.hpp"
 #include "adit/fleet/sync/fleet_graph.hpp"
+#include "support/cancel_after.hpp"
 #include "support/tube_drive.hpp"
 
 namespace adit {
@@ -41,6 +42,26 @@ TEST(Discernment, ADisplacementDoesNotShowInASmoothTubeAndDoesBesideABlock) {
   const std::vector<bool> near = with_block.discernment.distinctive({56, 64});
   EXPECT_TRUE(near[0]);
   EXPECT_TRUE(near[1]);
+}
+
+// Stopped anywhere it remembers no place as compared that was not, in one of the two ways alone either.
+TEST(Discernment, WhereComparingIsBrokenOffItIsDoneAgain) {
+  const auto map = in_a_tube({{{29.0, 1.5, -4.0}, {31.0, 4.0, 4.0}}});
+  const std::vector<std::uint32_t> places = {56, 64};
+  const std::vector<bool> expected = OnAMap(map).discernment.distinctive(places);
+  EXPECT_EQ(expected, (std::vector<bool>{true, true}));
+  OnAMap broken_off(map);
+  std::size_t num_stops = 0;
+  for (bool is_done = false; !is_done; ++num_stops) {
+    test::CancelAfter observer(num_stops);
+    const ObserverScope scope(observer);
+    try {
+      EXPECT_EQ(broken_off.discernment.distinctive(places), expected) << num_stops;
+      is_done = true;
+    } catch (const Cancelled&) {
+    }
+  }
+  EXPECT_GT(num_stops, 2U);
 }
 
 TEST(Discernment, ScansOfOnePlaceDoNotDifferAndThoseOfAnotherDo) {

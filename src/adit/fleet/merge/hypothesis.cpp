@@ -16,7 +16,7 @@ namespace {
 /// Metres between where two sets of loops put the other robot, at the loops of the second.
 double apart_m(const std::vector<PcmLoop>& first, const std::vector<PcmLoop>& second,
                const LoopsBetween& between) {
-  const std::vector<double> their_path_m = path_lengths(between.theirs);
+  const std::vector<double>& their_path_m = between.theirs.path_m();
   double nearest = std::numeric_limits<double>::infinity();
   for (const PcmLoop& loop : second) {
     const PcmLoop& of_first = nearest_loop(first, their_path_m, loop.b);

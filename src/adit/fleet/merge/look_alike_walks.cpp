@@ -18,7 +18,7 @@ LookAlikeWalks::LookAlikeWalks(Discernment& discernment, const OdometryChain& ch
       chain_(chain),
       features_(features),
       config_(config),
-      path_m_(path_lengths(chain)) {}
+      path_m_(chain.path_m()) {}
 
 void LookAlikeWalks::start(const std::vector<LoopCandidate>& similar) {
   const DiscernmentConfig& config = config_.merge_check.discernment;

@@ -58,7 +58,7 @@ class LookAlikeWalks {
   const OdometryChain& chain_;
   FeatureStore& features_;
   const AdaptiveConfig& config_;
-  std::vector<double> path_m_;
+  const std::vector<double>& path_m_;
   std::vector<Walk> walks_;
 };
 

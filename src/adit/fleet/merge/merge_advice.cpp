@@ -17,7 +17,6 @@ constexpr double kFarthest = 100.0;      // metres along the path that a drive i
 constexpr std::size_t kMostPlaces = 70;  // that are asked about: 33 beyond each end, and what rounding adds
 constexpr double kBeen = 5.0;            // metres, a tunnel's width: a robot this near has been there
 constexpr double kOnePart = 20.0;        // metres: places of one stretch are not farther apart along the path
-constexpr double kSideBySide = 3.0;      // metres between keyframes that are compared (ComparisonPlanner)
 
 /// Own keyframes beyond an end of what both drove, in the order in which they would be passed.
 struct Way {
@@ -35,8 +34,8 @@ class DriveSearch {
  public:
   DriveSearch(const UndecidedStretch& stretch, const OdometryChain& own, const OdometryChain& theirs,
               double spacing_m)
-      : stretch_(stretch), own_(own), path_m_(path_lengths(own)), spacing_m_(spacing_m) {
-    const std::vector<double> their_path_m = path_lengths(theirs);
+      : stretch_(stretch), own_(own), path_m_(own.path_m()), spacing_m_(spacing_m) {
+    const std::vector<double>& their_path_m = theirs.path_m();
     for (std::size_t j = 0; j < theirs.size(); ++j) {
       const PcmLoop& loop = nearest_loop(stretch.loops, their_path_m, j);
       const Vector3 from_loop = (loop.T_a_b * theirs.between(loop.b, j)).translation();
@@ -82,13 +81,7 @@ class DriveSearch {
   /// The own keyframe where the rival puts a place; none where the own robot has not been there.
   [[nodiscard]] std::optional<OwnComparison> of_rival(std::uint32_t place, const Pose& T_rival_best) const {
     const Vector3 there = T_rival_best * own_.pose(place).translation();
-    std::optional<std::uint32_t> nearest;
-    double nearest_m = kSideBySide;
-    for (std::uint32_t k = 0; k < path_m_.size(); ++k) {
-      const double metres = (own_.pose(k).translation() - there).norm();
-      if (metres < nearest_m) nearest = k;
-      nearest_m = std::min(nearest_m, metres);
-    }
+    const auto nearest = nearest_beside(own_, there, [](std::uint32_t) { return true; });
     if (!nearest) return {};
     return OwnComparison{place, *nearest,
                          own_.pose(place).inverse() * T_rival_best.inverse() * own_.pose(*nearest)};
@@ -146,7 +139,7 @@ class DriveSearch {
 
   const UndecidedStretch& stretch_;
   const OdometryChain& own_;
-  std::vector<double> path_m_;
+  const std::vector<double>& path_m_;
   double spacing_m_;
   std::vector<Vector3> their_positions_;  ///< In the own odometry frame, if the hypothesis is true.
 };
@@ -163,7 +156,7 @@ Pose rival_from_best(const UndecidedStretch& stretch, const OdometryChain& own, 
     return loop.a > near ? loop.a - near : near - loop.a;
   };
   const PcmLoop& best = *std::ranges::min_element(stretch.loops, {}, keyframes_off);
-  const PcmLoop& rival = nearest_loop(stretch.rival_loops, path_lengths(theirs), best.b);
+  const PcmLoop& rival = nearest_loop(stretch.rival_loops, theirs.path_m(), best.b);
   return frame_by(rival, own, theirs) * frame_by(best, own, theirs).inverse();
 }
 

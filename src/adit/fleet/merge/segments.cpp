@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "adit/core/parallel.hpp"
-#include "adit/fleet/search/path.hpp"
 
 namespace adit {
 namespace {
@@ -30,8 +29,8 @@ struct Match {
 /// In the order of the own path.
 std::vector<Match> matches_of(const OdometryChain& own, const OdometryChain& theirs,
                               const std::vector<LoopCandidate>& found) {
-  const std::vector<double> own_path_m = path_lengths(own);
-  const std::vector<double> their_path_m = path_lengths(theirs);
+  const std::vector<double>& own_path_m = own.path_m();
+  const std::vector<double>& their_path_m = theirs.path_m();
   std::vector<Match> matches;
   matches.reserve(found.size());
   for (const LoopCandidate& c : found) {

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "adit/core/parallel.hpp"
-#include "adit/fleet/search/path.hpp"
 
 namespace adit {
 
@@ -104,11 +103,10 @@ std::vector<LoopCandidate> CandidateSearch::standing_out(std::vector<LoopCandida
 }
 
 std::vector<LoopCandidate> CandidateSearch::revisits() {
-  const std::vector<double> path_m = path_lengths(chain_);
   std::vector<std::optional<LoopCandidate>> best(chain_.size());
   parallel_for_each(best.size(), [&](std::size_t i) {
     const auto k = static_cast<std::uint32_t>(i);
-    std::vector<std::uint32_t> later = possible_revisits(chain_, path_m, k, config_.revisit);
+    std::vector<std::uint32_t> later = possible_revisits(chain_, k, config_.revisit);
     std::erase_if(later, [&](std::uint32_t other) { return !map_->searchable[other]; });
     if (later.empty() || !map_->searchable[k]) return;
     const std::vector<ScanContext> contexts = contexts_from(lanes(), *map_, k);

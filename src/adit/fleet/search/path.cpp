@@ -7,13 +7,6 @@
 
 namespace adit {
 
-std::vector<double> path_lengths(const OdometryChain& chain) {
-  std::vector<double> path_m(chain.size(), 0.0);
-  for (std::size_t k = 1; k < path_m.size(); ++k)
-    path_m[k] = path_m[k - 1] + chain.between(k - 1, k).translation().norm();
-  return path_m;
-}
-
 std::optional<std::uint32_t> keyframe_at(const std::vector<double>& path_m, double metres) {
   if (path_m.empty() || metres < 0.0 || metres > path_m.back()) return {};
   return static_cast<std::uint32_t>(std::ranges::lower_bound(path_m, metres) - path_m.begin());

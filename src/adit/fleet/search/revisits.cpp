@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -20,14 +21,30 @@ double reach_m(const OdometryChain& chain, std::size_t k, std::size_t later, con
   return config.near_m + config.sigmas * drift;
 }
 
+/// No less than reach_m, whatever either rounds, in a fraction of its time: of the covariance it computes no
+/// more than the variances of the position. A long drive has hundreds of millions of pairs.
+double longest_reach_m(const OdometryChain& chain, std::size_t k, std::size_t later,
+                       const RevisitConfig& config) {
+  constexpr double kRounding = 1e-12;  // of the largest terms; sums of so few lose a tenth of that
+  const Matrix6 covariance = chain.covariance_in_odom(k, later);
+  Eigen::Matrix<double, 3, 6> position;  // what moves the origin of keyframe `later`, in axes of odom
+  position << Matrix3::Identity(), -so3::hat(chain.pose(later).translation());
+  const double sum = (position * covariance).cwiseProduct(position).sum();
+  const double rounding = kRounding * position.squaredNorm() * covariance.cwiseAbs().maxCoeff();
+  return (config.near_m + config.sigmas * std::sqrt(std::max(sum, 0.0) + rounding)) * (1.0 + kRounding);
+}
+
 }  // namespace
 
-std::vector<std::uint32_t> possible_revisits(const OdometryChain& chain, const std::vector<double>& path_m,
-                                             std::uint32_t k, const RevisitConfig& config) {
+std::vector<std::uint32_t> possible_revisits(const OdometryChain& chain, std::uint32_t k,
+                                             const RevisitConfig& config) {
+  const std::vector<double>& path_m = chain.path_m();
   std::vector<std::uint32_t> out;
   for (std::uint32_t later = k + 1; later < chain.size(); ++later) {
     if (path_m[later] - path_m[k] < config.path_m) continue;
-    if (chain.between(k, later).translation().norm() < reach_m(chain, k, later, config)) out.push_back(later);
+    const double apart_m = chain.between(k, later).translation().norm();
+    if (apart_m < longest_reach_m(chain, k, later, config) && apart_m < reach_m(chain, k, later, config))
+      out.push_back(later);
   }
   return out;
 }

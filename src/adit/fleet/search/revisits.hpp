@@ -29,10 +29,9 @@ inline Fields fields_of(RevisitConfig& c) {
       {"probability", &c.probability, "", 0.5, 0.999999, "probability that a true loop passes that test"}};
 }
 
-/// The later keyframes that may stand where keyframe k does: at least `config.path_m` on along `path_m`
-/// (path_lengths), and within a few metres and the drift of the odometry.
-[[nodiscard]] std::vector<std::uint32_t> possible_revisits(const OdometryChain& chain,
-                                                           const std::vector<double>& path_m, std::uint32_t k,
+/// The later keyframes that may stand where keyframe k does: at least `config.path_m` on along the path, and
+/// within a few metres and the drift of the odometry.
+[[nodiscard]] std::vector<std::uint32_t> possible_revisits(const OdometryChain& chain, std::uint32_t k,
                                                            const RevisitConfig& config = {});
 
 /// Whether a loop within one map is compatible with its odometry, generously: odometry slips.

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "adit/core/parallel.hpp"
-#include "adit/fleet/search/path.hpp"
 
 namespace adit {
 namespace {
@@ -25,11 +24,7 @@ PlaceIndexConfig ranking_all(PlaceIndexConfig place, int matches) {
 
 SelfSimilarity::SelfSimilarity(std::shared_ptr<const RobotMap> map, const OdometryChain& chain,
                                PlaceIndexConfig place, const SelfSimilarityConfig& config)
-    : map_(std::move(map)),
-      chain_(chain),
-      path_m_(path_lengths(chain_)),
-      index_(ranking_all(place, config.matches)),
-      config_(config) {
+    : map_(std::move(map)), chain_(chain), index_(ranking_all(place, config.matches)), config_(config) {
   for (std::uint32_t k = 0; k < map_->places.size(); ++k) index_.add({map_->id, k}, map_->places[k]);
 }
 
@@ -67,7 +62,7 @@ std::vector<double> SelfSimilarity::distances() const {
 }
 
 bool SelfSimilarity::is_elsewhere(std::uint32_t k, std::uint32_t other) const {
-  if (std::abs(path_m_[k] - path_m_[other]) < config_.other_place_m) return false;
+  if (std::abs(chain_.path_m()[k] - chain_.path_m()[other]) < config_.other_place_m) return false;
   const double drift = std::sqrt(chain_.covariance(k, other).topLeftCorner<3, 3>().trace());
   return chain_.between(k, other).translation().norm() > config_.other_place_m + config_.sigmas * drift;
 }

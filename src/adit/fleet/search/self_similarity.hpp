@@ -58,7 +58,6 @@ class SelfSimilarity {
 
   std::shared_ptr<const RobotMap> map_;
   OdometryChain chain_;
-  std::vector<double> path_m_;
   PlaceIndex index_;
   SelfSimilarityConfig config_;
 };
