@@ -33,6 +33,18 @@ inline AgentConfig lenient() {
   return config;
 }
 
+/// The default policy, on so little that a street of boxes decides.
+inline AgentConfig adaptive() {
+  AgentConfig config;
+  config.adaptive.registration.voxel_size = 0.6;
+  config.adaptive.merge_check.evidence.error_rate = 0.3;  // a street of 25 m is short
+  config.adaptive.merge_check.spacing_m = 2.0;
+  config.adaptive.merge_check.discernment.samples = 8;
+  // The boxes are transparent: faces mix within a voxel, and the surface hangs on the grid.
+  config.adaptive.merge_check.relief = false;
+  return config;
+}
+
 /// Two robots on one street, the second in the opposite direction and on the other lane.
 struct TwoRobots {
   std::vector<Pose> truth_0 = street(0.0, 40.0, -0.5);

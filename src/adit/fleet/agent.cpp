@@ -4,13 +4,13 @@
 #include "adit/fleet/agent.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
 #include "adit/fleet/merge/place_comparer.hpp"
 #include "adit/fleet/sync/own_map_parts.hpp"
+#include "adit/fleet/sync/parts.hpp"
 
 namespace adit {
 namespace {
@@ -26,10 +26,6 @@ std::vector<std::uint32_t> every_nth(const std::vector<std::uint32_t>& keyframes
   std::vector<std::uint32_t> out;
   for (std::size_t i = 0; i < keyframes.size(); i += stride) out.push_back(keyframes[i]);
   return out;
-}
-
-void append(std::vector<MessageBody>& to, std::vector<MessageBody> more) {
-  std::ranges::move(more, std::back_inserter(to));
 }
 
 std::vector<MessageBody> request_of(const PeerSession& session) {
@@ -97,15 +93,36 @@ std::vector<Message> Agent::meet(RobotId peer) const { return addressed(peer, {h
 std::vector<Message> Agent::on(const Message& message) {
   ADIT_CHECK(message.to == map_->id, "an agent gets its own messages only");
   if (message.from == map_->id) return {};  // an echo; answering it would never end
-  return addressed(message.from,
-                   std::visit([&](const auto& body) { return on(message.from, body); }, message.body));
+  Replies replies = std::visit([&](const auto& body) { return on(message.from, body); }, message.body);
+  for (const auto& [robot, graph] : known().robots)
+    if (searches(robot)) ledger_.note_unsearched(robot, why_unsearched(robot, graph.name));
+  return addressed(message.from, std::move(replies));
+}
+
+std::string Agent::why_unsearched(RobotId peer, const std::string& name) const {
+  const auto session = sessions_.find(peer);
+  if (session != sessions_.end() && session->second.is_searched()) return {};
+  if (on_other_grids_.contains(peer))
+    return format(
+        "{} describes places on another grid than {}, so that none could be compared; give both the same "
+        "settings",
+        name, map_->name);
+  return format(
+      "{} has not searched {}: its descriptors or its odometry have not all come, or the search was broken "
+      "off; the robots have to meet again",
+      map_->name, name);
+}
+
+bool Agent::counted(bool is_taken) {
+  num_left_out_ += is_taken ? 0 : 1;
+  return is_taken;
 }
 
 // ---- synchronising: who has what -------------------------------------------------------------------------
 
 Agent::Replies Agent::on(RobotId from, const Hello& theirs) {
   PeerSession& session = sessions_[from];
-  session.hear(theirs, from);
+  if (!session.hear(theirs, from)) checks_.erase(from);  // it is begun anew, on the map as it is now
   Replies replies;
   if (!theirs.answer) {
     Hello mine = hello();
@@ -138,7 +155,7 @@ Agent::Replies Agent::resume(RobotId peer) {
 }
 
 Agent::Replies Agent::on(RobotId from, const GraphPart& part) {
-  const bool may_be_awaited = ledger_.take(part) && part.owner == from && searches(from);
+  const bool may_be_awaited = counted(ledger_.take(part)) && part.owner == from && searches(from);
   if (!may_be_awaited) return {};
   Replies replies = search_when_ready(from);
   if (sessions_[from].state() == PeerState::decided) append(replies, check_if_due(from));
@@ -146,12 +163,12 @@ Agent::Replies Agent::on(RobotId from, const GraphPart& part) {
 }
 
 Agent::Replies Agent::on(RobotId /*from*/, const Loops& part) {
-  ledger_.take(part);
+  counted(ledger_.take(part));
   return {};
 }
 
 Agent::Replies Agent::on(RobotId /*from*/, const MergeChecks& part) {
-  ledger_.take(part);
+  counted(ledger_.take(part));
   return {};
 }
 
@@ -169,10 +186,11 @@ Agent::Replies Agent::on(RobotId from, const Places& part) {
   const bool are_comparable = std::ranges::all_of(part.places, [&](const Places::Place& place) {
     return !map_->places.empty() && have_same_grid(place.context, map_->places.front());
   });
-  if (!searches(from) || !are_comparable) return {};
+  if (searches(from) && !are_comparable) on_other_grids_.insert(from);
+  if (!counted(searches(from) && are_comparable)) return {};
   PeerSession& session = sessions_[from];
   const std::uint32_t num_before = session.num_places();
-  const bool is_next = session.take(part);
+  const bool is_next = counted(session.take(part));
   // One transfer at a time: another one starts anew in a later meeting. A part that brings nothing ends none.
   if (session.num_places() > num_before)
     for (auto& [robot, other] : sessions_)
@@ -187,6 +205,7 @@ Agent::Replies Agent::search_when_ready(RobotId peer) {
   std::vector<LoopCandidate> found = candidates_with(peer);
   if (is_adaptive() && !found.empty()) found = search_->most_promising(std::move(found));
   await_clouds(session, std::move(found));
+  session.finish_search();  // last: what breaks off before leaves the search to a later meeting
   return session.state() == PeerState::decided ? check_if_due(peer) : request_of(session);
 }
 
@@ -202,7 +221,7 @@ std::vector<LoopCandidate> Agent::candidates_with(RobotId peer) {
   if (num_tried() >= static_cast<std::size_t>(config_.max_candidates))
     stride = std::max(stride, kStrideInLargeFleets);
   std::vector<LoopCandidate> found = most_similar_places(
-      *map_, every_nth(searchable_keyframes(*map_), stride), {peer, sessions_[peer].take_places()}, place,
+      *map_, every_nth(searchable_keyframes(*map_), stride), {peer, sessions_[peer].places()}, place,
       is_adaptive() ? search_->lanes() : Lanes{});
   std::erase_if(found, [&](const LoopCandidate& candidate) {
     return known().loops.contains({candidate.query, candidate.match});
@@ -243,10 +262,11 @@ Agent::Replies Agent::on(RobotId from, const Clouds& clouds) {
 
 Agent::Replies Agent::register_clouds(RobotId peer, const Clouds& clouds) {
   PeerSession& session = sessions_[peer];
-  const std::vector<PeerSession::Arrived> arrived = session.take_arrived(clouds);
+  const std::vector<PeerSession::Arrived> arrived = session.arrived(clouds);
   if (arrived.empty()) return {};
   const std::size_t num_before = ledger_.num_own_loops();
   for (const LoopClosure& loop : registration_.with_clouds(arrived, clouds)) ledger_.add_own(loop);
+  session.finish_registration(arrived);
   Replies replies = ledger_.loops_since(map_->id, num_before);
   const bool is_done = session.state() != PeerState::awaiting_clouds;
   append(replies, is_adaptive() && is_done ? begin_check(peer) : request_of(session));
@@ -257,7 +277,7 @@ std::vector<LoopClosure> Agent::loops_with(RobotId peer) const {
   std::vector<LoopClosure> loops;
   for (const auto& [ends, loop] : known().loops)
     if (ends.first.robot == map_->id && ends.second.robot == peer && known().knows(ends.first) &&
-        known().knows(ends.second))
+        known().knows(ends.second) && sessions_.at(peer).exists(ends.second.index))
       loops.push_back(loop);
   return loops;
 }
@@ -272,8 +292,13 @@ Agent::Replies Agent::check_if_due(RobotId peer) {
 }
 
 Agent::Replies Agent::begin_check(RobotId peer) {
-  checks_.insert_or_assign(peer,
-                           checker_of(without_sliding(loops_with(peer)), chain_by(map_->id), chain_by(peer)));
+  // Of keyframes that the peer has no longer it could not send what it saw there.
+  RobotGraph theirs = known().robots.at(peer);
+  while (!theirs.nodes.empty() &&
+         !sessions_[peer].exists(static_cast<std::uint32_t>(theirs.nodes.size() - 1)))
+    theirs.nodes.pop_back();
+  checks_.insert_or_assign(
+      peer, checker_of(without_sliding(loops_with(peer)), chain_by(map_->id), chain_of(theirs)));
   sessions_[peer].await_comparison_of({});  // the peer's map may have grown since a check that was broken off
   for (auto& [robot, session] : sessions_) session.forget_views();
   return go_on_checking(peer);
@@ -299,9 +324,10 @@ Agent::Replies Agent::go_on_checking(RobotId peer) {
 }
 
 Agent::Replies Agent::conclude_check(RobotId peer) {
-  const MergeChecker checker = std::move(checks_.extract(peer).mapped());
+  const MergeChecker& checker = checks_.at(peer);
   const std::size_t num_before = ledger_.num_own_checks();
   ledger_.add_own(with_advice(checker.verdict(map_->id, peer), checker));
+  checks_.erase(peer);
   return ledger_.checks_since(map_->id, num_before);
 }
 
@@ -323,8 +349,12 @@ MergeCheck Agent::with_advice(MergeCheck verdict, const MergeChecker& checker) {
 }
 
 void Agent::find_revisits() {
-  if (!is_adaptive() || !config_.adaptive.search.revisits || std::exchange(looked_for_revisits_, true))
-    return;
+  if (!is_adaptive() || !config_.adaptive.search.revisits || looked_for_revisits_) return;
+  look_for_revisits();
+  looked_for_revisits_ = true;
+}
+
+void Agent::look_for_revisits() {
   const OdometryChain chain = chain_by(map_->id);
   const RevisitConfig& revisit = config_.adaptive.search.revisit;
   std::vector<LoopClosure> loops = registration_.within_own_map(search_->revisits());

@@ -4,6 +4,8 @@
 
 #include <map>
 #include <memory>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "adit/fleet/joint/fleet_estimate.hpp"
@@ -55,6 +57,9 @@ Fields fields_of(AgentConfig& config);
 /// missing. What makes no sense (loops between keyframes that do not exist, descriptors on another grid,
 /// covariances that are not positive definite) is left out and stops nobody.
 ///
+/// Whatever throws on the way (no memory, `Cancelled`) leaves what was found, and what it broke off is done
+/// in the next meeting, with the same result.
+///
 /// Cost in a large fleet: a robot registers at most `max_candidates` candidates, those of the peers it meets
 /// first, and of each later peer the best `candidates_per_peer`, which it looks for with every fourth
 /// keyframe, so that its time grows more slowly than the number of robots it meets. Beside its own map an
@@ -67,7 +72,9 @@ Fields fields_of(AgentConfig& config);
 ///  - the features of its own keyframes, at most FeatureStore::kMaxBytes, and under MergePolicy::adaptive the
 ///    surfaces that it compares, at most ViewStore::kMaxBytes and ScanStore::kMaxBytes;
 ///  - what one peer saw at the places that a check compares, some tens of megabytes, until the check is over.
-/// Other clouds are asked for, registered and forgotten.
+/// Other clouds are asked for, registered and forgotten. A broken or hostile peer that makes up more fills at
+/// most what protocol.hpp says is taken of any one robot (kKeyframesPerRobot and so on: less than 1 GB of
+/// each robot that it speaks of, and 1.2 GB of descriptors).
 class Agent {
  public:
   /// Shares `map`, which has to be complete: keyframes that it gets later are not known to others.
@@ -76,7 +83,8 @@ class Agent {
   /// That of its map.
   [[nodiscard]] RobotId id() const { return map_->id; }
   /// Looks for places of its own map to which the robot came back, and checks what it finds as it does with
-  /// peers. Under MergePolicy::adaptive, once; call it before the first meeting.
+  /// peers. Under MergePolicy::adaptive, once; call it before the first meeting. Where it throws, it may be
+  /// called again.
   void find_revisits();
   /// Takes up where it was when it was saved: `findings` of then, and how many searchable keyframes each
   /// robot had that it had met. It does not look for loops in its own map or with them again. Before the
@@ -92,6 +100,9 @@ class Agent {
 
   /// Its `loops` are all candidates that this agent or others registered, accepted or not.
   [[nodiscard]] const FleetGraph& known() const { return ledger_.known(); }
+  /// Parts of graphs, loops, checks and descriptors that it did not take: a part before them was lost, they
+  /// went beyond what is taken of one robot, or they made no sense. None where all goes well.
+  [[nodiscard]] std::size_t num_left_out() const { return num_left_out_; }
   /// All loops and merge checks, by whoever found them, as messages.
   [[nodiscard]] std::vector<MessageBody> findings() const { return ledger_.findings(); }
   /// The joint solution of all that it knows now. Agents that know the same get the same, to the last bit.
@@ -125,10 +136,16 @@ class Agent {
   Replies on(RobotId from, const Loops& part);
   Replies on(RobotId from, const MergeChecks& part);
 
+  /// Counts what is not taken.
+  bool counted(bool is_taken);
+  /// Empty: it was searched.
+  [[nodiscard]] std::string why_unsearched(RobotId peer, const std::string& name) const;
+
   /// What an earlier meeting has left undone, as far as it can go on.
   Replies resume(RobotId peer);
   /// Once all places of the peer have come, and the path on which they lie.
   Replies search_when_ready(RobotId peer);
+  void look_for_revisits();
   Replies register_clouds(RobotId peer, const Clouds& clouds);
   Replies begin_check(RobotId peer);
   /// Where all is searched: the check that an exception or a restart has left undone.
@@ -146,7 +163,7 @@ class Agent {
   [[nodiscard]] std::size_t num_tried() const;
   void await_clouds(PeerSession& session, std::vector<LoopCandidate> candidates) const;
   [[nodiscard]] std::vector<LoopCandidate> candidates_with(RobotId peer);
-  /// All that this robot registered whose ends are known, accepted or not.
+  /// All that this robot registered whose ends are known and, as the peer last said, exist; accepted or not.
   [[nodiscard]] std::vector<LoopClosure> loops_with(RobotId peer) const;
   [[nodiscard]] OdometryChain chain_by(RobotId robot) const;
   [[nodiscard]] Discernment& discernment();
@@ -164,6 +181,8 @@ class Agent {
   std::shared_ptr<CandidateSearch> search_;
   std::unique_ptr<Discernment> discernment_;  ///< Made when first needed.
   bool looked_for_revisits_ = false;
+  std::set<RobotId> on_other_grids_;  ///< Peers whose descriptors cannot be compared with the own ones.
+  std::size_t num_left_out_ = 0;
 };
 
 }  // namespace adit

@@ -13,19 +13,9 @@
 namespace adit {
 namespace {
 
+using test::adaptive;
 using test::street;
 using test::TwoRobots;
-
-AgentConfig adaptive() {
-  AgentConfig config;
-  config.adaptive.registration.voxel_size = 0.6;
-  config.adaptive.merge_check.evidence.error_rate = 0.3;  // a street of 25 m is short
-  config.adaptive.merge_check.spacing_m = 2.0;
-  config.adaptive.merge_check.discernment.samples = 8;
-  // The boxes are transparent: faces mix within a voxel, and the surface hangs on the grid.
-  config.adaptive.merge_check.relief = false;
-  return config;
-}
 
 TEST(AdaptiveAgent, MergesRobotsThatShareAStreetAndBothKnowWhy) {
   TwoRobots fleet(3, adaptive());

@@ -132,8 +132,29 @@ TEST(Agent, PlacesOnAnotherGridAreLeftOut) {
   Places mixed{0, {{0, test_place(fleet)}, {1, other}}, true};
   EXPECT_TRUE(fleet.agents[0].on(Message{{1}, {0}, mixed}).empty());
   EXPECT_TRUE(fleet.agents[0].on(Message{{1}, {0}, Places{0, {{2, ScanContext{}}}, true}}).empty());
+  EXPECT_EQ(fleet.agents[0].num_left_out(), 2U);
   fleet.meet();
   EXPECT_TRUE(fleet.agents[0].solve({}).pairs.at(0).merged);
+}
+
+TEST(Agent, ARobotWhoseDescriptorsAreLostOrOnAnotherGridWasNotSearched) {
+  const std::vector<float> heights(8 * 12, 1.0F);
+  const Places other{0, {{0, from_heights(8, 12, heights)}}, true};
+  for (const bool on_another_grid : {false, true}) {
+    TwoRobots fleet;
+    for (const Message& answer : fleet.agents[1].on(fleet.agents[0].meet({1}).front()))
+      if (!std::holds_alternative<Places>(answer.body)) (void)fleet.agents[0].on(answer);
+    if (on_another_grid) (void)fleet.agents[0].on({{1}, {0}, other});
+    const FleetSolution apart = fleet.agents[0].solve({});
+    const std::string& reason = apart.pairs.at(0).refused_reason;
+    EXPECT_EQ(reason.find("resembled"), std::string::npos) << reason;
+    EXPECT_NE(reason.find(on_another_grid ? "another grid" : "robot_0 has not searched robot_1"),
+              std::string::npos)
+        << reason;
+    fleet.meet();
+    EXPECT_TRUE(fleet.agents[0].known().unsearched.empty());
+    EXPECT_TRUE(fleet.agents[0].solve({}).pairs.at(0).merged);
+  }
 }
 
 TEST(Agent, PlacesAndCloudsOfKeyframesThatDoNotExistAreHarmless) {
@@ -269,6 +290,8 @@ TEST(Agent, PlacesThatBringNothingEndNoTransfer) {
     const auto known = std::ranges::find(hello.known, of, &Hello::Known::robot);
     return known == hello.known.end() ? 0U : known->num_places;
   };
+  for (const RobotId peer : {RobotId{1}, RobotId{2}})
+    (void)agent.on({peer, {0}, Hello{{{peer, 20, 0, 0, 0}}, true}});
   EXPECT_TRUE(agent.on({{1}, {0}, Places{0, {place}, false}}).empty());
   EXPECT_TRUE(agent.on({{2}, {0}, Places{5, {place}, true}}).empty()) << "a part before it was lost";
   EXPECT_TRUE(agent.on({{2}, {0}, Places{0, {}, true}}).empty());

@@ -8,6 +8,7 @@
 #include "adit/core/angles.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
+#include "adit/fleet/sync/fleet_graph.hpp"
 #include "adit/registration/registration.hpp"
 
 namespace adit {
@@ -75,6 +76,11 @@ LoopClosure LoopRegistration::registered(const LoopCandidate& candidate, const F
     loop.reason =
         format("one robot would be tilted by {:.0f} degrees against the other: both stand on the floor",
                std::acos(std::max(upright, -1.0)) / kDegree);
+  }
+  // With no overlap asked for, poses may be accepted at which nothing can say how well they are known.
+  if (loop.verdict == LoopVerdict::accepted && !is_usable(loop.information)) {
+    loop.verdict = LoopVerdict::rejected;
+    loop.reason += ", but no pair of surfaces agrees";
   }
   return loop;
 }

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "adit/fleet/sync/fleet_graph.hpp"
 
+#include <optional>
+
+#include "adit/core/decompositions.hpp"
+
 namespace adit {
 
 RobotGraph graph_of(const RobotMap& map) {
@@ -11,6 +15,13 @@ RobotGraph graph_of(const RobotMap& map) {
     graph.nodes.push_back({map.keyframes[k].stamp, map.keyframes[k].T_odom_base, map.step_covariances[k]});
   }
   return graph;
+}
+
+bool is_usable(const Matrix6& covariance_or_information) {
+  if (!covariance_or_information.allFinite()) return false;
+  const std::optional<Matrix6> inverse = inverse_of_positive_definite(covariance_or_information);
+  // Tiny ones pass Cholesky's decomposition and have an infinite inverse.
+  return inverse && Matrix6(*inverse + inverse->transpose()).allFinite();
 }
 
 PcmLoop pcm_loop_of(const LoopClosure& loop) {

@@ -32,6 +32,8 @@ struct FleetGraph {
   std::map<RobotId, RobotGraph> robots;        ///< Its own and all that it heard of, even without keyframes.
   std::map<KeyframePair, LoopClosure> loops;   ///< Registered candidates, accepted or not; from < to.
   std::map<RobotPair, MergeCheck> checks;      ///< The latest of each pair; {a, a}: revisits of robot a.
+  /// Of pairs that the agent which knows this has to search and has not: why, in one sentence.
+  std::map<RobotPair, std::string> unsearched = {};
 
   /// Messages about a keyframe may come before the graph that it belongs to.
   [[nodiscard]] bool knows(KeyframeId id) const {
@@ -42,6 +44,10 @@ struct FleetGraph {
 
 /// What others learn of a robot's own map: stamps, poses and odometry steps of its keyframes.
 [[nodiscard]] RobotGraph graph_of(const RobotMap& map);
+
+/// Whether the solver can use a covariance or an information, each of which it turns into the other: positive
+/// definite, with a finite inverse.
+[[nodiscard]] bool is_usable(const Matrix6& covariance_or_information);
 
 /// The loop as odometry chains see it.
 [[nodiscard]] PcmLoop pcm_loop_of(const LoopClosure& loop);

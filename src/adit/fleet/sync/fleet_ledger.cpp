@@ -3,24 +3,14 @@
 #include "adit/fleet/sync/fleet_ledger.hpp"
 
 #include <algorithm>
-#include <iterator>
-#include <optional>
+#include <utility>
 #include <variant>
 
 #include "adit/core/check.hpp"
-#include "adit/core/decompositions.hpp"
 #include "adit/fleet/sync/parts.hpp"
 
 namespace adit {
 namespace {
-
-/// A covariance or an information: each is turned into the other. Tiny ones pass Cholesky's decomposition and
-/// have an infinite inverse.
-bool is_usable(const Matrix6& covariance) {
-  if (!covariance.allFinite()) return false;
-  const std::optional<Matrix6> inverse = inverse_of_positive_definite(covariance);
-  return inverse && Matrix6(*inverse + inverse->transpose()).allFinite();
-}
 
 /// The solver inverts the covariance of each step; the first keyframe has none.
 bool has_usable_covariances(const GraphPart& part) {
@@ -28,6 +18,17 @@ bool has_usable_covariances(const GraphPart& part) {
     if (!is_usable(part.nodes[i].step_covariance)) return false;
   return true;
 }
+
+/// What the wire does not bound.
+///@{
+bool is_bounded(const LoopClosure& loop) { return loop.reason.size() <= kBytesPerText; }
+bool is_bounded(const MergeCheck& check) {
+  std::size_t num_items = check.loops.size();
+  for (const MergeHypothesis& hypothesis : check.hypotheses)
+    num_items += hypothesis.loops.size() + hypothesis.places.size();
+  return num_items <= kItemsPerCheck && check.reason.size() <= kBytesPerText;
+}
+///@}
 
 std::size_t size_of(const auto& by_author, RobotId author) {
   const auto known = by_author.find(author);
@@ -37,10 +38,6 @@ std::size_t size_of(const auto& by_author, RobotId author) {
 const Hello::Known* entry_of(const Hello& hello, RobotId robot) {
   const auto found = std::ranges::find(hello.known, robot, &Hello::Known::robot);
   return found == hello.known.end() ? nullptr : &*found;
-}
-
-void append(std::vector<MessageBody>& to, std::vector<MessageBody> more) {
-  std::ranges::move(more, std::back_inserter(to));
 }
 
 }  // namespace
@@ -58,20 +55,28 @@ std::size_t FleetLedger::num_nodes_of(RobotId robot) const {
 std::size_t FleetLedger::num_own_loops() const { return size_of(loops_by_, self_); }
 std::size_t FleetLedger::num_own_checks() const { return size_of(checks_by_, self_); }
 
-void FleetLedger::add_own(const LoopClosure& loop) {
+void FleetLedger::add_own(const LoopClosure& loop) { keep(self_, loop); }
+void FleetLedger::add_own(MergeCheck check) { keep(self_, std::move(check)); }
+
+void FleetLedger::keep(RobotId author, LoopClosure loop) {
+  if (loop.verdict == LoopVerdict::accepted && !is_usable(loop.information)) {
+    loop.verdict = LoopVerdict::rejected;
+    loop.reason = "its information is not positive definite or has no finite inverse";
+  }
   const KeyframePair ends{loop.from, loop.to};
-  if (known_.loops.try_emplace(ends, loop).second) loops_by_[self_].push_back(ends);
+  // Nobody registers a loop twice: repeated, it would grow the list for ever.
+  if (known_.loops.try_emplace(ends, std::move(loop)).second) loops_by_[author].push_back(ends);
 }
 
-void FleetLedger::add_own(MergeCheck check) {
+void FleetLedger::keep(RobotId author, MergeCheck check) {
   known_.checks[{check.a, check.b}] = check;
-  checks_by_[self_].push_back(std::move(check));
+  checks_by_[author].push_back(std::move(check));
 }
 
 bool FleetLedger::take(const GraphPart& part) {
-  if (part.owner == self_ || !has_usable_covariances(part)) return false;
+  if (part.owner == self_ || part.name.size() > kBytesPerText || !has_usable_covariances(part)) return false;
   const std::size_t has = num_nodes_of(part.owner);
-  if (part.first_index > has) return false;
+  if (part.first_index > has || part.first_index + part.nodes.size() > kKeyframesPerRobot) return false;
   RobotGraph& graph = known_.robots[part.owner];
   graph.name = part.name;
   for (std::size_t i = has - part.first_index; i < part.nodes.size(); ++i)
@@ -91,35 +96,38 @@ bool FleetLedger::restore(const MessageBody& finding) {
 void FleetLedger::overrule(MergeCheck check) {
   ADIT_CHECK(check.a <= check.b, "a check names the smaller robot first");
   const RobotId author = check.a;
-  const auto num = static_cast<std::uint32_t>(size_of(checks_by_, author));
-  add(MergeChecks{author, num, {std::move(check)}});
+  keep(author, std::move(check));
+}
+
+void FleetLedger::note_unsearched(RobotId peer, std::string why) {
+  if (why.empty())
+    known_.unsearched.erase({self_, peer});
+  else
+    known_.unsearched[{self_, peer}] = std::move(why);
 }
 
 bool FleetLedger::add(const Loops& part) {
   const auto is_authors = [&](const LoopClosure& loop) {
     return loop.from.robot == part.author && loop.from.robot <= loop.to.robot && loop.from < loop.to &&
-           (loop.verdict != LoopVerdict::accepted || is_usable(loop.information));
+           is_bounded(loop);
   };
   const std::size_t has = size_of(loops_by_, part.author);
-  if (part.first > has || !std::ranges::all_of(part.loops, is_authors)) return false;
-  for (std::size_t l = has - part.first; l < part.loops.size(); ++l) {
-    const KeyframePair ends{part.loops[l].from, part.loops[l].to};
-    // Nobody registers a loop twice: repeated, it would grow the list for ever.
-    if (known_.loops.try_emplace(ends, part.loops[l]).second) loops_by_[part.author].push_back(ends);
-  }
+  if (part.first > has || part.first + part.loops.size() > kLoopsPerRobot ||
+      !std::ranges::all_of(part.loops, is_authors))
+    return false;
+  for (std::size_t l = has - part.first; l < part.loops.size(); ++l) keep(part.author, part.loops[l]);
   return true;
 }
 
 bool FleetLedger::add(const MergeChecks& part) {
   const auto is_authors = [&](const MergeCheck& check) {
-    return check.a == part.author && check.a <= check.b;
+    return check.a == part.author && check.a <= check.b && is_bounded(check);
   };
   const std::size_t has = size_of(checks_by_, part.author);
-  if (part.first > has || !std::ranges::all_of(part.checks, is_authors)) return false;
-  for (std::size_t c = has - part.first; c < part.checks.size(); ++c) {
-    checks_by_[part.author].push_back(part.checks[c]);
-    known_.checks[{part.checks[c].a, part.checks[c].b}] = part.checks[c];
-  }
+  if (part.first > has || part.first + part.checks.size() > kChecksPerRobot ||
+      !std::ranges::all_of(part.checks, is_authors))
+    return false;
+  for (std::size_t c = has - part.first; c < part.checks.size(); ++c) keep(part.author, part.checks[c]);
   return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "adit/fleet/sync/fleet_graph.hpp"
@@ -27,15 +28,17 @@ class FleetLedger {
   /// Merge checks that this robot decided, those that later ones replaced among them.
   [[nodiscard]] std::size_t num_own_checks() const;
 
-  /// What this robot registered or decided itself. A loop that is known already is left as it is.
+  /// What this robot registered or decided itself. A loop that is known already is left as it is; an accepted
+  /// one whose information the solver cannot use is kept as a rejected one, as those that messages bring.
   void add_own(const LoopClosure& loop);
   /// Replaces an earlier verdict on the same robots.
   void add_own(MergeCheck check);
 
   /// What a message brought. Nothing changes, and false is returned, where a part before it was lost (the
-  /// next Hello asks for it) and where it makes no sense: news about this robot itself, covariances of steps
-  /// or information of accepted loops that are not positive definite or have no finite inverse, loops or
-  /// checks that are not their author's.
+  /// next Hello asks for it), where it would go beyond what is taken of one robot (kKeyframesPerRobot and so
+  /// on), and where it makes no sense: news about this robot itself, covariances of steps that are not
+  /// usable (is_usable), loops or checks that are not their author's. An accepted loop whose information is
+  /// not usable is kept as a rejected one: refused, it would keep back all that its author finds later.
   ///@{
   bool take(const GraphPart& part);
   bool take(const Loops& part);
@@ -47,6 +50,8 @@ class FleetLedger {
   /// Replaces the verdict on its two robots, whoever decided it. Throws ContractViolation unless `check.a <=
   /// check.b`.
   void overrule(MergeCheck check);
+  /// Why this robot has not searched `peer`; empty: it has.
+  void note_unsearched(RobotId peer, std::string why);
 
   /// How much is known of each robot.
   [[nodiscard]] std::map<RobotId, Hello::Known> summary() const;
@@ -63,6 +68,8 @@ class FleetLedger {
  private:
   bool add(const Loops& part);
   bool add(const MergeChecks& part);
+  void keep(RobotId author, LoopClosure loop);
+  void keep(RobotId author, MergeCheck check);
 
   RobotId self_;
   FleetGraph known_;

@@ -129,17 +129,89 @@ TEST(FleetLedger, RefusesWhatTheSolverCouldNotInvert) {
     GraphNode node;
     node.step_covariance = matrix;
     EXPECT_FALSE(ledger.take(GraphPart{kOther, "odd", 0, {node, node}}));
-    LoopClosure odd = loop({kOther, 1}, {kSelf, 0});
-    odd.information = matrix;
-    odd.verdict = LoopVerdict::accepted;
-    EXPECT_FALSE(ledger.take(Loops{kOther, 0, {odd}}));
-    EXPECT_FALSE(ledger.restore(Loops{kOther, 0, {odd}}));
   }
   EXPECT_FALSE(ledger.known().robots.contains(kOther));
-  EXPECT_TRUE(ledger.known().loops.empty());
   LoopClosure rejected = loop({kOther, 1}, {kSelf, 0});
   rejected.information = Matrix6::Zero();
   EXPECT_TRUE(ledger.take(Loops{kOther, 0, {rejected}})) << "that it was tried is told to all";
+}
+
+TEST(FleetLedger, AnAcceptedLoopThatTheSolverCouldNotUseIsKeptAsRejectedAndSilencesNobody) {
+  const Matrix6 tiny = Matrix6::Identity() * 1e-310;  // with an infinite inverse
+  for (const Matrix6& matrix : {Matrix6(Matrix6::Zero()), tiny}) {
+    LoopClosure odd = loop({kOther, 1}, {kSelf, 0});
+    odd.information = matrix;
+    odd.verdict = LoopVerdict::accepted;
+    LoopClosure sound = loop({kOther, 2}, {kSelf, 0});
+    sound.information = Matrix6::Identity();
+    sound.verdict = LoopVerdict::accepted;
+    FleetLedger received(kSelf, graph_with(1), MergePolicy::adaptive);
+    EXPECT_TRUE(received.take(Loops{kOther, 0, {odd}}));
+    EXPECT_TRUE(received.take(Loops{kOther, 1, {sound}}));
+    FleetLedger restored(kOther, graph_with(1), MergePolicy::adaptive);
+    EXPECT_TRUE(restored.restore(Loops{kOther, 0, {odd, sound}}));
+    FleetLedger own(kOther, graph_with(1), MergePolicy::adaptive);
+    own.add_own(odd);
+    own.add_own(sound);
+    for (const FleetLedger* ledger : {&received, &restored, &own}) {
+      const LoopClosure& kept = ledger->known().loops.at({odd.from, odd.to});
+      EXPECT_EQ(kept.verdict, LoopVerdict::rejected);
+      EXPECT_NE(kept.reason.find("inverse"), std::string::npos);
+      EXPECT_EQ(ledger->known().loops.at({sound.from, sound.to}).verdict, LoopVerdict::accepted);
+    }
+  }
+}
+
+TEST(FleetLedger, TakesNoMoreOfOneRobotThanItsBounds) {
+  FleetLedger ledger(kSelf, graph_with(1), MergePolicy::adaptive);
+  const std::vector<GraphNode> nodes = graph_with(kNodesPerMessage).nodes;
+  const auto send_nodes = [&](std::size_t first) {
+    return ledger.take(GraphPart{kOther, "big", static_cast<std::uint32_t>(first), nodes});
+  };
+  std::size_t first = 0;
+  for (; first + kNodesPerMessage <= kKeyframesPerRobot; first += kNodesPerMessage)
+    ASSERT_TRUE(send_nodes(first));
+  EXPECT_FALSE(send_nodes(first));
+  EXPECT_EQ(ledger.num_nodes_of(kOther), first);
+
+  std::vector<MergeCheck> checks(kChecksPerMessage, check(kOther, kSelf));
+  first = 0;
+  for (; first + kChecksPerMessage <= kChecksPerRobot; first += kChecksPerMessage)
+    ASSERT_TRUE(ledger.take(MergeChecks{kOther, static_cast<std::uint32_t>(first), checks}));
+  EXPECT_FALSE(ledger.take(MergeChecks{kOther, static_cast<std::uint32_t>(first), checks}));
+  EXPECT_EQ(ledger.summary().at(kOther).num_checks, kChecksPerRobot);
+  MergeCheck overruled = check(kOther, kSelf);
+  overruled.accepted = true;
+  ledger.overrule(overruled);
+  EXPECT_TRUE(ledger.known().checks.at({kOther, kSelf}).accepted) << "a person still decides";
+
+  const RobotId third{2};
+  const auto send_loops = [&](std::uint32_t at) {
+    Loops part{third, at, {}};
+    for (std::uint32_t l = at; l < at + kLoopsPerMessage; ++l)
+      part.loops.push_back(loop({third, l}, {{3}, 0}));
+    return ledger.take(part);
+  };
+  std::uint32_t at = 0;
+  for (; at + kLoopsPerMessage <= kLoopsPerRobot; at += kLoopsPerMessage) ASSERT_TRUE(send_loops(at));
+  EXPECT_FALSE(send_loops(at));
+}
+
+TEST(FleetLedger, TakesNoTextsAndChecksOfAnyLength) {
+  FleetLedger ledger(kSelf, graph_with(1), MergePolicy::adaptive);
+  const std::string endless(kBytesPerText + 1, 'a');
+  EXPECT_FALSE(ledger.take(GraphPart{kOther, endless, 0, graph_with(1).nodes}));
+  LoopClosure wordy = loop({kOther, 1}, {kSelf, 0});
+  wordy.reason = endless;
+  EXPECT_FALSE(ledger.take(Loops{kOther, 0, {wordy}}));
+  MergeCheck of_words = check(kOther, kSelf);
+  of_words.reason = endless;
+  EXPECT_FALSE(ledger.take(MergeChecks{kOther, 0, {of_words}}));
+  MergeCheck of_loops = check(kOther, kSelf);
+  of_loops.hypotheses.emplace_back().loops.resize(kItemsPerCheck);
+  EXPECT_TRUE(ledger.take(MergeChecks{kOther, 0, {of_loops}}));
+  of_loops.hypotheses.back().places.resize(1);
+  EXPECT_FALSE(ledger.take(MergeChecks{kOther, 1, {of_loops}}));
 }
 
 TEST(FleetLedger, ALoopThatIsRepeatedIsListedOnce) {

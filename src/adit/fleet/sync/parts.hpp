@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <vector>
 
 namespace adit {
@@ -17,6 +18,12 @@ void for_parts(const std::vector<T>& all, std::size_t first, std::size_t size, c
     const auto to = all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), begin + size));
     visit(static_cast<std::uint32_t>(begin), std::vector<T>(from, to));
   }
+}
+
+/// Moves `more` to the end of `to`.
+template <class T>
+void append(std::vector<T>& to, std::vector<T> more) {
+  std::ranges::move(more, std::back_inserter(to));
 }
 
 }  // namespace adit

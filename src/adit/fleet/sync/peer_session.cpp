@@ -3,6 +3,8 @@
 #include "adit/fleet/sync/peer_session.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 #include <utility>
 
 namespace adit {
@@ -15,11 +17,14 @@ PeerState PeerSession::state() const {
   return is_searched_ ? PeerState::decided : PeerState::greeting;
 }
 
-void PeerSession::hear(const Hello& hello, RobotId peer) {
+bool PeerSession::hear(const Hello& hello, RobotId peer) {
   const auto own = std::ranges::find(hello.known, peer, &Hello::Known::robot);
-  if (own == hello.known.end()) return;
+  if (own == hello.known.end()) return true;
   num_keyframes_ = own->num_nodes;
   std::erase_if(waiting_, [&](const auto& entry) { return !exists(entry.first); });
+  if (std::ranges::all_of(to_compare_, [&](std::uint32_t view) { return exists(view); })) return true;
+  await_comparison_of({});
+  return false;
 }
 
 void PeerSession::restore_searched(std::uint32_t num) {
@@ -28,7 +33,9 @@ void PeerSession::restore_searched(std::uint32_t num) {
 }
 
 bool PeerSession::take(const Places& part) {
-  if (part.first > num_places_ || part.first + part.places.size() > num_keyframes_) return false;
+  const std::size_t num = part.first + part.places.size();
+  if (!num_keyframes_ || num > *num_keyframes_ || num > kKeyframesPerRobot) return false;
+  if (part.first > num_places_) return false;
   for (std::size_t i = num_places_ - part.first; i < part.places.size(); ++i) {
     places_.push_back(part.places[i]);
     ++num_places_;
@@ -48,12 +55,17 @@ bool PeerSession::lie_within(std::size_t num_nodes) const {
       places_, [&](const Places::Place& place) { return place.index < num_nodes || !exists(place.index); });
 }
 
-std::vector<Places::Place> PeerSession::take_places() {
+std::vector<Places::Place> PeerSession::places() const {
+  std::vector<Places::Place> places;
+  std::ranges::copy_if(places_, std::back_inserter(places),
+                       [&](const Places::Place& place) { return exists(place.index); });
+  return places;
+}
+
+void PeerSession::finish_search() {
+  places_ = {};
   has_all_places_ = false;
   is_searched_ = true;
-  std::vector<Places::Place> places = std::exchange(places_, {});
-  std::erase_if(places, [&](const Places::Place& place) { return !exists(place.index); });
-  return places;
 }
 
 void PeerSession::await_clouds_of(const std::vector<LoopCandidate>& candidates) {
@@ -105,15 +117,20 @@ void PeerSession::take_views(const Clouds& clouds) {
     if (awaits(cloud.index)) views_.insert_or_assign(cloud.index, cloud);
 }
 
-std::vector<PeerSession::Arrived> PeerSession::take_arrived(const Clouds& clouds) {
+std::vector<PeerSession::Arrived> PeerSession::arrived(const Clouds& clouds) const {
   std::vector<Arrived> arrived;
   if (clouds.kind != CloudKind::submap) return arrived;
+  std::set<std::uint32_t> seen;
   for (std::size_t c = 0; c < clouds.clouds.size(); ++c) {
-    const auto waiting = waiting_.extract(clouds.clouds[c].index);
-    if (waiting.empty()) continue;
-    for (const LoopCandidate& candidate : waiting.mapped()) arrived.push_back({candidate, c});
+    const auto waiting = waiting_.find(clouds.clouds[c].index);
+    if (waiting == waiting_.end() || !seen.insert(waiting->first).second) continue;
+    for (const LoopCandidate& candidate : waiting->second) arrived.push_back({candidate, c});
   }
   return arrived;
+}
+
+void PeerSession::finish_registration(const std::vector<Arrived>& arrived) {
+  for (const Arrived& one : arrived) waiting_.erase(one.candidate.match.index);
 }
 
 }  // namespace adit

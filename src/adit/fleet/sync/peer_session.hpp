@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -32,15 +31,20 @@ class PeerSession {
   [[nodiscard]] PeerState state() const;
 
   /// The peer says how many keyframes it has. What waits for others is given up: it would wait for ever.
-  void hear(const Hello& hello, RobotId peer);
+  /// False where that is the comparison: it was planned on a map that is gone.
+  bool hear(const Hello& hello, RobotId peer);
+  /// Whether the peer has that keyframe, as it last said; any before its first Hello.
+  [[nodiscard]] bool exists(std::uint32_t keyframe) const {
+    return !num_keyframes_ || keyframe < *num_keyframes_;
+  }
 
   /// All of its `num` descriptors were searched before this robot was saved.
   void restore_searched(std::uint32_t num);
 
   /// Descriptors received so far, over all meetings.
   [[nodiscard]] std::uint32_t num_places() const { return num_places_; }
-  /// False where a part before it was lost, and the next Hello asks for it, or where there would be more
-  /// places than the peer has keyframes.
+  /// False where a part before it was lost, and the next Hello asks for it, before the first Hello, and where
+  /// there would be more places than the peer has keyframes or than kKeyframesPerRobot.
   bool take(const Places& part);
   /// Forgets descriptors that no search has used; a later meeting sends them again.
   void forget_places();
@@ -49,9 +53,15 @@ class PeerSession {
   /// Whether all places lie on the first `num_nodes` nodes of the peer's graph.
   [[nodiscard]] bool lie_within(std::size_t num_nodes) const;
   /// Whether `num_nodes` are all nodes of the peer's graph; false before its first Hello.
-  [[nodiscard]] bool is_whole(std::size_t num_nodes) const { return num_nodes >= num_keyframes_; }
-  /// Hands the descriptors over to the search.
-  [[nodiscard]] std::vector<Places::Place> take_places();
+  [[nodiscard]] bool is_whole(std::size_t num_nodes) const {
+    return num_keyframes_ && num_nodes >= *num_keyframes_;
+  }
+  /// The descriptors to search, without those of keyframes that do not exist.
+  [[nodiscard]] std::vector<Places::Place> places() const;
+  /// They were searched, and are forgotten. Until then a search that was broken off can begin again.
+  void finish_search();
+  /// Whether a search was finished.
+  [[nodiscard]] bool is_searched() const { return is_searched_; }
 
   /// Candidates to register.
   void await_clouds_of(const std::vector<LoopCandidate>& candidates);
@@ -72,8 +82,10 @@ class PeerSession {
     LoopCandidate candidate;  ///< Its match is that keyframe.
     std::size_t cloud = 0;    ///< Index into Clouds::clouds.
   };
-  /// Candidates whose clouds have come, which then wait no longer.
-  [[nodiscard]] std::vector<Arrived> take_arrived(const Clouds& clouds);
+  /// Candidates whose clouds have come, each once.
+  [[nodiscard]] std::vector<Arrived> arrived(const Clouds& clouds) const;
+  /// They were registered, and wait no longer.
+  void finish_registration(const std::vector<Arrived>& arrived);
   /// Keeps the views that the merge check waits for. Other alignments of the maps compare the same ones.
   void take_views(const Clouds& clouds);
   /// Whether the merge check has all views that it waits for.
@@ -82,11 +94,10 @@ class PeerSession {
   [[nodiscard]] const Views& views() const { return views_; }
 
  private:
-  [[nodiscard]] bool exists(std::uint32_t keyframe) const { return keyframe < num_keyframes_; }
   [[nodiscard]] bool awaits(std::uint32_t view) const;
   [[nodiscard]] std::vector<std::uint32_t> missing_views() const;
 
-  std::uint32_t num_keyframes_ = std::numeric_limits<std::uint32_t>::max();  ///< As the peer last said.
+  std::optional<std::uint32_t> num_keyframes_;  ///< As the peer last said.
   std::uint32_t num_places_ = 0;
   std::vector<Places::Place> places_;  ///< Not searched yet.
   bool has_all_places_ = false;        ///< None of them is still to come.

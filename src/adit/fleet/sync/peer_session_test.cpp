@@ -37,8 +37,14 @@ Hello hello_with(std::uint32_t num_nodes) {
   return hello;
 }
 
-TEST(PeerSession, GoesFromGreetingToDecided) {
+PeerSession after_hello(std::uint32_t num_nodes) {
   PeerSession session;
+  EXPECT_TRUE(session.hear(hello_with(num_nodes), kPeer));
+  return session;
+}
+
+TEST(PeerSession, GoesFromGreetingToDecided) {
+  PeerSession session = after_hello(100);
   EXPECT_EQ(session.state(), PeerState::greeting);
   ASSERT_TRUE(session.take(part_of(0, {3, 4}, false)));
   EXPECT_EQ(session.state(), PeerState::receiving_places);
@@ -46,13 +52,20 @@ TEST(PeerSession, GoesFromGreetingToDecided) {
   EXPECT_EQ(session.state(), PeerState::awaiting_path);
   EXPECT_FALSE(session.lie_within(5));
   EXPECT_TRUE(session.lie_within(6));
-  EXPECT_EQ(session.take_places().size(), 3U);
+  EXPECT_EQ(session.places().size(), 3U);
+  EXPECT_EQ(session.state(), PeerState::awaiting_path) << "the search may be broken off";
+  session.finish_search();
+  EXPECT_TRUE(session.places().empty());
   EXPECT_EQ(session.state(), PeerState::decided) << "searched, and nothing was found";
   session.await_clouds_of({candidate_of_peer(7, 4), candidate_of_peer(8, 4), candidate_of_peer(9, 5)});
   EXPECT_EQ(session.state(), PeerState::awaiting_clouds);
   EXPECT_EQ(session.num_waiting(), 3U);
   EXPECT_EQ(session.request()->indices, (std::vector<std::uint32_t>{4, 5}));
-  EXPECT_EQ(session.take_arrived(clouds_of({4, 5}, CloudKind::submap)).size(), 3U);
+  const auto arrived = session.arrived(clouds_of({4, 5, 4}, CloudKind::submap));
+  EXPECT_EQ(arrived.size(), 3U) << "each once, though a cloud came twice";
+  EXPECT_EQ(session.num_waiting(), 3U) << "registration may be broken off";
+  session.finish_registration(arrived);
+  EXPECT_EQ(session.num_waiting(), 0U);
   session.await_comparison_of({10, 20});
   EXPECT_EQ(session.state(), PeerState::comparing);
   session.take_views(clouds_of({10, 20}, CloudKind::submap));
@@ -73,19 +86,21 @@ TEST(PeerSession, GoesFromGreetingToDecided) {
 }
 
 TEST(PeerSession, RepeatedAndLostPlacesAreNoticed) {
-  PeerSession session;
+  PeerSession session = after_hello(100);
   EXPECT_FALSE(session.take(part_of(2, {5}, true))) << "a part before it was lost";
   EXPECT_EQ(session.num_places(), 0U);
   ASSERT_TRUE(session.take(part_of(0, {3, 4}, true)));
   ASSERT_TRUE(session.take(part_of(0, {3, 4}, true)));
   EXPECT_EQ(session.num_places(), 2U);
-  EXPECT_EQ(session.take_places().size(), 2U);
+  EXPECT_EQ(session.places().size(), 2U);
+  session.finish_search();
+  EXPECT_TRUE(session.is_searched());
   ASSERT_TRUE(session.take(part_of(0, {3, 4}, true)));
   EXPECT_FALSE(session.has_all_places()) << "what was searched is not searched again";
 }
 
 TEST(PeerSession, ForgottenPlacesAreAskedForAgain) {
-  PeerSession session;
+  PeerSession session = after_hello(100);
   ASSERT_TRUE(session.take(part_of(0, {3, 4}, true)));
   session.forget_places();
   EXPECT_EQ(session.num_places(), 0U);
@@ -116,7 +131,7 @@ TEST(PeerSession, WhatThePeerDoesNotHaveBlocksNothing) {
   session.hear(hello_with(10), kPeer);
   ASSERT_TRUE(session.take(part_of(0, {3, 4'000'000'000U}, true)));
   EXPECT_TRUE(session.lie_within(10)) << "no graph will ever have the second one";
-  EXPECT_EQ(session.take_places().size(), 1U);
+  EXPECT_EQ(session.places().size(), 1U);
 
   session.await_clouds_of({candidate_of_peer(1, 3), candidate_of_peer(2, 11)});
   session.hear(hello_with(10), kPeer);
@@ -141,7 +156,30 @@ TEST(PeerSession, TakesNoMorePlacesThanThePeerHasKeyframes) {
   EXPECT_FALSE(session.take(part_of(2, {2, 2}, false)));
   EXPECT_EQ(session.num_places(), 2U);
   ASSERT_TRUE(session.take(part_of(2, {2}, true)));
-  EXPECT_EQ(session.take_places().size(), 3U);
+  EXPECT_EQ(session.places().size(), 3U);
+}
+
+TEST(PeerSession, TakesNoPlacesBeforeAHelloAndNotAnyNumberAfterIt) {
+  PeerSession session;
+  EXPECT_FALSE(session.take(part_of(0, {0, 1}, false)));
+  EXPECT_EQ(session.state(), PeerState::greeting);
+  session = after_hello(4'000'000'000U);  // the peer's own word
+  session.restore_searched(kKeyframesPerRobot - 1);
+  ASSERT_TRUE(session.take(part_of(kKeyframesPerRobot - 1, {7}, false)));
+  EXPECT_FALSE(session.take(part_of(kKeyframesPerRobot, {8}, false)));
+}
+
+TEST(PeerSession, AComparisonOfWhatThePeerHasNoLongerIsGivenUp) {
+  PeerSession session = after_hello(100);
+  session.await_comparison_of({10, 70});
+  session.take_views(clouds_of({10}, CloudKind::view));
+  EXPECT_TRUE(session.hear(hello_with(71), kPeer));
+  EXPECT_EQ(session.state(), PeerState::comparing);
+  EXPECT_FALSE(session.hear(hello_with(50), kPeer));
+  EXPECT_EQ(session.state(), PeerState::greeting) << "70 would be awaited for ever";
+  EXPECT_TRUE(session.views().empty());
+  EXPECT_FALSE(session.request());
+  EXPECT_TRUE(session.hear(hello_with(50), kPeer));
 }
 
 }  // namespace

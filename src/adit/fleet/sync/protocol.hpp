@@ -28,6 +28,19 @@ inline constexpr std::size_t kNodesPerMessage = 512;
 inline constexpr std::size_t kLoopsPerMessage = 256;
 inline constexpr std::size_t kChecksPerMessage = 16;
 ///@}
+/// The most that is taken of any one robot, whoever sends it: without a bound a broken or hostile peer fills
+/// the memory. A robot that drives 60 km, or decides eight times about each of the others, stays below.
+///@{
+inline constexpr std::size_t kKeyframesPerRobot = 200'000;
+inline constexpr std::size_t kLoopsPerRobot = 100'000;
+inline constexpr std::size_t kChecksPerRobot = 2'048;
+///@}
+/// The most that is taken of one text (a name or a reason, bytes) and of one MergeCheck (loops and places of
+/// all its hypotheses together).
+///@{
+inline constexpr std::size_t kBytesPerText = 2'048;
+inline constexpr std::size_t kItemsPerCheck = 16'384;
+///@}
 /// The most that a MergeCheck states, the best ones.
 inline constexpr std::size_t kHypothesesPerCheck = 16;
 
