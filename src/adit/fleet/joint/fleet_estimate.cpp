@@ -118,13 +118,15 @@ FleetEstimate::Step FleetEstimate::update(const FleetGraph& known, const BackEnd
   for (const LoopOutcome& outcome : selection.loops)
     if (outcome.is_selected) selected.push_back(&outcome.loop);
   std::map<std::vector<RobotId>, Map> maps;
+  // Where this throws, the next update begins all maps anew: no map is left of which a part was moved.
+  std::map<std::vector<RobotId>, Map> maps_before = std::exchange(maps_, {});
   for (const std::vector<RobotId>& robots : linked_robots(known, selected)) {
     if (known.robots.at(robots.front()).nodes.empty()) continue;  // no loop links it
     Loops loops;
     for (const LoopClosure* loop : selected)
       if (std::ranges::binary_search(robots, loop->from.robot)) loops.push_back(loop);
-    const auto before = maps_.find(robots);
-    const bool is_new = before == maps_.end() || !can_grow(before->second, loops);
+    const auto before = maps_before.find(robots);
+    const bool is_new = before == maps_before.end() || !can_grow(before->second, loops);
     if (is_new) ++step.num_begun_anew;
     Map& map =
         maps.emplace(robots, is_new ? begin(known, robots, loops) : std::move(before->second)).first->second;

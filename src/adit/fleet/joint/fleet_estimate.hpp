@@ -31,7 +31,8 @@ class FleetEstimate {
     /// One sentence for each map that could not be solved; its poses stay as they were.
     std::vector<std::string> problems;
   };
-  /// Brings the estimate up to what is known now. What was known before must still be known.
+  /// Brings the estimate up to what is known now. What was known before must still be known. Where it throws,
+  /// the next call begins all maps anew.
   Step update(const FleetGraph& known, const BackEndConfig& config);
 
   /// In the odometry frame of the robot with the smallest id in the same map. Robots without keyframes are

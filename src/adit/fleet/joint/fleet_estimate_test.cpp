@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "adit/core/check.hpp"
 #include "adit/core/rng.hpp"
 #include "support/circling_fleet.hpp"
 
@@ -105,6 +106,22 @@ TEST(FleetEstimate, AMergeThatIsTakenBackLeavesEachRobotAtItsOdometry) {
   for (std::uint32_t k = 0; k < kNodes; ++k)
     EXPECT_TRUE(estimate.T_map_keyframe().at({1})[k].matrix().isApprox(
         fleet.robots.at({1}).nodes[k].T_odom_base.matrix(), 1e-9));
+}
+
+TEST(FleetEstimate, AnUpdateThatThrowsIsMadeUpForByTheNext) {
+  FleetGraph fleet = robots_without_loops(2);
+  FleetEstimate estimate;
+  estimate.update(known_at(fleet, 10), {});
+  FleetGraph broken = fleet;  // in the second map, so that the first has been taken over by then
+  add_loop(broken, {{1}, 5}, {{1}, 5});
+  broken.checks[{{1}, {1}}].accepted = true;
+  broken.checks[{{1}, {1}}].loops = {{5, 5}};
+  EXPECT_THROW(estimate.update(broken, {}), ContractViolation);
+  const FleetEstimate::Step step = estimate.update(fleet, {});
+  EXPECT_TRUE(step.problems.empty());
+  EXPECT_EQ(step.num_begun_anew, 2U);
+  EXPECT_EQ(estimate.maps().size(), 2U);
+  EXPECT_LT(difference(estimate, solve(fleet, {})).largest_m, 1e-6);
 }
 
 TEST(FleetEstimate, ARobotWithoutKeyframesIsInNoMap) {

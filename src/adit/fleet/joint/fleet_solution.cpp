@@ -56,17 +56,22 @@ FleetGraph part_of(const FleetGraph& fleet, const std::vector<RobotId>& robots) 
   return part;
 }
 
-/// What was tried between two robots, registered or not.
+/// What was tried between two robots.
 struct Tried {
-  std::size_t num = 0;
-  std::map<std::string, int> reasons;
+  std::size_t num_registered = 0;
+  std::size_t num_rejected = 0;
+  std::map<std::string, int> reasons;  ///< Of those rejected.
 };
 
 std::map<RobotPair, Tried> tried_by_pair(const FleetGraph& fleet) {
   std::map<RobotPair, Tried> by_pair;
   for (const auto& [ends, loop] : fleet.loops) {
     Tried& tried = by_pair[{ends.first.robot, ends.second.robot}];
-    ++tried.num;
+    if (loop.verdict == LoopVerdict::accepted) {
+      ++tried.num_registered;
+      continue;
+    }
+    ++tried.num_rejected;
     ++tried.reasons[loop.reason];
   }
   return by_pair;
@@ -77,8 +82,8 @@ struct Refusal {
   std::string reason;
 };
 
-Refusal refusal(const FleetGraph& fleet, const BackEndConfig& config, const PairOutcome& pair,
-                const Tried& tried, std::size_t num_used) {
+/// Where no loop can take part.
+Refusal without_loops(const FleetGraph& fleet, const PairOutcome& pair, const Tried& tried) {
   for (const RobotId robot : {pair.a, pair.b}) {
     if (fleet.robots.at(robot).nodes.empty()) {
       return {RefusalKind::no_loop,
@@ -86,19 +91,42 @@ Refusal refusal(const FleetGraph& fleet, const BackEndConfig& config, const Pair
                      fleet.robots.at(robot).name)};
     }
   }
-  if (tried.num == 0) {
+  if (tried.num_registered > 0) {
+    return {
+        RefusalKind::no_loop,
+        format("{} loops, but the odometry on which they lie has not all come; the robots have to meet again",
+               tried.num_registered)};
+  }
+  const auto unsearched = fleet.unsearched.find({pair.a, pair.b});
+  if (tried.num_rejected == 0 && unsearched != fleet.unsearched.end())
+    return {RefusalKind::no_loop, unsearched->second};
+  if (tried.num_rejected == 0) {
     return {RefusalKind::no_loop, format("no keyframe of {} resembled one of {}; drive on until both have "
                                          "passed the same place, none is known yet",
                                          fleet.robots.at(pair.a).name, fleet.robots.at(pair.b).name)};
   }
-  if (pair.num_loops == 0) {
-    const auto most =
-        std::ranges::max_element(tried.reasons, {}, &decltype(tried.reasons)::value_type::second);
-    return {RefusalKind::no_loop,
-            format("none of {} candidates could be registered (mostly: {}); drive on until both have passed "
-                   "the same place, nearer to one another, none is known yet",
-                   tried.num, most->first)};
-  }
+  const auto most = std::ranges::max_element(tried.reasons, {}, &decltype(tried.reasons)::value_type::second);
+  return {RefusalKind::no_loop,
+          format("none of {} candidates could be registered (mostly: {}); drive on until both have passed "
+                 "the same place, nearer to one another, none is known yet",
+                 tried.num_rejected, most->first)};
+}
+
+/// Why the solver found no poses for the map that these loops would make; empty where it did, or where none
+/// was selected.
+std::string failure_of(const FleetSolution& solution, const std::vector<std::size_t>& of_pair) {
+  const auto selected =
+      std::ranges::find_if(of_pair, [&](std::size_t l) { return solution.loops[l].is_selected; });
+  if (selected == of_pair.end()) return {};
+  const RobotId robot = solution.loops[*selected].loop.from.robot;
+  const auto component = std::ranges::find_if(solution.components, [&](const Component& one) {
+    return std::ranges::find(one.robots, robot) != one.robots.end();
+  });
+  return component->reason;
+}
+
+Refusal refusal(const FleetGraph& fleet, const BackEndConfig& config, const PairOutcome& pair,
+                const std::string& failure, std::size_t num_used) {
   const auto check = fleet.checks.find({pair.a, pair.b});
   if (check != fleet.checks.end() && !check->second.accepted)
     return {check->second.refused_kind, check->second.reason};
@@ -106,6 +134,9 @@ Refusal refusal(const FleetGraph& fleet, const BackEndConfig& config, const Pair
     return {RefusalKind::too_little,
             format("{} loops, but scans along them were never compared; the robots have to meet again",
                    pair.num_loops)};
+  if (!failure.empty())
+    return {RefusalKind::unknown,
+            format("{} loops, but the map that they make could not be solved: {}", pair.num_loops, failure)};
   return {RefusalKind::too_little,
           format("only {} of {} loops agree with the odometries of both robots, {} needed; drive a longer "
                  "stretch that both know",
@@ -122,7 +153,9 @@ void decide_merges(const FleetGraph& fleet, const BackEndConfig& config, const L
     pair.merged = num_used >= static_cast<std::size_t>(config.min_loops);
     if (pair.merged) continue;
     if (pair.refused_reason.empty()) {
-      Refusal found = refusal(fleet, config, pair, tried[{pair.a, pair.b}], num_used);
+      Refusal found = pair.num_loops == 0
+                          ? without_loops(fleet, pair, tried[{pair.a, pair.b}])
+                          : refusal(fleet, config, pair, failure_of(solution, of_pair), num_used);
       pair.refused_kind = found.kind;
       pair.refused_reason = std::move(found.reason);
     }

@@ -65,6 +65,40 @@ TEST(FleetGraph, LoopsThatAreTooFewDoNotJoinMaps) {
   EXPECT_LT(largest_error(solution, solution.components[1]), 1e-6);
 }
 
+TEST(FleetGraph, AMapThatCannotBeSolvedSaysSo) {
+  FleetGraph fleet = robots_without_loops(2, MergePolicy::paper);
+  BackEndConfig config;
+  config.pcm_on = false;
+  for (std::uint32_t k = 5; k < 35; k += 5) add_loop(fleet, {{0}, k}, {{1}, k});
+  for (auto& [ends, loop] : fleet.loops) loop.information = -1e12 * Matrix6::Identity();
+  const FleetSolution solution = solve(fleet, config);
+  const PairOutcome& pair = solution.pairs.at(0);
+  ASSERT_FALSE(pair.merged);
+  EXPECT_NE(pair.refused_reason.find("6 loops, but the map that they make could not be solved: "),
+            std::string::npos)
+      << pair.refused_reason;
+  EXPECT_EQ(pair.refused_kind, RefusalKind::unknown);
+}
+
+TEST(FleetGraph, WhatWasNotComparedIsNotSaidToDiffer) {
+  FleetGraph fleet = robots_without_loops(2, MergePolicy::paper);
+  const auto refusal = [&] { return solve(fleet, {}).pairs.at(0).refused_reason; };
+  fleet.unsearched[{{0}, {1}}] = "robot_0 has not searched robot_1";
+  EXPECT_EQ(refusal(), "robot_0 has not searched robot_1");
+
+  add_loop(fleet, {{0}, 5}, {{1}, 6});
+  LoopClosure rejected = fleet.loops.begin()->second;
+  rejected.to.index = 7;
+  rejected.verdict = LoopVerdict::rejected;
+  rejected.reason = "8 inliers, 20 needed";
+  fleet.loops[{rejected.from, rejected.to}] = rejected;
+  fleet.robots[{1}].nodes.resize(4);  // the part that the loop lies on was lost
+  EXPECT_NE(refusal().find("1 loops, but the odometry"), std::string::npos) << refusal();
+  fleet.loops.erase(fleet.loops.begin());
+  EXPECT_NE(refusal().find("none of 1 candidates could be registered (mostly: 8 inliers"), std::string::npos)
+      << refusal();
+}
+
 TEST(FleetGraph, RobotWithoutKeyframesStopsNobody) {
   FleetGraph fleet = robots_without_loops(3, MergePolicy::paper);
   fleet.robots[{1}].nodes.clear();
