@@ -15,12 +15,14 @@ namespace adit {
 namespace {
 
 /// `num` robots one behind the other on one street.
-std::vector<Agent> robots_on_a_street(int num) {
+std::vector<Agent> robots_on_a_street(int num, MergePolicy policy = MergePolicy::paper) {
   const test::BoxWorld world(11);
   AgentConfig config;
-  config.policy = MergePolicy::paper;
+  config.policy = policy;
   config.place.max_distance = 0.4;
   config.registration.voxel_size = 0.6;  // coarse, for speed: boxes of metres
+  config.adaptive.registration.voxel_size = 0.6;
+  config.adaptive.merge_check.discernment.samples = 8;
   std::vector<Agent> agents;
   agents.reserve(static_cast<std::size_t>(num));
   for (int r = 0; r < num; ++r) {
@@ -125,10 +127,13 @@ std::vector<std::vector<std::byte>> recorded_meeting(std::vector<Agent>& agents)
   return recorded;
 }
 
-TEST(LoopbackBus, NonsenseInAValidMessageNeverStopsAnAgent) {
-  std::vector<Agent> sane = robots_on_a_street(2);
+class Nonsense : public ::testing::TestWithParam<MergePolicy> {};
+
+TEST_P(Nonsense, InAValidMessageNeverStopsAnAgent) {
+  std::vector<Agent> sane = robots_on_a_street(2, GetParam());
   const std::vector<std::vector<std::byte>> messages = recorded_meeting(sane);
-  std::vector<Agent> agents = robots_on_a_street(2);
+  ASSERT_EQ(sane[1].known().checks.size(), GetParam() == MergePolicy::adaptive ? 1U : 0U);
+  std::vector<Agent> agents = robots_on_a_street(2, GetParam());
   Rng rng(8);
   int num_taken = 0;
   for (int trial = 0; trial < 8; ++trial) {
@@ -146,6 +151,8 @@ TEST(LoopbackBus, NonsenseInAValidMessageNeverStopsAnAgent) {
   EXPECT_GT(num_taken, 30);
   for (const Agent& agent : agents) EXPECT_NO_THROW((void)agent.solve({}));
 }
+
+INSTANTIATE_TEST_SUITE_P(Policies, Nonsense, ::testing::Values(MergePolicy::paper, MergePolicy::adaptive));
 
 TEST(LoopbackBus, UnknownRobotIsAnError) {
   LoopbackBus bus;
