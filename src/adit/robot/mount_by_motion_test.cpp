@@ -17,7 +17,7 @@ namespace {
 const Pose kTrueMount = Pose::translation_of(0.0, 0.0, 0.9);
 
 /// T_world_base so many seconds after the start.
-using Drive = std::function<Pose(double)>;
+using Motion = std::function<Pose(double)>;
 
 Pose straight(double seconds) { return Pose::translation_of(2.0 * seconds, 0.0, -2.0); }
 
@@ -30,7 +30,7 @@ Pose weaving(double seconds) {
 }
 
 /// 13 s of `drive`, of which wheels count all. The mount that is stated is the true one, turned by `yaw_deg`.
-Recording recording_of(const test::Scene& scene, const Drive& drive, double yaw_deg) {
+Recording recording_of(const test::Scene& scene, const Motion& drive, double yaw_deg) {
   constexpr int kScans = 130;
   test::Lidar lidar{16, 900, 0.35, 100.0, 0.03};  // the noise of a VLP-16
   if (!scene.rooms.empty()) {
