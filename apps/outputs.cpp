@@ -3,7 +3,9 @@
 #include "outputs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <string_view>
 
 #include "adit/core/format.hpp"
 #include "adit/core/robot_name.hpp"
@@ -17,8 +19,11 @@ namespace adit::app {
 namespace fs = std::filesystem;
 
 std::string trajectory_name_fault(const std::string& path) {
+  constexpr std::array<std::string_view, 18> kOfOthers = {".mcap", ".db3",  ".bag", ".pcd", ".ply",   ".bin",
+                                                          ".las",  ".laz",  ".g2o", ".jrl", ".cbor",  ".adit",
+                                                          ".csv",  ".yaml", ".obj", ".stl", ".kitti", ".pgm"};
   const std::string extension = lower_case(fs::path(path).extension().string());
-  if (extension == ".tum" || extension == ".txt") return "";
+  if (std::ranges::find(kOfOthers, extension) == kOfOthers.end()) return "";
   return path + ": trajectories are written in TUM format, as .tum or .txt; adit convert makes others of it";
 }
 

@@ -11,8 +11,8 @@
 
 namespace adit::app {
 
-/// What is wrong with the name of a trajectory (TUM), "" if nothing is: other endings are those of
-/// recordings, clouds and graphs, and mistaken for one of these it would be replaced.
+/// What is wrong with the name of a trajectory (TUM), "" if nothing is: the ending of recordings, clouds,
+/// maps or graphs, one of which it would replace or be taken for.
 [[nodiscard]] std::string trajectory_name_fault(const std::string& path);
 
 /// Ends the command, as wrong usage, where `out` is what `in` is read from, or an existing file in that
