@@ -163,17 +163,6 @@ Result<> check_imu(ImuConfig config) {
   return {};
 }
 
-ImuConfig field_imu(ImuConfig config) {
-  config.vibration = 0.5;
-  config.vibration_deg = 1.0;
-  return config;
-}
-
-ImuConfig still_imu(ImuConfig config) {
-  config.vibration = config.vibration_deg = 0.0;
-  return config;
-}
-
 std::vector<std::string> imu_presets() {
   std::vector<std::string> names;
   for (const ImuConfig& preset : all_presets()) names.push_back(preset.name);

@@ -48,12 +48,6 @@ struct ImuConfig {
 /// The keys are the names of the members; in the configuration of a run they begin with "simulation.imu.".
 [[nodiscard]] Fields fields_of(ImuConfig& config);
 
-/// Bolted to a robot that drives over rough floors: half a m/s^2 and a degree per second at 1 m/s. Chosen,
-/// some 50 mg, as no source states it per speed.
-[[nodiscard]] ImuConfig field_imu(ImuConfig config);
-/// Without vibration.
-[[nodiscard]] ImuConfig still_imu(ImuConfig config);
-
 /// Ranges of the fields, and the text of the faults.
 Result<> check_imu(ImuConfig config);
 

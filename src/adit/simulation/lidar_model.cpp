@@ -230,7 +230,7 @@ class ColumnCaster {
     std::vector<Column> columns;
     for (int c = begin - beside; c < end + beside; ++c) columns.push_back(rays_of(c));
     for (int c = begin; c < end; ++c) {
-      const auto k = static_cast<std::size_t>(c - begin + beside);
+      const auto k = static_cast<std::size_t>(c - begin) + static_cast<std::size_t>(beside);
       const Column none;
       append(c, columns[k], has_neighbours_ ? columns[k - 1] : none, has_neighbours_ ? columns[k + 1] : none,
              cloud);

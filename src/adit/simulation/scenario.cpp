@@ -309,7 +309,6 @@ void set_conditions(Conditions conditions, ScenarioConfig& config) {
   config.visits = field ? field_visits() : VisitConfig();
   config.traffic = field ? field_traffic() : TrafficConfig();
   config.drive = field ? field_drive(config.drive) : ideal_drive(config.drive);
-  config.imu = field ? field_imu(config.imu) : still_imu(config.imu);
   if (field) config.wheels = field_wheels(config.wheels);
   if (!field) config.wheels.burst_rate = 0.0;
 }

@@ -284,8 +284,6 @@ TEST(Scenario, field_conditions_turn_on_every_kind_of_trouble_and_ideal_ones_non
                                  config.drive.manoeuvres.stops_per_km,
                                  config.drive.manoeuvres.reversals_per_km,
                                  config.drive.manoeuvres.turns_per_km,
-                                 config.imu.vibration,
-                                 config.imu.vibration_deg,
                                  config.wheels.burst_rate})
     EXPECT_GT(amplitude, 0.0);
   EXPECT_TRUE(config.traffic.robots);
