@@ -111,6 +111,12 @@ std::string choices(const Bag& bag, const TopicIndices& topics, const TopicChoic
   return format("{}", fmt::join(texts, " or "));
 }
 
+tl::unexpected<Error> no_such_topic(const Bag& bag, std::string_view type, const std::string& name,
+                                    const TopicIndices& known) {
+  return fail(format("no topic of {} '{}'; there {}", type, name,
+                     known.empty() ? "is none" : "are: " + names_of(bag, known)));
+}
+
 /// Leaves the topic asked for, where there is one asked for.
 Result<> keep_named(const Bag& bag, TopicIndices& topics, const TopicChoice& choice) {
   if (choice.topic.empty()) return {};
@@ -120,9 +126,7 @@ Result<> keep_named(const Bag& bag, TopicIndices& topics, const TopicChoice& cho
     return bag.topics[topic].name != whole_name(choice.topic, choice.under);
   });
   if (!topics.empty()) return {};
-  const std::string all = names_of(bag, known);
-  return fail(format("no topic of {} '{}'; there {}", choice.type, choice.topic,
-                     all.empty() ? "is none" : "are: " + all));
+  return no_such_topic(bag, choice.type, choice.topic, known);
 }
 
 /// Leaves the topic asked for, or the only one, if there is any.
@@ -166,8 +170,7 @@ Result<> take_transforms(const Bag& bag, BagTopics& topics, const RecordingConfi
     const std::string name = whole_name(std::string(word), config.topics_under);
     const auto is_named = [&](std::size_t topic) { return bag.topics[topic].name == name; };
     if (std::ranges::none_of(known, is_named))
-      return fail(format("no topic of links between frames (TFMessage) '{}'; there {}", name,
-                         known.empty() ? "is none" : "are: " + names_of(bag, known)));
+      return no_such_topic(bag, "links between frames (TFMessage)", name, known);
     for (const std::size_t topic : known) {
       const std::string& other = bag.topics[topic].name;
       if (other.ends_with("_static") && (is_named(topic) || other == name + "_static"))

@@ -52,8 +52,8 @@ std::string clock_finding(const std::string& topic, const std::vector<Sighting>&
   return format(
       "clocks: {} was recorded from {:.2f} to {:.2f} s after its stamps, and these advance by {:.1f} s in "
       "{:.1f} s of recording: one of the clocks was set or runs at another speed, or messages came late. "
-      "adit "
-      "goes by stamps; where other topics were stamped by another clock (compare recorded_after_stamp_s), "
+      "adit goes by stamps; where other topics were stamped by another clock (compare "
+      "recorded_after_stamp_s), "
       "synchronise the clocks (chrony, PTP) and record again",
       topic, soonest.recorded_after_s(), latest.recorded_after_s(),
       seconds_between(sightings.front().stamp, sightings.back().stamp),

@@ -167,8 +167,7 @@ Result<MountByMotion> mount_from(const std::vector<Step>& all) {
   if (!ahead)
     return fail(
         format("cannot be told: the scans leave motion along the tunnel open ({} of {} steps from scan to "
-               "scan go as "
-               "far as by the wheels)",
+               "scan go as far as by the wheels)",
                steps.size(), all.size()));
   MountByMotion out;
   out.num_steps = steps.size();

@@ -66,7 +66,7 @@ class Sensor {
   }
 
   [[nodiscard]] std::size_t num_beams() const { return biases_.size(); }
-  [[nodiscard]] const Returns& returns() const { return returns_; }
+  [[nodiscard]] const ReturnModel& returns() const { return returns_; }
   [[nodiscard]] const Beam& beam() const { return beam_; }
   [[nodiscard]] float reach() const { return static_cast<float>(config_.reach); }
   /// Of ranges, in the order of the beams.
@@ -101,7 +101,7 @@ class Sensor {
   Fan true_;
   bool looks_elsewhere_;
   std::vector<float> biases_;
-  Returns returns_;
+  ReturnModel returns_;
   Beam beam_;
 };
 
@@ -190,7 +190,7 @@ void append_returns(const Report& report, std::size_t num, std::int32_t offset_n
 
 // What happens to light between the sensor and the surfaces, and how exact it leaves ranges. `seed` is the
 // block's.
-void measure_light(const Sensor& sensor, const Sweep& sweep, const Chance& chance, std::uint64_t seed,
+void measure_light(const Sensor& sensor, const Sweep& sweep, const RayDraws& chance, std::uint64_t seed,
                    RayBlock& rays, RangeErrors& errors, Report& report) {
   constexpr std::uint64_t kWeakStream = 1;
   constexpr std::uint64_t kAirStream = 2;
@@ -279,14 +279,14 @@ class ColumnCaster {
       widen_rays(raycaster_, movers, sensor_.beam(), {ranges_of(before), ranges_of(after)}, range_max,
                  block_seed, rays);
       sweep.surfaces.mirror(raycaster_, range_max, ~block_seed, rays);
-      const Chance chance(column_seed, beam, rays.size);
+      const RayDraws chance(column_seed, beam, rays.size);
       RangeErrors errors;
       Report report;
       report.directions = column.reported[b];
       sensor_.biases(beam, rays.size, errors.biases);
       add_noise_by_range(sensor_.returns(), rays, errors.sigmas);
       if (!is_plain) measure_light(sensor_, sweep, chance, block_seed, rays, errors, report);
-      measure(sensor_.returns(), chance, rays, errors, report.ranges);
+      report_ranges(sensor_.returns(), chance, rays, errors, report.ranges);
       append_returns(report, rays.size, turn_.offset_ns(number), cloud);
     }
   }

@@ -30,7 +30,7 @@ float arc_cosine(float x) {
 
 }  // namespace
 
-Chance::Chance(std::uint64_t column_seed, std::size_t first_beam, std::size_t num) {
+RayDraws::RayDraws(std::uint64_t column_seed, std::size_t first_beam, std::size_t num) {
   std::array<std::int32_t, RayBlock::kCapacity> sums;
   std::array<std::int32_t, RayBlock::kCapacity> draws;
   std::array<std::int32_t, RayBlock::kCapacity> more_draws;
@@ -52,7 +52,7 @@ Chance::Chance(std::uint64_t column_seed, std::size_t first_beam, std::size_t nu
   }
 }
 
-Returns::Returns(const LidarConfig& c, const LidarUnit& unit, double dust)
+ReturnModel::ReturnModel(const LidarConfig& c, const LidarUnit& unit, double dust)
     : range_min(static_cast<float>(c.range_min)),
       range_max(static_cast<float>(c.range_max)),
       noise_near(static_cast<float>(c.noise_near)),
@@ -65,13 +65,13 @@ Returns::Returns(const LidarConfig& c, const LidarUnit& unit, double dust)
       false_returns(static_cast<float>(unit.false_returns)),
       false_or_dust(static_cast<float>(unit.false_returns + dust)) {}
 
-ADIT_WIDE_VECTORS void add_noise_by_range(const Returns& returns, const RayBlock& rays,
+ADIT_WIDE_VECTORS void add_noise_by_range(const ReturnModel& returns, const RayBlock& rays,
                                           RayBlock::Numbers& sigmas) {
   for (std::size_t i = 0; i < rays.size; ++i)
     sigmas[i] = returns.noise_near + returns.noise_slope * (rays.distances[i] - returns.range_min);
 }
 
-ADIT_WIDE_VECTORS void add_noise_by_signal(const Returns& returns, const RayBlock::Numbers& signals,
+ADIT_WIDE_VECTORS void add_noise_by_signal(const ReturnModel& returns, const RayBlock::Numbers& signals,
                                            std::size_t num, RangeErrors& errors) {
   constexpr float kMost = 1.5F;  // of the noise of a return that is just seen
   const float grows = returns.noise_slope * (returns.range_max - returns.range_min);
@@ -81,10 +81,9 @@ ADIT_WIDE_VECTORS void add_noise_by_signal(const Returns& returns, const RayBloc
   }
 }
 
-// Beyond the end of the drop-out, all of 0 to 1 is below the share
-// that is lost.
-ADIT_WIDE_VECTORS void measure(const Returns& returns, const Chance& chance, const RayBlock& rays,
-                               const RangeErrors& errors, RayBlock::Numbers& ranges) {
+// Beyond the end of the drop-out, all of 0 to 1 is below the share that is lost.
+ADIT_WIDE_VECTORS void report_ranges(const ReturnModel& returns, const RayDraws& chance, const RayBlock& rays,
+                                     const RangeErrors& errors, RayBlock::Numbers& ranges) {
   const auto& distances = rays.distances;
   const float range_min = returns.range_min;
   const float range_max = returns.range_max;
@@ -106,7 +105,7 @@ ADIT_WIDE_VECTORS void measure(const Returns& returns, const Chance& chance, con
 }
 
 ADIT_WIDE_VECTORS void add_intensities(const RayBlock& rays, const RayBlock::Numbers& signals, float reach,
-                                       const Chance& chance, RayBlock::Numbers& intensities) {
+                                       const RayDraws& chance, RayBlock::Numbers& intensities) {
   constexpr float kSpread = 0.1F;  // of readings, evenly
   constexpr float kPercent = 100.0F * kNominalReflectivity;
   for (std::size_t i = 0; i < rays.size; ++i) {

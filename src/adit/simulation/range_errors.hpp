@@ -12,7 +12,7 @@
 namespace adit {
 
 /// The draws of a block of rays. They depend on the seed of the column and the number of the beam alone.
-struct Chance {
+struct RayDraws {
   /// Near normal with mean 0 and standard deviation 1: the sum of four 16-bit uniform numbers (Irwin and
   /// Hall). No logarithm, so every machine draws the same; and bounded by 3.5, as no sensor errs by metres.
   RayBlock::Numbers noise;
@@ -21,11 +21,11 @@ struct Chance {
   RayBlock::Numbers share;      ///< Of the range, where it is false.
 
   /// Of `num` beams from `first_beam` on.
-  Chance(std::uint64_t column_seed, std::size_t first_beam, std::size_t num);
+  RayDraws(std::uint64_t column_seed, std::size_t first_beam, std::size_t num);
 };
 
 /// How true ranges are reported, and which are lost.
-struct Returns {
+struct ReturnModel {
   float range_min;          ///< Metres; nearer returns are dropped.
   float range_max;          ///< Metres; farther ones, too.
   float noise_near;         ///< Standard deviation at range_min, metres.
@@ -39,7 +39,7 @@ struct Returns {
   float false_or_dust;      ///< Share of these and of rays that end in dust.
 
   /// `dust`: share of rays that end in it.
-  Returns(const LidarConfig& config, const LidarUnit& unit, double dust);
+  ReturnModel(const LidarConfig& config, const LidarUnit& unit, double dust);
 };
 
 /// Of each ray of a block, metres.
@@ -49,17 +49,17 @@ struct RangeErrors {
 };
 
 /// Standard deviations that grow with the range.
-void add_noise_by_range(const Returns& returns, const RayBlock& rays, RayBlock::Numbers& sigmas);
+void add_noise_by_range(const ReturnModel& returns, const RayBlock& rays, RayBlock::Numbers& sigmas);
 /// As photons are counted: with the root of their number, from the nominal surface the same as by range. Adds
 /// the walk of ranges with the intensity.
-void add_noise_by_signal(const Returns& returns, const RayBlock::Numbers& signals, std::size_t num,
+void add_noise_by_signal(const ReturnModel& returns, const RayBlock::Numbers& signals, std::size_t num,
                          RangeErrors& errors);
 /// The ranges that are reported, or RayHit::kMiss.
-void measure(const Returns& returns, const Chance& chance, const RayBlock& rays, const RangeErrors& errors,
-             RayBlock::Numbers& ranges);
+void report_ranges(const ReturnModel& returns, const RayDraws& chance, const RayBlock& rays,
+                   const RangeErrors& errors, RayBlock::Numbers& ranges);
 /// Reflectivity times the cosine of the incidence, in percent, as far as the signal tells. `reach`:
 /// LidarConfig::reach.
 void add_intensities(const RayBlock& rays, const RayBlock::Numbers& signals, float reach,
-                     const Chance& chance, RayBlock::Numbers& intensities);
+                     const RayDraws& chance, RayBlock::Numbers& intensities);
 
 }  // namespace adit

@@ -80,11 +80,11 @@ struct Robot {
     for (int part = 0; part < kParts; ++part) {
       const Stamp middle = end - sweep_time(lidar) + sweep_time(lidar) * (2 * part + 1) / (2 * kParts);
       const TriangleMesh moving = movers(middle);
-      std::optional<Raycaster>& casters = sweep.movers.emplace_back();
+      std::optional<Raycaster>& there = sweep.movers.emplace_back();
       if (moving.empty()) continue;
       Result<Raycaster> caster = Raycaster::build(moving);
       if (!caster) return fail(name, caster.error());
-      casters = *std::move(caster);
+      there = *std::move(caster);
     }
     sweep.surfaces = around->surfaces;
     sweep.air =
@@ -113,8 +113,8 @@ Stamp last_heard_of_all(const Robot& robot) {
 // As reported: in order, and within the time that the truth covers.
 std::vector<Stamp> with_jitter(std::vector<Stamp> stamps, Duration apart, Stamp last, double sigma_s,
                                std::uint64_t seed) {
-  constexpr double kMostJitter = 2.0;  // sigmas
-  const double most_s = 0.4 * to_seconds(apart);
+  constexpr double kMostJitter = 2.0;             // sigmas
+  const double most_s = 0.4 * to_seconds(apart);  // nearly half: then they stay in order
   if (sigma_s == 0.0) return stamps;
   Rng rng(seed);
   for (Stamp& stamp : stamps) {

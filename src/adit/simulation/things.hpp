@@ -31,6 +31,9 @@ struct PlacedThing {
   Pose T_world_thing;  ///< x along it, y to its left, z up.
 };
 
+/// Paths that pass nearer than this to a place are taken for paths through its tunnel, metres.
+inline constexpr double kSameTunnel = 6.0;
+
 /// A box between two corners in its own frame, its faces looking outwards.
 [[nodiscard]] TriangleMesh box(const Pose& T_world_box, const Vector3& low, const Vector3& high);
 

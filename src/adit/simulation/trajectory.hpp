@@ -23,7 +23,7 @@ struct DriveConfig {
   double corner_length = 1.0;
   double wheelbase = 0.5;
   double track = 0.6;
-  double sway_hz = 0.0;         ///< Of a walking body; 0: it does not sway.
+  double sway_hz = 0.0;         ///< Of a body on legs or a suspension; 0: it does not sway.
   double sway_roll_deg = 2.0;   ///< To both sides, once per period.
   double sway_pitch_deg = 1.0;  ///< Twice per period, as the height.
   double sway_height = 0.02;
@@ -44,7 +44,8 @@ inline Fields fields_of(DriveConfig& c) {
        "stretch over which corners of the route are rounded"},
       {"wheelbase", &c.wheelbase, "m", 0.1, 5, "distance between front and rear wheels"},
       {"track", &c.track, "m", 0.1, 5, "distance between left and right wheels"},
-      {"sway_hz", &c.sway_hz, "Hz", 0, 5, "strides per second of a robot that walks and sways; 0: it drives"},
+      {"sway_hz", &c.sway_hz, "Hz", 0, 5,
+       "how often the body sways, to a tenth, on legs or a suspension; 0: never"},
       {"sway_roll_deg", &c.sway_roll_deg, "deg", 0, 30, "roll to both sides at full speed, once per stride"},
       {"sway_pitch_deg", &c.sway_pitch_deg, "deg", 0, 30, "pitch to both sides, twice per stride"},
       {"sway_height", &c.sway_height, "m", 0, 0.5, "rise above the floor, twice per stride"},
@@ -68,7 +69,7 @@ inline Fields fields_of(DriveConfig& c) {
 /// follows the smoothed line with the route's mean speed (over the time it moves), slower in curves, speeding
 /// up at the start and braking at the end; `seed` draws where it halts. Poses are T_world_base at
 /// `sample_rate_hz` from `start` on, ending with the robot at rest. With `sway_hz` the body rolls, pitches
-/// and rises while it moves, in proportion to its speed.
+/// and rises while it moves, in proportion to its speed; `seed` draws how fast, to a tenth, and the phases.
 ///
 /// Fails, naming robot, waypoint and position, when there are fewer than two distinct waypoints, a number is
 /// not finite, no floor lies between 1.5 m above and 3 m below a waypoint, or a wall stands between two

@@ -18,7 +18,6 @@ namespace {
 constexpr int kTries = 30;
 
 bool pass_by(std::span<const Trajectory> paths, const Vector3& place) {
-  constexpr double kSameTunnel = 6.0;  // metres
   return std::ranges::any_of(paths, [&](const Trajectory& path) {
     return std::ranges::any_of(path, [&](const StampedPose& pose) {
       return (pose.T_world_body.translation() - place).squaredNorm() < kSameTunnel * kSameTunnel;

@@ -20,7 +20,8 @@ namespace adit {
 struct VisitConfig {
   double vehicles_per_km = 0.0;  ///< Parked beside the path of each robot.
   double pallets_per_km = 0.0;
-  double changed = 1.0;       ///< Share of them that only one robot meets; the others stand there for all.
+  double changed =
+      1.0;  ///< Share of what a robot meets of them that no other meets; the rest stands there for all.
   int people = 0;             ///< Who walk with the robot, some ahead of it and some behind.
   double dust = 0.0;          ///< Share of rays that end in dust, near the sensor.
   double doors = 0.0;         ///< Share of the openings beside its path that are closed for one robot alone.

@@ -17,7 +17,6 @@ namespace {
 constexpr double kPieceLength = 1.0;           ///< Metres along the path: length of one straight piece.
 constexpr std::size_t kPiecesPerStretch = 40;  ///< Pieces.
 constexpr double kFarthestHung = 12.0;
-constexpr double kSameTunnel = 6.0;
 
 struct WallLine {
   double height;

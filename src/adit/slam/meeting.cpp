@@ -105,7 +105,13 @@ Result<Meeting> hold_meeting(std::vector<std::shared_ptr<const RobotMap>> maps, 
     if (const Result<> met = all_meet(meeting, config.back_end, bus, phase); !met)
       return tl::unexpected(met.error());
   }
-  for (const Agent& agent : meeting.agents) meeting.bytes_sent.push_back(bus.bytes_sent(agent.id()));
+  for (const Agent& agent : meeting.agents) {
+    meeting.bytes_sent.push_back(bus.bytes_sent(agent.id()));
+    if (agent.num_left_out() > 0)
+      meeting.failures.push_back(format(
+          "{}: {} parts of messages were not taken: others before them were lost, or they made no sense",
+          agent.known().robots.at(agent.id()).name, agent.num_left_out()));
+  }
   for (const std::string& failure : bus.failures())
     meeting.failures.push_back("a message was left out: " + failure);
   return meeting;

@@ -40,14 +40,9 @@ MergeAccuracy accuracy_of(const LoopClosure& middle, const Matrix6& covariance, 
 // "0.034 m". Scans that are nearly the same (a part of a drive that is in the map) leave no residuals, and
 // with them no noise; calibration, and the planes of a map whose points are some 0.2 m apart, are no better
 // known than this.
-std::string no_better_than_a_centimetre(double metres) {
+std::string no_better_than_a_hundredth(double value, int digits, const char* unit) {
   constexpr double kLeast = 0.01;
-  return metres < kLeast ? format("under {:.2f} m", kLeast) : format("{:.3f} m", metres);
-}
-
-std::string no_better_than_a_hundredth(double degrees) {
-  constexpr double kLeast = 0.01;
-  return degrees < kLeast ? format("under {:.2f} deg", kLeast) : format("{:.2f} deg", degrees);
+  return value < kLeast ? format("under {} {}", kLeast, unit) : format("{:.{}f} {}", value, digits, unit);
 }
 
 }  // namespace
@@ -67,10 +62,11 @@ void measure_merges(FleetSolution& solution) {
 }
 
 std::string to_string(const MergeAccuracy& accuracy) {
-  std::string text =
-      format("known to {} along, {} across and {} up, {}", no_better_than_a_centimetre(accuracy.along_m),
-             no_better_than_a_centimetre(accuracy.across_m), no_better_than_a_centimetre(accuracy.up_m),
-             no_better_than_a_hundredth(accuracy.turn_deg));
+  std::string text = format("known to {} along, {} across and {} up, {}",
+                            no_better_than_a_hundredth(accuracy.along_m, 3, "m"),
+                            no_better_than_a_hundredth(accuracy.across_m, 3, "m"),
+                            no_better_than_a_hundredth(accuracy.up_m, 3, "m"),
+                            no_better_than_a_hundredth(accuracy.turn_deg, 2, "deg"));
   if (accuracy.num_loops == 1) text += "; one loop alone holds it: let both robots pass another common place";
   return text;
 }
