@@ -161,6 +161,25 @@ Fields fields_of(ImuNoise& c) {
           {"accelerometer_start", &c.accelerometer_start, "m/s2", 1e-6, 10.0, "bias when switched on"}};
 }
 
+ImuNoise noise_over(std::span<const ImuSample> samples, const ImuNoise& stated) {
+  ImuNoise noise = stated;
+  if (samples.size() < 4) return noise;
+  double turn2 = 0.0;
+  double force2 = 0.0;
+  for (std::size_t i = 2; i < samples.size(); ++i) {
+    const ImuSample &a = samples[i - 2], &b = samples[i - 1], &c = samples[i];
+    turn2 += (a.angular_velocity - 2.0 * b.angular_velocity + c.angular_velocity).squaredNorm();
+    force2 += (a.specific_force - 2.0 * b.specific_force + c.specific_force).squaredNorm();
+  }
+  constexpr double kVarianceOfDifference = 1.0 + 4.0 + 1.0;
+  const auto n = static_cast<double>(samples.size());
+  const double period = to_seconds(samples.back().stamp - samples.front().stamp) / (n - 1.0);
+  const double to_density2 = period / (3.0 * (n - 2.0) * kVarianceOfDifference);
+  noise.gyroscope = std::max(stated.gyroscope, std::sqrt(turn2 * to_density2));
+  noise.accelerometer = std::max(stated.accelerometer, std::sqrt(force2 * to_density2));
+  return noise;
+}
+
 Pose BodyPath::at(Stamp stamp) const {
   ADIT_CHECK(poses_.size() > 1, "a path has two poses at least");
   auto next = std::ranges::upper_bound(poses_, stamp, {}, &StampedPose::stamp);

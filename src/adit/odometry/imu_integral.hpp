@@ -14,7 +14,7 @@ namespace adit {
 inline constexpr double kGravity = 9.80665;  ///< Metres per second squared (standard gravity).
 
 /// Noise of an IMU's two sensors, as data sheets state it. The defaults are rounded up from those of IMUs
-/// that LiDARs have built in, for what mounting and vibration add.
+/// that LiDARs have built in. What vibration adds is measured (noise_over).
 struct ImuNoise {
   double gyroscope = 5e-4;            ///< Density, rad/s/sqrt(Hz).
   double accelerometer = 5e-3;        ///< Density, m/s2/sqrt(Hz).
@@ -25,6 +25,13 @@ struct ImuNoise {
 };
 /// The keys are the names of the fields.
 [[nodiscard]] Fields fields_of(ImuNoise& noise);
+
+/// `stated`, with the densities that the samples themselves show where those are larger: on a vehicle that
+/// shakes, the noise is not that of the data sheet. What changes slowly from sample to sample is motion; it
+/// is taken out by second differences, whose variance is six times that of white noise (the successive
+/// differences of J. von Neumann et al., "The Mean Square Successive Difference", 1941, once more). Of fewer
+/// than four samples, nothing is measured.
+[[nodiscard]] ImuNoise noise_over(std::span<const ImuSample> samples, const ImuNoise& stated);
 
 /// What the integral starts from; body frame at the begin unless it says otherwise.
 struct ImuStart {

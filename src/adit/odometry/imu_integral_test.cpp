@@ -75,6 +75,21 @@ Eigen::Matrix<double, 12, 1> difference(const ImuIntegral& a, const ImuIntegral&
   return out;
 }
 
+void shake(std::vector<ImuSample>& samples, const ImuNoise& noise, Rng& rng) {
+  for (ImuSample& sample : samples)
+    for (int k = 0; k < 3; ++k) {
+      sample.angular_velocity[k] += noise.gyroscope * std::sqrt(kRate) * rng.normal();
+      sample.specific_force[k] += noise.accelerometer * std::sqrt(kRate) * rng.normal();
+    }
+}
+
+ImuNoise times(double factor) {
+  ImuNoise noise;
+  noise.gyroscope *= factor;
+  noise.accelerometer *= factor;
+  return noise;
+}
+
 TEST(ImuIntegral, GivesTheMotionThatWasMeasured) {
   for (const double begin : {0.37, 2.0, 5.11}) {
     for (const double period : {kPeriod, 1.0}) {
@@ -125,11 +140,7 @@ TEST(ImuIntegral, ItsNoiseIsThatOfNoisySamples) {
   constexpr int kRuns = 400;
   for (int run = 0; run < kRuns; ++run) {
     SensedMotion noisy = clean;
-    for (ImuSample& sample : noisy.imu)
-      for (int k = 0; k < 3; ++k) {
-        sample.angular_velocity[k] += noise.gyroscope * std::sqrt(kRate) * rng.normal();
-        sample.specific_force[k] += noise.accelerometer * std::sqrt(kRate) * rng.normal();
-      }
+    shake(noisy.imu, noise, rng);
     const Vector6 error = difference(integral(begin, end, noisy, start), truth).head<6>();
     nees += error.dot(inverse(Matrix6(truth.noise.topLeftCorner<6, 6>())) * error) / 6.0;
   }
@@ -150,43 +161,88 @@ TEST(Levelled, TakesUpToZ) {
     EXPECT_LT((levelled(up).rotation() * up.normalized() - Vector3::UnitZ()).norm(), 1e-9);
 }
 
+TEST(NoiseOver, IsThatOfTheSamplesWhereTheyShakeMoreThanStated) {
+  Rng rng(5);
+  std::vector<ImuSample> samples = sensed(1.0, 3.0, Pose()).imu;
+  shake(samples, times(8.0), rng);
+  const ImuNoise found = noise_over(samples, {});
+  EXPECT_NEAR(found.gyroscope, times(8.0).gyroscope, 0.1 * times(8.0).gyroscope);
+  EXPECT_NEAR(found.accelerometer, times(8.0).accelerometer, 0.1 * times(8.0).accelerometer);
+  EXPECT_EQ(found.gyroscope_bias, ImuNoise().gyroscope_bias);
+}
+
+TEST(NoiseOver, MotionIsNoNoise) {
+  for (const double begin : {0.4, 1.0, 7.0}) {
+    const ImuNoise found = noise_over(sensed(begin, begin + kPeriod, mount()).imu, {});
+    EXPECT_EQ(found.gyroscope, ImuNoise().gyroscope);
+    EXPECT_EQ(found.accelerometer, ImuNoise().accelerometer);
+  }
+}
+
+TEST(NoiseOver, ThreeSamplesSayNothing) {
+  Rng rng(5);
+  std::vector<ImuSample> samples = sensed(1.0, 2.0, Pose()).imu;
+  shake(samples, times(100.0), rng);
+  for (const std::size_t n : {0U, 1U, 3U})
+    EXPECT_EQ(noise_over(std::span(samples).first(n), {}).gyroscope, ImuNoise().gyroscope);
+  EXPECT_GT(noise_over(std::span(samples).first(4), {}).gyroscope, ImuNoise().gyroscope);
+}
+
 // Scans that fix the pose show what the IMU is off by: biases and gravity, from a moving start, and the
 // prediction is as good as it says.
-TEST(MotionFilterWithImu, FindsBiasesAndGravityOnTheMove) {
+// The filter is told what a data sheet states, whatever the noise is.
+struct Calibrated {
+  double nees = 0.0;        // mean, per direction: 1 where the prediction is as good as it says
+  double longest_miss = 0;  // of a pose predicted over one interval, metres and radians
+  double tilt_deg = 0.0;    // of gravity at the end
+};
+Calibrated drive_with(const ImuNoise& noise) {
   Rng rng(3);
-  const ImuNoise noise;
   const Vector3 gyroscope_bias(0.01, -0.015, 0.005);
   const Vector3 accelerometer_bias(0.1, -0.05, 0.12);
-  MotionFilter filter({}, {}, noise);
-  double nees = 0.0;
+  MotionFilter filter({}, {}, {});
+  Calibrated out;
   int count = 0;
-  double longest_miss = 0.0;
   for (int i = 1; i < 400; ++i) {
     const double begin = 0.5 + kPeriod * (i - 1);
     const double end = begin + kPeriod;
     SensedMotion motion = sensed(begin, end, mount());
-    for (ImuSample& sample : motion.imu)
-      for (int k = 0; k < 3; ++k) {
-        sample.angular_velocity[k] += gyroscope_bias[k] + noise.gyroscope * std::sqrt(kRate) * rng.normal();
-        sample.specific_force[k] +=
-            accelerometer_bias[k] + noise.accelerometer * std::sqrt(kRate) * rng.normal();
-      }
+    shake(motion.imu, noise, rng);
+    for (ImuSample& sample : motion.imu) {
+      sample.angular_velocity += gyroscope_bias;
+      sample.specific_force += accelerometer_bias;
+    }
     filter.predict(Stamp() + from_seconds(begin), Stamp() + from_seconds(end), motion);
     const Pose T_true = pose_at_time(begin).inverse() * pose_at_time(end);
     const MotionPrior prior = filter.prior();
     const Vector6 error = (prior.T_ref_now.inverse() * T_true).log();
     if (i > 100) {
-      nees += error.dot(inverse(prior.covariance) * error) / 6.0;
+      out.nees += error.dot(inverse(prior.covariance) * error) / 6.0;
       ++count;
-      longest_miss = std::max(longest_miss, error.norm());
+      out.longest_miss = std::max(out.longest_miss, error.norm());
     }
     filter.registered(T_true, Matrix6::Identity() * 1e-10);
   }
-  EXPECT_LT(longest_miss, 2e-3);
-  EXPECT_GT(nees / count, 0.4);
-  EXPECT_LT(nees / count, 1.6);
+  out.nees /= count;
   const Vector3 up = pose_at_time(0.5 + kPeriod * 399).rotation().inverse() * Vector3::UnitZ();
-  EXPECT_LT(std::acos(filter.up()->dot(up)), 0.5 * kDegree);
+  out.tilt_deg = std::acos(std::min(1.0, filter.up()->dot(up))) / kDegree;
+  return out;
+}
+
+TEST(MotionFilterWithImu, FindsBiasesAndGravityOnTheMove) {
+  const Calibrated calm = drive_with({});
+  EXPECT_LT(calm.longest_miss, 2e-3);
+  EXPECT_GT(calm.nees, 0.4);
+  EXPECT_LT(calm.nees, 1.6);
+  EXPECT_LT(calm.tilt_deg, 0.5);
+}
+
+// With the noise of the data sheet the normalised error squared would be some 400.
+TEST(MotionFilterWithImu, KnowsHowMuchItShakes) {
+  const Calibrated shaken = drive_with(times(20.0));
+  EXPECT_GT(shaken.nees, 0.4);
+  EXPECT_LT(shaken.nees, 1.6);
+  EXPECT_LT(shaken.tilt_deg, 1.5);
 }
 
 // A drive of a minute, in which scans say where the robot is and little of what they say counts (as in

@@ -125,7 +125,7 @@ void MotionFilter::predict_by_imu(const SensedMotion& motion) {
   const double dt = to_seconds(end_ - begin_);
   felt_.velocity = twist_.head<3>();
   felt_.turn_rate = twist_.tail<3>();
-  const ImuIntegral imu = integrated(motion, begin_, end_, felt_, imu_);
+  const ImuIntegral imu = integrated(motion, begin_, end_, felt_, noise_over(motion.imu, imu_));
   path_ = imu.path;
   T_last_now_ = imu.T_begin_end;
   twist_ = imu.twist;

@@ -175,6 +175,12 @@ Result<ImuConfig> imu_preset(const std::string& name) {
   return fail(format("unknown IMU '{}'; known are {}", name, fmt::join(imu_presets(), ", ")));
 }
 
+ImuConfig field_imu(ImuConfig config) {
+  config.vibration = 0.5;
+  config.vibration_deg = 1.0;
+  return config;
+}
+
 Pose T_lidar_imu(const ImuConfig& c) {
   const auto about = [](double degrees, const Vector3& axis) {
     return Eigen::Quaterniond(Eigen::AngleAxisd(degrees * kDegree, axis));

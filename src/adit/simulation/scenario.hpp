@@ -61,7 +61,7 @@ inline Fields fields_of(ScenarioConfig& c) {
 enum class Conditions {
   ideal,  ///< Noise alone, and every unit of a sensor is the same.
   /// As in practice: field_lidar_errors(), field_surfaces(), field_air(), field_visits(), field_traffic(),
-  /// field_drive() and field_wheels().
+  /// field_drive(), field_wheels() and field_imu().
   field,
 };
 /// All conditions, for options and lists of worlds.

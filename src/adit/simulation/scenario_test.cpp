@@ -284,11 +284,14 @@ TEST(Scenario, field_conditions_turn_on_every_kind_of_trouble_and_ideal_ones_non
                                  config.drive.manoeuvres.stops_per_km,
                                  config.drive.manoeuvres.reversals_per_km,
                                  config.drive.manoeuvres.turns_per_km,
-                                 config.wheels.burst_rate})
+                                 config.wheels.burst_rate,
+                                 config.imu.vibration,
+                                 config.imu.vibration_deg})
     EXPECT_GT(amplitude, 0.0);
   EXPECT_TRUE(config.traffic.robots);
   set_conditions(Conditions::ideal, config);
   EXPECT_EQ(config.wheels.burst_rate, 0.0);
+  EXPECT_EQ(config.imu.vibration, 0.0);
   EXPECT_EQ(config.drive.manoeuvres.turns_per_km, 0.0);
   EXPECT_EQ(config.surfaces.contrast, 0.0);
   EXPECT_FALSE(config.traffic.robots);

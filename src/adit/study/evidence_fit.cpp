@@ -70,10 +70,11 @@ class Fit {
     add("prior_chance", goes_on, wrong_);
     // Look-alikes agree as often as here for as long once in a thousand times.
     const double long_run = std::log(1000.0) / -std::log(std::clamp(goes_on, 0.01, 0.99));
-    const auto is_copy = [&](const HypothesisCounts& counts) {
-      return counts.num_changes == 0 && counts.num_distinctive >= long_run;
-    };
-    add_share("fleet.copied", static_cast<std::size_t>(std::ranges::count_if(wrong_, is_copy)), wrong_);
+    Counts copies;
+    std::ranges::copy_if(wrong_, std::back_inserter(copies),
+                         [&](const HypothesisCounts& counts) { return counts.num_distinctive >= long_run; });
+    add_share("fleet.copied", copies.size(), wrong_);
+    add("fleet.agreement_if_copied", chance_to_agree(copies), copies);
   }
 
   static double per_km(const Counts& all, std::uint32_t HypothesisCounts::*num) {

@@ -25,6 +25,7 @@ constexpr std::string_view kTrueOfEleven = "38 true pairs of eleven field worlds
 constexpr std::string_view kWalksOfFifteen =
     "106 first steps of look-alikes on 15 maps of five tuning worlds (decision 0043)";
 constexpr std::string_view kJudgement = "judgement: no site was counted (decision 0043)";
+constexpr std::string_view kOfCopies = "27 pairs of six worlds of copies (decision 0079)";
 constexpr std::string_view kLining = "half of 20 m of fresh lining (decision 0041)";
 constexpr std::string_view kVehicle = "chosen: the length of a vehicle";
 constexpr std::string_view kOfScans = "pairs of scans of the tuning worlds (decision 0010)";
@@ -34,9 +35,11 @@ constexpr std::string_view kOfWalls = "three tuning worlds (decision 0015)";
 
 constexpr std::array kOrigins = {
     Origin{"fleet.agreement_if_true", kTrueOfEleven, "2026-11-27"},
+    Origin{"fleet.true_places", kOfCopies, "2026-11-29"},
     Origin{"fleet.least_chance", "places 3 m apart see in part the same (decision 0043)", "2026-11-25"},
     Origin{"fleet.copied", kOfForty, "2026-11-25"},
-    Origin{"fleet.copy_goes_on", kJudgement, "2026-11-25"},
+    Origin{"fleet.agreement_if_copied", kOfCopies, "2026-11-29"},
+    Origin{"fleet.copied_places", kOfCopies, "2026-11-29"},
     Origin{"error_rate", "one wrong merge of some 720 pairs that share nothing (decision 0060)",
            "2026-11-27"},
     Origin{"rival_rate", "106 true and 1501 false hypotheses of 34 field worlds (decision 0063)",
@@ -76,15 +79,20 @@ constexpr std::array kOrigins = {
 };
 
 Fields fields_of(FleetEvidence& c) {
-  return {{"agreement_if_true", &c.agreement_if_true, "", 0.0, 1.0,
-           "chance that a place shows no change of structure that none before has shown, if the alignment is "
-           "true"},
-          {"least_chance", &c.least_chance, "", 0.0, 1.0,
-           "look-alikes agree at one more place at least this often, however seldom a robot has seen it"},
-          {"copied", &c.copied, "", 0.0, 1.0,
-           "share of the tunnels that look alike that were built to the same plan"},
-          {"copy_goes_on", &c.copy_goes_on, "", 0.0, 1.0,
-           "chance that one built to the same plan agrees at one more distinctive place"}};
+  return {
+      {"agreement_if_true", &c.agreement_if_true, "", 0.0, 1.0,
+       "chance that a place shows no change of structure that none before has shown, if the alignment is "
+       "true"},
+      {"true_places", &c.true_places, "", 0.0, 1e6,
+       "number of places that this is worth: more or less changes between two visits"},
+      {"least_chance", &c.least_chance, "", 0.0, 1.0,
+       "look-alikes agree at one more place at least this often, however seldom a robot has seen it"},
+      {"copied", &c.copied, "", 0.0, 1.0,
+       "share of the tunnels that look alike that were built to the same plan"},
+      {"agreement_if_copied", &c.agreement_if_copied, "", 0.0, 1.0,
+       "the same chance as agreement_if_true for tunnels built to the same plan: rock and furniture differ"},
+      {"copied_places", &c.copied_places, "", 0.0, 1e6,
+       "number of places that this is worth: plans are kept to more or less closely"}};
 }
 
 double number_of(const Field& field) {

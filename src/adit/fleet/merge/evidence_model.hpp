@@ -18,9 +18,11 @@ namespace adit {
 /// What all robots of a fleet share, because the evidence of several is added up: constants, no settings.
 struct FleetEvidence {
   double agreement_if_true = 0.92;  ///< P(a place shows no change of structure that is new | one tunnel).
-  double least_chance = 0.2;        ///< Least P(look-alikes agree at one more place), whatever was measured.
-  double copied = 0.002;            ///< Share of look-alikes that were built to the same plan.
-  double copy_goes_on = 0.95;       ///< P(one built to the same plan agrees at one more distinctive place).
+  double true_places = 20.0;  ///< Places that this is worth: it differs from one pair of visits to another.
+  double least_chance = 0.2;  ///< Least P(look-alikes agree at one more place), whatever was measured.
+  double copied = 0.002;      ///< Share of look-alikes that were built to the same plan.
+  double agreement_if_copied = 0.75;  ///< The same as agreement_if_true for these.
+  double copied_places = 8.0;         ///< Places that this is worth.
 };
 /// The values in use.
 inline constexpr FleetEvidence kFleetEvidence;

@@ -137,8 +137,10 @@ double MergeChecker::evidence_of_places(const std::vector<TestedPlace>& places) 
   const std::vector<double> at_places = evidence_at_places(places, chances());
   const double sum = std::accumulate(at_places.begin(), at_places.end(), 0.0);
   if (!config_.relief) return sum;
-  const auto num = std::ranges::count(places, PlaceOutcome::distinctive, &TestedPlace::outcome);
-  return unless_copied(sum, static_cast<double>(num));
+  const auto num = [&](PlaceOutcome outcome) {
+    return static_cast<std::size_t>(std::ranges::count(places, outcome, &TestedPlace::outcome));
+  };
+  return unless_copied(sum, num(PlaceOutcome::distinctive), num(PlaceOutcome::differs));
 }
 
 double MergeChecker::evidence_of_walls(const Hypothesis& h, double times) const {

@@ -33,10 +33,24 @@ std::vector<double> evidence_at_places(const std::vector<TestedPlace>& places, c
   return evidence;
 }
 
-double unless_copied(double of_places, double num) {
+double copied_to_true(std::size_t num_agreed, std::size_t num_differed) {
+  const FleetEvidence& fleet = kFleetEvidence;
+  const auto one_more = [](double share, double worth, std::size_t num, std::size_t num_all) {
+    return (share * worth + static_cast<double>(num)) / (worth + static_cast<double>(num_all));
+  };
+  double ratio = 1.0;
+  for (std::size_t i = 0; i < num_agreed; ++i)
+    ratio *= one_more(fleet.agreement_if_copied, fleet.copied_places, i, i) /
+             one_more(fleet.agreement_if_true, fleet.true_places, i, i);
+  for (std::size_t i = 0; i < num_differed; ++i)
+    ratio *= one_more(1.0 - fleet.agreement_if_copied, fleet.copied_places, i, num_agreed + i) /
+             one_more(1.0 - fleet.agreement_if_true, fleet.true_places, i, num_agreed + i);
+  return ratio;
+}
+
+double unless_copied(double of_places, std::size_t num_agreed, std::size_t num_differed) {
   const double copied = kFleetEvidence.copied;
-  return -std::log((1.0 - copied) * std::exp(-of_places) +
-                   copied * std::pow(kFleetEvidence.copy_goes_on, num));
+  return -std::log((1.0 - copied) * std::exp(-of_places) + copied * copied_to_true(num_agreed, num_differed));
 }
 
 double poisson_tail(std::size_t k, double mean) {

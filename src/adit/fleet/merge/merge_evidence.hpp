@@ -28,10 +28,16 @@ using ChancesToGoOn = std::array<double, 8>;
 [[nodiscard]] std::vector<double> evidence_at_places(const std::vector<TestedPlace>& places,
                                                      const ChancesToGoOn& chances);
 
-/// What evidence `of_places` is worth, the sum over all, of which `num` are distinctive and agree: tunnels
-/// built to the same plan agree wherever the true one does, whatever look-alikes do. Walls or a long stretch
-/// have to add the rest.
-[[nodiscard]] double unless_copied(double of_places, double num);
+/// P(`num_agreed` distinctive places agree and `num_differed` show a change | tunnels built to the same plan)
+/// to P(the same | one tunnel). Neither share is known; each is beta distributed, and every place adds to
+/// what is known of it (G. Polya's urn, 1923). So no number of places that agree outweighs that some copies
+/// are good, and many changes tell a copy from a tunnel that has changed.
+[[nodiscard]] double copied_to_true(std::size_t num_agreed, std::size_t num_differed);
+
+/// What evidence `of_places` is worth, the sum over all, of which `num_agreed` are distinctive and agree and
+/// `num_differed` differ: tunnels built to the same plan agree where look-alikes would not. Walls have to add
+/// the rest.
+[[nodiscard]] double unless_copied(double of_places, std::size_t num_agreed, std::size_t num_differed);
 
 /// P(`k` or more events, of which `mean` are expected), by Poisson's distribution.
 [[nodiscard]] double poisson_tail(std::size_t k, double mean);

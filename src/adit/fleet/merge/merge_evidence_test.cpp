@@ -17,10 +17,41 @@ TEST(MergeEvidence, PoissonTail) {
 }
 
 TEST(MergeEvidence, PlacesAloneDoNotTellATunnelFromOneBuiltToTheSamePlan) {
-  EXPECT_NEAR(unless_copied(2.0, 5.0), 2.0, 0.1);
-  EXPECT_NEAR(unless_copied(-20.0, 5.0), -20.0, 0.1);
-  EXPECT_LT(unless_copied(30.0, 10.0), std::log(1.0 / kFleetEvidence.copied) + 0.6);
-  EXPECT_GT(unless_copied(100.0, 150.0), std::log(1e3)) << "but no plan was built twice all over";
+  EXPECT_NEAR(unless_copied(2.0, 5, 0), 2.0, 0.1);
+  EXPECT_NEAR(unless_copied(-20.0, 5, 0), -20.0, 0.1);
+  const double of_rarity = std::log(1.0 / kFleetEvidence.copied);
+  EXPECT_LT(unless_copied(30.0, 10, 0), of_rarity + 1.5);
+  EXPECT_GT(unless_copied(30.0, 10, 0), of_rarity) << "copies seldom agree that well";
+  EXPECT_LT(unless_copied(1000.0, 1000, 20), of_rarity + 3.0) << "but some do, and then everywhere";
+}
+
+TEST(MergeEvidence, ManyChangesTellACopyFromATunnelThatHasChanged) {
+  // Decision 0079: robots 1 and 3 of metro-copies-2101, merged wrongly.
+  EXPECT_LT(unless_copied(28.9, 47, 16), std::log(1.0 / kFleetEvidence.copied) - 1.0);
+  for (std::size_t differed = 0; differed < 20; ++differed)
+    EXPECT_GT(copied_to_true(30, differed + 1), copied_to_true(30, differed));
+  EXPECT_LT(copied_to_true(31, 3), copied_to_true(30, 3));
+}
+
+// The order in which places are counted is none of them driven: any gives the same.
+TEST(MergeEvidence, SharesThatAreNotKnownAreThoseOfTheBetaBinomialDistribution) {
+  const auto log_of = [](double share, double worth, double agreed, double differed) {
+    const double a = share * worth;
+    const double b = worth - a;
+    const auto log_beta = [](double x, double y) {
+      return std::lgamma(x) + std::lgamma(y) - std::lgamma(x + y);
+    };
+    return log_beta(a + agreed, b + differed) - log_beta(a, b);
+  };
+  const FleetEvidence& fleet = kFleetEvidence;
+  for (const std::size_t agreed : {0U, 1U, 12U, 60U})
+    for (const std::size_t differed : {0U, 1U, 9U})
+      EXPECT_NEAR(std::log(copied_to_true(agreed, differed)),
+                  log_of(fleet.agreement_if_copied, fleet.copied_places, static_cast<double>(agreed),
+                         static_cast<double>(differed)) -
+                      log_of(fleet.agreement_if_true, fleet.true_places, static_cast<double>(agreed),
+                             static_cast<double>(differed)),
+                  1e-9);
 }
 
 }  // namespace

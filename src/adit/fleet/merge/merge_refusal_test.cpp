@@ -4,6 +4,7 @@
 
 #include "adit/core/rng.hpp"
 #include "adit/fleet/merge/merge_checker.hpp"
+#include "adit/fleet/merge/merge_evidence.hpp"
 #include "support/merge_checks.hpp"
 
 namespace adit {
@@ -66,9 +67,8 @@ TEST(MergeRefusal, WhatMorePlacesWouldBeWorthIsWhatTheCheckWouldCount) {
   EXPECT_NEAR(undecided->evidence(undecided->places), check.evidence, 1e-12);
   std::vector<TestedPlace> more = undecided->places;
   for (std::uint32_t k = 0; k < 100; ++k) more.push_back({1000 + k, 0, PlaceOutcome::distinctive});
-  const auto num = static_cast<double>(more.size());
   EXPECT_LT(undecided->evidence(more),
-            -std::log(kFleetEvidence.copied) - num * std::log(kFleetEvidence.copy_goes_on) + 1e-9);
+            -std::log(kFleetEvidence.copied * copied_to_true(more.size(), 0)) + 1e-9);
   EXPECT_GT(undecided->evidence(more), check.evidence);
 }
 
