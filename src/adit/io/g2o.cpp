@@ -18,12 +18,10 @@
 #include "adit/core/progress.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/far_out.hpp"
+#include "adit/io/stated_pose.hpp"
 
 namespace adit {
 namespace {
-
-// A g2o quaternion is off 1 by its printed digits only; more than that is another number in its place.
-constexpr double kMaxNormError = 1e-2;
 
 // The words of one line, taken from the left.
 class Words {
@@ -84,12 +82,7 @@ struct Format<Pose> {
   static constexpr std::string_view kEdge = "EDGE_SE3:QUAT";
   static constexpr std::size_t kNumbers = 7;
   static Result<Pose> pose(const std::array<double, 7>& v) {
-    const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
-    if (std::abs(q.norm() - 1.0) > kMaxNormError)
-      return fail(format("the quaternion has norm {}, not 1", q.norm()));
-    const Vector3 t(v[0], v[1], v[2]);
-    if (const Result<> checked = check_not_far_out(t); !checked) return tl::unexpected(checked.error());
-    return Pose(std::abs(q.norm() - 1.0) < 1e-9 ? q : q.normalized(), t);
+    return stated_pose({v[0], v[1], v[2]}, {v[6], v[3], v[4], v[5]});
   }
   static std::array<double, 7> numbers(const Pose& T) {
     const Eigen::Quaterniond& q = T.rotation();

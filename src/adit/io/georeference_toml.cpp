@@ -12,6 +12,7 @@
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/georeference.hpp"
+#include "adit/io/stated_pose.hpp"
 #include "adit/io/toml_depth.hpp"
 #include "adit/io/tum.hpp"
 
@@ -148,9 +149,7 @@ Result<Georeference> georeference_in(const toml::node& node) {
     for (const toml::node& robot : *robots) map.robots.push_back(robot.value_or(std::string()));
   map.crs = table.value<std::string>("crs");
   const auto q = table.numbers<4>("rotation_xyzw");
-  const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
-  is_bad |= !(std::abs(rotation.norm() - 1.0) < 1e-6);
-  const Vector3 translation = table.vector("translation");
+  const Result<Pose> T_target_map = stated_pose(table.vector("translation"), {q[3], q[0], q[1], q[2]});
   map.covariance = Eigen::Map<const Matrix6>(table.numbers<36>("covariance").data());
   map.chi2 = table.value<double>("chi2");
   map.redundancy = static_cast<int>(table.integer("redundancy"));
@@ -161,9 +160,9 @@ Result<Georeference> georeference_in(const toml::node& node) {
                  far_end.value<double>("sigma_xy_m"), far_end.value<double>("sigma_z_m")};
   if (const toml::array* points = table.array("points"))
     for (const toml::node& point : *points) map.points.push_back(point_in(point, is_bad));
-  if (is_bad || map.robots.empty() || map.points.empty())
+  if (is_bad || !T_target_map || map.robots.empty() || map.points.empty())
     return fail("an entry is missing or damaged; delete the file and run adit georeference again");
-  map.T_target_map = Pose(rotation, translation);
+  map.T_target_map = *T_target_map;
   return map;
 }
 

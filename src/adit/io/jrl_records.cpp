@@ -11,6 +11,7 @@
 #include "adit/core/progress.hpp"
 #include "adit/io/far_out.hpp"
 #include "adit/io/json_depth.hpp"
+#include "adit/io/stated_pose.hpp"
 
 namespace adit {
 namespace jrl {
@@ -18,8 +19,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-// A quaternion is off 1 by its printed digits only; more than that is another number in its place.
-constexpr double kMaxNormError = 1e-2;
 // Bytes with which a CBOR map begins (RFC 8949, major type 5).
 constexpr unsigned char kFirstCborMap = 0xA0;
 constexpr unsigned char kLastCborMap = 0xBF;
@@ -75,13 +74,7 @@ Result<JrlPose> pose3_of(const Json& value) {
   if (!t) return tl::unexpected(t.error());
   const auto q = numbers(value, "rotation", 4);
   if (!q) return tl::unexpected(q.error());
-  const Eigen::Quaterniond rotation((*q)[0], (*q)[1], (*q)[2], (*q)[3]);  // w first
-  if (std::abs(rotation.norm() - 1.0) > kMaxNormError)
-    return fail(format("the quaternion 'rotation' has norm {}, not 1", rotation.norm()));
-  const Vector3 translation((*t)[0], (*t)[1], (*t)[2]);
-  if (const Result<> checked = check_not_far_out(translation); !checked)
-    return fail("'translation'", checked.error());
-  return Pose(rotation.normalized(), translation);
+  return stated_pose({(*t)[0], (*t)[1], (*t)[2]}, {(*q)[0], (*q)[1], (*q)[2], (*q)[3]});  // w first
 }
 
 Result<JrlPose> pose2_of(const Json& value) {

@@ -12,7 +12,7 @@
 #include "adit/core/format.hpp"
 #include "adit/fleet/joint/loop_account.hpp"
 #include "adit/io/csv.hpp"
-#include "adit/io/far_out.hpp"
+#include "adit/io/stated_pose.hpp"
 #include "adit/io/tum.hpp"
 
 namespace adit {
@@ -142,9 +142,8 @@ Result<Pose> pose_in(NumberCells& numbers) {
                              numbers.at<double>(19));
   const Vector3 t(numbers.at<double>(14), numbers.at<double>(15), numbers.at<double>(16));
   if (const Result<> checked = numbers.checked(); !checked) return tl::unexpected(checked.error());
-  if (const Result<> checked = check_not_far_out(t); !checked) return fail("x to z", checked.error());
-  if (!(std::abs(q.norm() - 1.0) <= 1e-3)) return fail("x to qw are not a pose");
-  return Pose(q, t);
+  const Result<Pose> pose = stated_pose(t, q);
+  return pose ? pose : fail("x to qw", pose.error());
 }
 
 Result<SavedLoop> saved_loop(const Cells& cells) {

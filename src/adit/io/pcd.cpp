@@ -9,6 +9,7 @@
 #include "adit/core/format.hpp"
 #include "adit/io/compression.hpp"
 #include "adit/io/packed_cloud.hpp"
+#include "adit/io/stated_pose.hpp"
 #include "adit/io/text.hpp"
 
 namespace adit {
@@ -115,12 +116,10 @@ Result<> set_viewpoint(PcdHeader& header, const Words& values) {
   }
   if (numbers.size() != 7) return fail(format("{} values; tx ty tz qw qx qy qz are needed", numbers.size()));
   const Vector3 position(numbers[0], numbers[1], numbers[2]);
-  Eigen::Quaterniond rotation(numbers[3], numbers[4], numbers[5], numbers[6]);
-  if (!(std::abs(rotation.norm() - 1.0) < 0.01))
-    return fail(format("the quaternion has norm {:.4f}, not 1; its order is qw qx qy qz", rotation.norm()));
-  if (position.isZero(0.0) && rotation.vec().isZero(0.0)) return {};
-  if (std::abs(rotation.norm() - 1.0) > 1e-12) rotation.normalize();
-  header.viewpoint = Pose(rotation, position);
+  const Eigen::Quaterniond rotation(numbers[3], numbers[4], numbers[5], numbers[6]);
+  const Result<Pose> viewpoint = stated_pose(position, rotation);
+  if (!viewpoint) return tl::unexpected(viewpoint.error());
+  if (!position.isZero(0.0) || !rotation.vec().isZero(0.0)) header.viewpoint = *viewpoint;
   return {};
 }
 

@@ -16,7 +16,7 @@
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/compression.hpp"
 #include "adit/io/crc32.hpp"
-#include "adit/io/far_out.hpp"
+#include "adit/io/stated_pose.hpp"
 #include "adit/io/tum.hpp"
 
 namespace adit {
@@ -129,8 +129,8 @@ void pose(Archive& archive, P& value) {
   archive.raw(t.data(), 3 * sizeof(double));
   if constexpr (Archive::kReads) {
     constexpr double kRounding = 1e-9;
-    if (check_not_far_out(t) && std::abs(q.norm() - 1.0) < kRounding)
-      value = Pose(q, t);
+    if (const Result<Pose> read = stated_pose(t, q, kRounding))
+      value = *read;
     else
       archive.refuse();
   }

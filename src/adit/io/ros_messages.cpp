@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "adit/io/ros_messages.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include "adit/core/format.hpp"
 #include "adit/io/cdr.hpp"
-#include "adit/io/far_out.hpp"
 #include "adit/io/packed_cloud.hpp"
+#include "adit/io/stated_pose.hpp"
 
 namespace adit::ros {
 namespace {
@@ -46,12 +45,8 @@ Result<Pose> read_pose(MessageReader& reader) {
   Eigen::Quaterniond q;
   for (double& value : q.coeffs()) value = reader.number<double>();  // stored as x y z w, in the file too
   if (!reader.ok()) return fail(format("byte {}: the message ends inside a pose", reader.offset()));
-  if (const Result<> checked = check_not_far_out(t); !checked)
-    return fail(format("byte {}", reader.offset()), checked.error());
-  if (!(std::abs(q.norm() - 1.0) < 0.01))
-    return fail(format("byte {}: the quaternion does not have length 1", reader.offset()));
-  if (std::abs(q.norm() - 1.0) > 1e-12) q.normalize();
-  return Pose(q, t);
+  const Result<Pose> pose = stated_pose(t, q);
+  return pose ? pose : fail(format("byte {}", reader.offset()), pose.error());
 }
 
 /// A matrix row by row.

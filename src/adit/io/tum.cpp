@@ -8,7 +8,7 @@
 
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
-#include "adit/io/far_out.hpp"
+#include "adit/io/stated_pose.hpp"
 #include "adit/io/text.hpp"
 
 namespace adit {
@@ -73,16 +73,10 @@ Result<StampedPose> parse_pose(const std::vector<std::string_view>& words) {
     if (!value || !std::isfinite(*value)) return fail(format("'{}' is not a finite number", words[i + 1]));
     values[i] = *value;
   }
-  Eigen::Quaterniond rotation(values[6], values[3], values[4], values[5]);
-  if (std::abs(rotation.norm() - 1.0) > 0.01) {
-    return fail(format("the quaternion has norm {:.4f}, not 1; its order is qx qy qz qw", rotation.norm()));
-  }
-  // A unit quaternion of full precision stays as it is, so that a trajectory survives reading and writing
-  // unchanged.
-  if (std::abs(rotation.norm() - 1.0) > 1e-12) rotation.normalize();
-  const Vector3 position(values[0], values[1], values[2]);
-  if (const Result<> checked = check_not_far_out(position); !checked) return tl::unexpected(checked.error());
-  return StampedPose{*stamp, Pose(rotation, position)};
+  return stated_pose({values[0], values[1], values[2]}, {values[6], values[3], values[4], values[5]})
+      .map([&](const Pose& pose) {
+        return StampedPose{*stamp, pose};
+      });
 }
 
 }  // namespace

@@ -75,10 +75,10 @@ double cycle_chi2(const std::vector<BasicOdometryChain<P>>& chains, const Loop<P
   const typename P::Jacobian S =
       carry_covariance(E.inverse().adjoint(), first.covariance) +
       carry_covariance(last_leg.inverse().adjoint(), second.covariance) +
-      carry_covariance((from.pose(second.from.position) * back).inverse().adjoint(),
-                       from.covariance_in_odom(first.from.position, second.from.position)) +
-      carry_covariance(to.pose(first.to.position).inverse().adjoint(),
-                       to.covariance_in_odom(second.to.position, first.to.position));
+      carry_covariance((from.from_first(second.from.position) * back).inverse().adjoint(),
+                       from.covariance_from_first(first.from.position, second.from.position)) +
+      carry_covariance(to.from_first(first.to.position).inverse().adjoint(),
+                       to.covariance_from_first(second.to.position, first.to.position));
   const typename P::Tangent error = between_residual(P(), P(), E);
   return error.dot(S.llt().solve(error));
 }

@@ -18,24 +18,22 @@ BasicOdometryChain<P>::BasicOdometryChain(std::vector<P> T_odom_keyframe,
              "one step covariance between each two consecutive keyframes");
   for (std::size_t k = 1; k < path_m_.size(); ++k)
     path_m_[k] = path_m_[k - 1] + between(k - 1, k).translation().norm();
+  for (std::size_t k = 0; k < size(); ++k) T_first_keyframe_.push_back(between(0, k));
   if (!T_odom_keyframe_.empty()) prefix_.push_back(Covariance::Zero());
-  for (std::size_t k = 0; k < step_covariances.size(); ++k) {
-    const Covariance seen_from_odom =
-        carry_covariance(T_odom_keyframe_[k + 1].adjoint(), step_covariances[k]);
-    prefix_.push_back(prefix_.back() + seen_from_odom);
-  }
+  for (std::size_t k = 0; k < step_covariances.size(); ++k)
+    prefix_.push_back(prefix_.back() + carry_covariance(from_first(k + 1).adjoint(), step_covariances[k]));
 }
 
 template <class P>
-typename BasicOdometryChain<P>::Covariance BasicOdometryChain<P>::covariance_in_odom(std::size_t i,
-                                                                                     std::size_t j) const {
+typename BasicOdometryChain<P>::Covariance BasicOdometryChain<P>::covariance_from_first(std::size_t i,
+                                                                                        std::size_t j) const {
   return prefix_[std::max(i, j)] - prefix_[std::min(i, j)];
 }
 
 template <class P>
 typename BasicOdometryChain<P>::Covariance BasicOdometryChain<P>::covariance(std::size_t i,
                                                                              std::size_t j) const {
-  return carry_covariance(pose(j).inverse().adjoint(), covariance_in_odom(i, j));
+  return carry_covariance(from_first(j).inverse().adjoint(), covariance_from_first(i, j));
 }
 
 std::vector<PlaceOnPath> places_on(const std::vector<OdometryPath>& paths, std::size_t num_nodes) {

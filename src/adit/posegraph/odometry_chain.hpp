@@ -32,13 +32,17 @@ class BasicOdometryChain {
   [[nodiscard]] const std::vector<double>& path_m() const { return path_m_; }
   /// Covariance of T_i_j, right perturbation, for i before, after or equal to j.
   [[nodiscard]] Covariance covariance(std::size_t i, std::size_t j) const;
-  /// What the steps between i and j (any order) add to the covariance, as seen from the frame odom.
-  [[nodiscard]] Covariance covariance_in_odom(std::size_t i, std::size_t j) const;
+  /// T_0_i: maps may be kept in coordinates of surveyors, whose millions of metres would swallow a
+  /// covariance.
+  [[nodiscard]] const P& from_first(std::size_t i) const { return T_first_keyframe_[i]; }
+  /// What the steps between i and j (any order) add to the covariance, as seen from keyframe 0.
+  [[nodiscard]] Covariance covariance_from_first(std::size_t i, std::size_t j) const;
 
  private:
   std::vector<P> T_odom_keyframe_;
+  std::vector<P> T_first_keyframe_;
   std::vector<double> path_m_;
-  std::vector<Covariance> prefix_;  ///< prefix_[j]: sum over steps k < j of Ad(T_odom_(k+1)) Sigma_k Ad^T.
+  std::vector<Covariance> prefix_;  ///< prefix_[j]: sum over steps k < j of Ad(T_0_(k+1)) Sigma_k Ad^T.
 };
 /// In space.
 using OdometryChain = BasicOdometryChain<Pose>;

@@ -16,18 +16,18 @@ namespace {
 // Both chains are the same object: then steps that both legs of the cycle drive count together.
 bool same_chain(const OdometryChain& a, const OdometryChain& b) { return &a == &b; }
 
-// Of both odometry legs, given how a step, seen from its odom frame, shows at the end of the cycle.
+// Of both odometry legs, given how a step, seen from the first keyframe, shows at the end of the cycle.
 Matrix6 legs_covariance(const OdometryChain& chain_a, const OdometryChain& chain_b, const PcmLoop& first,
                         const PcmLoop& second, const Matrix6& a_to_end, const Matrix6& b_to_end) {
-  Matrix6 S = carry_covariance(a_to_end, chain_a.covariance_in_odom(first.a, second.a)) +
-              carry_covariance(b_to_end, chain_b.covariance_in_odom(second.b, first.b));
+  Matrix6 S = carry_covariance(a_to_end, chain_a.covariance_from_first(first.a, second.a)) +
+              carry_covariance(b_to_end, chain_b.covariance_from_first(second.b, first.b));
   if (!same_chain(chain_a, chain_b)) return S;
   const std::size_t begin = std::max(std::min(first.a, second.a), std::min(first.b, second.b));
   const std::size_t end = std::min(std::max(first.a, second.a), std::max(first.b, second.b));
   if (begin >= end) return S;
   // A leg driven backwards has the step's error with the other sign.
   const double sign = (first.a < second.a) == (second.b < first.b) ? 1.0 : -1.0;
-  const Matrix6 cross = sign * a_to_end * chain_a.covariance_in_odom(begin, end) * b_to_end.transpose();
+  const Matrix6 cross = sign * a_to_end * chain_a.covariance_from_first(begin, end) * b_to_end.transpose();
   S += cross + cross.transpose();
   return S;
 }
@@ -37,8 +37,8 @@ double distance2(const OdometryChain& chain_a, const OdometryChain& chain_b, con
   const Pose X_lk = chain_b.between(second.b, first.b);
   const Pose back = second.T_a_b * X_lk;  // from keyframe j of a to the end of the cycle, keyframe k of b
   const Pose E = first.T_a_b.inverse() * chain_a.between(first.a, second.a) * back;
-  const Matrix6 a_to_end = (chain_a.pose(second.a) * back).inverse().adjoint();
-  const Matrix6 b_to_end = chain_b.pose(first.b).inverse().adjoint();
+  const Matrix6 a_to_end = (chain_a.from_first(second.a) * back).inverse().adjoint();
+  const Matrix6 b_to_end = chain_b.from_first(first.b).inverse().adjoint();
   const Matrix6 S = carry_covariance(E.inverse().adjoint(), covariances.first) +
                     carry_covariance(X_lk.inverse().adjoint(), covariances.second) +
                     legs_covariance(chain_a, chain_b, first, second, a_to_end, b_to_end);

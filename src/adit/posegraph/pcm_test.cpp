@@ -62,6 +62,20 @@ TEST(OdometryChain, CovarianceIsThatOfStepByStepComposition) {
   EXPECT_EQ(chain.covariance(7, 7).norm(), 0.0);
 }
 
+// Odometry of a survey in coordinates of a map grid, five thousand kilometres from its origin.
+TEST(OdometryChain, IsNoWorseFarFromTheOrigin) {
+  Rng rng(4);
+  const Chains c = make_chains(rng, 200);
+  std::vector<Pose> far;
+  for (const Pose& pose : c.odom_a) far.push_back(Pose::translation_of(4.5e5, 5.4e6, 300.0) * pose);
+  const OdometryChain near_origin(c.odom_a, c.steps_a);
+  const OdometryChain on_a_grid(far, c.steps_a);
+  for (const std::size_t j : {1U, 60U, 199U}) {
+    const Matrix6 expected = near_origin.covariance(j - 1, j);
+    EXPECT_LT((on_a_grid.covariance(j - 1, j) - expected).norm(), 1e-6 * expected.norm()) << j;
+  }
+}
+
 // True pairs of loops, drawn afresh each time, must have chi-square distances: mean 6, 1 % above the 99 %
 // bound.
 void expect_chi_square(bool one_robot, std::size_t b_of_first, std::size_t b_of_second) {

@@ -183,6 +183,16 @@ Vector6 motion_terms(const WallPair& pair) {
   return terms;
 }
 
+Fields fields_of(OffsetPrior& c) {
+  return {{"bias_m", &c.bias_m, "m", 1e-6, 10.0, "range by which two sensors differ, the same everywhere"},
+          {"walk_m", &c.walk_m, "m", 1e-6, 10.0, "the same at grazing incidence, on top"},
+          {"per_tenfold_m", &c.per_tenfold_m, "m", 1e-6, 10.0,
+           "between two returns, one ten times as intense as the other"},
+          {"ring_m", &c.ring_m, "m", 1e-6, 10.0, "range by elevation, at each node"},
+          {"fit_m", &c.fit_m, "m", 1e-6, 10.0, "error of the fit of two scans, along each axis"},
+          {"fit_rad", &c.fit_rad, "rad", 1e-6, 1.0, "the same, about each axis"}};
+}
+
 OffsetParts taken_apart(const OffsetSystem& offsets, const OffsetPrior& prior) {
   constexpr int kRounds = 5;
   constexpr double kHuber = 1.345;  // sigmas, as efficient as kTukey

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "adit/core/config.hpp"
 #include "adit/core/pose.hpp"
 #include "adit/registration/searchable_surface.hpp"
 
@@ -92,6 +93,8 @@ struct OffsetPrior {
   double fit_m = 0.02;           ///< Along each axis.
   double fit_rad = 0.004;        ///< About each axis.
 };
+/// The keys are the names of the fields.
+[[nodiscard]] Fields fields_of(OffsetPrior& prior);
 
 /// What offsets consist of; the rest is owed to the fits.
 struct OffsetParts {

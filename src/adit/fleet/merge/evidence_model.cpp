@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "adit/core/check.hpp"
+#include "adit/registration/sensor_difference.hpp"
 
 namespace adit {
 namespace {
@@ -32,6 +33,9 @@ constexpr std::string_view kOfScans = "pairs of scans of the tuning worlds (deci
 constexpr std::string_view kLoopsOfFortyTwo =
     "167 true and 414 false hypotheses of 42 seen field worlds (decision 0066)";
 constexpr std::string_view kOfWalls = "three tuning worlds (decision 0015)";
+
+constexpr std::string_view kDataSheets = "what data sheets allow (decision 0035)";
+constexpr std::string_view kOfFits = "six true pairs (decision 0052)";
 
 constexpr std::array kOrigins = {
     Origin{"fleet.agreement_if_true", kTrueOfEleven, "2026-11-27"},
@@ -76,6 +80,14 @@ constexpr std::array kOrigins = {
     Origin{"walls.lined_share", kOfElevenWorlds, "2026-11-27"},
     Origin{"walls.few_patches", kOfWalls, "2026-11-22"},
     Origin{"walls.min_patches", kOfElevenWorlds, "2026-11-27"},
+    Origin{"sensors.bias_m", kDataSheets, "2026-11-24"},
+    Origin{"sensors.walk_m", kDataSheets, "2026-11-24"},
+    Origin{"sensors.per_tenfold_m",
+           "as bias and walk, between returns one of which is a hundred times as strong (decision 0068)",
+           "2026-11-28"},
+    Origin{"sensors.ring_m", kDataSheets, "2026-11-24"},
+    Origin{"sensors.fit_m", kOfFits, "2026-11-26"},
+    Origin{"sensors.fit_rad", kOfFits, "2026-11-26"},
 };
 
 Fields fields_of(FleetEvidence& c) {
@@ -156,6 +168,8 @@ std::vector<EvidenceEntry> evidence_entries(EvidenceModel model) {
   Fields fields;
   append(fields, "fleet", fields_of(fleet));
   for (Field& field : fields_of(model)) fields.push_back(std::move(field));
+  OffsetPrior sensors;
+  append(fields, "sensors", fields_of(sensors));
   std::vector<EvidenceEntry> entries;
   for (const Field& field : fields) {
     const auto* origin = std::ranges::find(kOrigins, field.key, &Origin::key);

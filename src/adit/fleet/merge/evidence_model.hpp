@@ -69,7 +69,8 @@ struct EvidenceEntry {
   std::string_view source;  ///< What it was fitted to or chosen by.
   std::string_view date;    ///< Of that, year-month-day.
 };
-/// All values, those of kFleetEvidence first, with keys that begin with "fleet.".
+/// All values: those of kFleetEvidence first, with keys that begin with "fleet.", and last the constants by
+/// which sensors and fits are taken out of the relief of walls (OffsetPrior), with "sensors.".
 [[nodiscard]] std::vector<EvidenceEntry> evidence_entries(EvidenceModel model);
 
 }  // namespace adit

@@ -26,9 +26,9 @@ double reach_m(const OdometryChain& chain, std::size_t k, std::size_t later, con
 double longest_reach_m(const OdometryChain& chain, std::size_t k, std::size_t later,
                        const RevisitConfig& config) {
   constexpr double kRounding = 1e-12;  // of the largest terms; sums of so few lose a tenth of that
-  const Matrix6 covariance = chain.covariance_in_odom(k, later);
-  Eigen::Matrix<double, 3, 6> position;  // what moves the origin of keyframe `later`, in axes of odom
-  position << Matrix3::Identity(), -so3::hat(chain.pose(later).translation());
+  const Matrix6 covariance = chain.covariance_from_first(k, later);
+  Eigen::Matrix<double, 3, 6> position;  // what moves the origin of keyframe `later`, in axes of the first
+  position << Matrix3::Identity(), -so3::hat(chain.from_first(later).translation());
   const double sum = (position * covariance).cwiseProduct(position).sum();
   const double rounding = kRounding * position.squaredNorm() * covariance.cwiseAbs().maxCoeff();
   return (config.near_m + config.sigmas * std::sqrt(std::max(sum, 0.0) + rounding)) * (1.0 + kRounding);
