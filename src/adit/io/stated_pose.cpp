@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#include "adit/io/stated_pose.hpp"
+
+#include <cmath>
+
+#include "adit/core/format.hpp"
+#include "adit/io/far_out.hpp"
+
+namespace adit {
+
+Result<Pose> stated_pose(const Vector3& position, const Eigen::Quaterniond& rotation, double norm_error) {
+  constexpr double kFullPrecision = 1e-12;
+  const double off = std::abs(rotation.norm() - 1.0);
+  if (!(off <= norm_error))
+    return fail(
+        format("the quaternion has norm {:.4g}, not 1; check the order of its numbers", rotation.norm()));
+  if (const Result<> checked = check_not_far_out(position); !checked) return tl::unexpected(checked.error());
+  return Pose(off > kFullPrecision ? rotation.normalized() : rotation, position);
+}
+
+}  // namespace adit
