@@ -149,7 +149,7 @@ Result<Georeference> georeference_in(const toml::node& node) {
     for (const toml::node& robot : *robots) map.robots.push_back(robot.value_or(std::string()));
   map.crs = table.value<std::string>("crs");
   const auto q = table.numbers<4>("rotation_xyzw");
-  const Result<Pose> T_target_map = stated_pose(table.vector("translation"), {q[3], q[0], q[1], q[2]});
+  const Result<Pose> T_target_map = stated_pose(table.vector("translation"), {q[3], q[0], q[1], q[2]}, 1e-6);
   map.covariance = Eigen::Map<const Matrix6>(table.numbers<36>("covariance").data());
   map.chi2 = table.value<double>("chi2");
   map.redundancy = static_cast<int>(table.integer("redundancy"));

@@ -138,11 +138,12 @@ class NumberCells {
 };
 
 Result<Pose> pose_in(NumberCells& numbers) {
+  constexpr double kRounded = 1e-3;  // numbers of adit's own
   const Eigen::Quaterniond q(numbers.at<double>(20), numbers.at<double>(17), numbers.at<double>(18),
                              numbers.at<double>(19));
   const Vector3 t(numbers.at<double>(14), numbers.at<double>(15), numbers.at<double>(16));
   if (const Result<> checked = numbers.checked(); !checked) return tl::unexpected(checked.error());
-  const Result<Pose> pose = stated_pose(t, q);
+  const Result<Pose> pose = stated_pose(t, q, kRounded);
   return pose ? pose : fail("x to qw", pose.error());
 }
 

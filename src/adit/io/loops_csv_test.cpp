@@ -50,7 +50,7 @@ TEST(LoopsCsv, CellsThatAreNoNumbersAreNamed) {
   EXPECT_ERROR(with_cell(7, "1.5"), "line 2: inliers: '1.5' is not a number");
   EXPECT_ERROR(with_cell(2, "9e9"), "line 2: a stamp is not a number of seconds");
   EXPECT_ERROR(with_cell(20, "1.1"), "line 2: x to qw: the quaternion has norm");
-  EXPECT_ERROR(with_cell(14, "1e300"), "line 2: x to z: 1e+300 is not a coordinate");
+  EXPECT_ERROR(with_cell(14, "1e300"), "line 2: x to qw: 1e+300 is not a coordinate");
 }
 
 }  // namespace

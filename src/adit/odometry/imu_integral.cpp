@@ -153,8 +153,10 @@ void Integration::finish(const ImuSample& last, ImuIntegral& out) const {
 }  // namespace
 
 Fields fields_of(ImuNoise& c) {
-  return {{"gyroscope", &c.gyroscope, "rad/s/sqrt(Hz)", 1e-7, 1.0, "noise density"},
-          {"accelerometer", &c.accelerometer, "m/s2/sqrt(Hz)", 1e-6, 10.0, "noise density"},
+  return {{"gyroscope", &c.gyroscope, "rad/s/sqrt(Hz)", 1e-7, 1.0,
+           "noise density, at least: what samples show counts where it is more"},
+          {"accelerometer", &c.accelerometer, "m/s2/sqrt(Hz)", 1e-6, 10.0,
+           "noise density, at least: what samples show counts where it is more"},
           {"gyroscope_bias", &c.gyroscope_bias, "rad/s/sqrt(s)", 0.0, 1.0, "random walk of the bias"},
           {"accelerometer_bias", &c.accelerometer_bias, "m/s2/sqrt(s)", 0.0, 10.0, "random walk of the bias"},
           {"gyroscope_start", &c.gyroscope_start, "rad/s", 1e-6, 10.0, "bias when switched on"},
@@ -174,6 +176,7 @@ ImuNoise noise_over(std::span<const ImuSample> samples, const ImuNoise& stated) 
   constexpr double kVarianceOfDifference = 1.0 + 4.0 + 1.0;
   const auto n = static_cast<double>(samples.size());
   const double period = to_seconds(samples.back().stamp - samples.front().stamp) / (n - 1.0);
+  if (!(period > 0.0) || !std::isfinite(turn2 + force2)) return noise;
   const double to_density2 = period / (3.0 * (n - 2.0) * kVarianceOfDifference);
   noise.gyroscope = std::max(stated.gyroscope, std::sqrt(turn2 * to_density2));
   noise.accelerometer = std::max(stated.accelerometer, std::sqrt(force2 * to_density2));

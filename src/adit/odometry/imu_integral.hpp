@@ -30,7 +30,7 @@ struct ImuNoise {
 /// shakes, the noise is not that of the data sheet. What changes slowly from sample to sample is motion; it
 /// is taken out by second differences, whose variance is six times that of white noise (the successive
 /// differences of J. von Neumann et al., "The Mean Square Successive Difference", 1941, once more). Of fewer
-/// than four samples, nothing is measured.
+/// than four samples, of ones that are not finite or do not take time, nothing is measured.
 [[nodiscard]] ImuNoise noise_over(std::span<const ImuSample> samples, const ImuNoise& stated);
 
 /// What the integral starts from; body frame at the begin unless it says otherwise.

@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+#include <span>
+
 #include "adit/core/angles.hpp"
 #include "adit/core/check.hpp"
 #include "adit/core/decompositions.hpp"
@@ -183,18 +187,22 @@ TEST(NoiseOver, ThreeSamplesSayNothing) {
   Rng rng(5);
   std::vector<ImuSample> samples = sensed(1.0, 2.0, Pose()).imu;
   shake(samples, times(100.0), rng);
-  for (const std::size_t n : {0U, 1U, 3U})
+  for (const std::size_t n : {0U, 1U, 2U, 3U})
     EXPECT_EQ(noise_over(std::span(samples).first(n), {}).gyroscope, ImuNoise().gyroscope);
   EXPECT_GT(noise_over(std::span(samples).first(4), {}).gyroscope, ImuNoise().gyroscope);
+  samples[2].angular_velocity.x() = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(noise_over(samples, {}).gyroscope, ImuNoise().gyroscope);
+  samples.assign(5, samples.front());
+  EXPECT_EQ(noise_over(samples, {}).accelerometer, ImuNoise().accelerometer);
 }
 
 // Scans that fix the pose show what the IMU is off by: biases and gravity, from a moving start, and the
 // prediction is as good as it says.
 // The filter is told what a data sheet states, whatever the noise is.
 struct Calibrated {
-  double nees = 0.0;        // mean, per direction: 1 where the prediction is as good as it says
-  double longest_miss = 0;  // of a pose predicted over one interval, metres and radians
-  double tilt_deg = 0.0;    // of gravity at the end
+  double nees = 0.0;          // mean, per direction: 1 where the prediction is as good as it says
+  double longest_miss = 0.0;  // of a pose predicted over one interval, metres and radians
+  double tilt_deg = 0.0;      // of gravity at the end
 };
 Calibrated drive_with(const ImuNoise& noise) {
   Rng rng(3);

@@ -52,15 +52,15 @@ struct ImuConfig {
 Result<> check_imu(ImuConfig config);
 
 /// icm-20948 (Ouster OS0, OS1, OS2), bmi088 (Livox Avia and many robots), adis16470 (a better one, as robots
-/// carry beside the LiDAR), perfect (no errors). An unknown name fails with the list. They sit where the
-/// default sits.
+/// carry beside the LiDAR), perfect (no errors; under field conditions it is shaken). An unknown name fails
+/// with the list. They sit where the default sits.
 [[nodiscard]] Result<ImuConfig> imu_preset(const std::string& name);
 /// The names that imu_preset() knows.
 [[nodiscard]] std::vector<std::string> imu_presets();
 
-/// With vibration of 0.5 m/s^2 at 1 m/s: drivers of eight haulage trucks felt 0.44 to 0.82 m/s^2 in all (A.
-/// Smets et al., "Whole-body vibration experienced by haulage truck operators in surface mining operations",
-/// Applied Ergonomics 2010). How much a body turns with it, 1 degree/s, is chosen.
+/// With vibration of 0.5 m/s^2 and 1 degree/s at 1 m/s, chosen: of the order of the 0.44 to 0.82 m/s^2 that
+/// the seats of eight haulage trucks pass on (A. Smets et al., "Whole-body vibration experienced by haulage
+/// truck operators in surface mining operations", Applied Ergonomics 2010).
 [[nodiscard]] ImuConfig field_imu(ImuConfig config);
 
 /// The stated mount. It is turned by roll, then pitch, then yaw about the fixed axes of the lidar frame.

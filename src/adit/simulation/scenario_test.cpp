@@ -292,6 +292,7 @@ TEST(Scenario, field_conditions_turn_on_every_kind_of_trouble_and_ideal_ones_non
   set_conditions(Conditions::ideal, config);
   EXPECT_EQ(config.wheels.burst_rate, 0.0);
   EXPECT_EQ(config.imu.vibration, 0.0);
+  EXPECT_EQ(config.imu.vibration_deg, 0.0);
   EXPECT_EQ(config.drive.manoeuvres.turns_per_km, 0.0);
   EXPECT_EQ(config.surfaces.contrast, 0.0);
   EXPECT_FALSE(config.traffic.robots);

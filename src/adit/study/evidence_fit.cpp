@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "adit/core/format.hpp"
 #include "adit/evaluation/statistics.hpp"
@@ -29,6 +30,17 @@ Counts with_walls(const Counts& all, int min_patches) {
     return counts.num_wall_patches >= static_cast<std::uint32_t>(min_patches);
   });
   return out;
+}
+
+/// P(`k` or more of `n` trials succeed), each with the chance `p`.
+double binomial_tail(std::size_t k, std::size_t n, double p) {
+  double sum = 0.0;
+  double term = std::pow(1.0 - p, static_cast<double>(n));
+  for (std::size_t i = 0; i <= n; ++i) {
+    if (i >= k) sum += term;
+    term *= p / (1.0 - p) * static_cast<double>(n - i) / static_cast<double>(i + 1);
+  }
+  return sum;
 }
 
 class Fit {
@@ -68,8 +80,9 @@ class Fit {
     add("fleet.agreement_if_true", chance_to_agree(right_), right_);
     const double goes_on = chance_to_agree(wrong_);
     add("prior_chance", goes_on, wrong_);
-    // Look-alikes agree as often as here for as long once in a thousand times.
-    const double long_run = std::log(1000.0) / -std::log(std::clamp(goes_on, 0.01, 0.99));
+    // Look-alikes that agree so often by chance are one in a thousand. Changes count, where the decision
+    // counts places that differ: one of them may show several.
+    constexpr double kByChance = 1e-3;
     Counts copies;
     std::ranges::copy_if(wrong_, std::back_inserter(copies),
                          [&](const HypothesisCounts& counts) { return counts.num_distinctive >= long_run; });

@@ -71,6 +71,18 @@ TEST(EvidenceFit, SharesHaveAnUpperLimit) {
   ASSERT_NE(copied, fitted.end());
   EXPECT_DOUBLE_EQ(copied->value, 0.01);
   EXPECT_GT(copied->upper, 0.02);
+  EXPECT_EQ(value_of(fitted, "fleet.agreement_if_copied"), 1.0);
+}
+
+TEST(EvidenceFit, CopiesAreThoseThatAgreeMoreOftenThanLookAlikesDoByChance) {
+  std::vector<JudgedHypothesis> all = drawn(400);  // whose look-alikes agree at one place in four
+  all[1].counts.num_distinctive = 30;              // a copy with furniture of its own
+  all[1].counts.num_changes = 10;
+  all[3].counts.num_distinctive = 10;  // long, and no more alike than others
+  all[3].counts.num_changes = 30;
+  const std::vector<FittedValue> fitted = fitted_values(all, {});
+  EXPECT_DOUBLE_EQ(value_of(fitted, "fleet.copied"), 1.0 / 200.0);
+  EXPECT_DOUBLE_EQ(value_of(fitted, "fleet.agreement_if_copied"), 0.75);
 }
 
 TEST(EvidenceFit, WithoutHypothesesNothingIsFitted) {

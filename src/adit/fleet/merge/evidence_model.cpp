@@ -26,14 +26,14 @@ constexpr std::string_view kTrueOfEleven = "38 true pairs of eleven field worlds
 constexpr std::string_view kWalksOfFifteen =
     "106 first steps of look-alikes on 15 maps of five tuning worlds (decision 0043)";
 constexpr std::string_view kJudgement = "judgement: no site was counted (decision 0043)";
-constexpr std::string_view kOfCopies = "27 pairs of six worlds of copies (decision 0079)";
+constexpr std::string_view kOfCopies =
+    "chosen between 27 pairs of six worlds of copies and judgement (decision 0079)";
 constexpr std::string_view kLining = "half of 20 m of fresh lining (decision 0041)";
 constexpr std::string_view kVehicle = "chosen: the length of a vehicle";
 constexpr std::string_view kOfScans = "pairs of scans of the tuning worlds (decision 0010)";
 constexpr std::string_view kLoopsOfFortyTwo =
     "167 true and 414 false hypotheses of 42 seen field worlds (decision 0066)";
 constexpr std::string_view kOfWalls = "three tuning worlds (decision 0015)";
-
 constexpr std::string_view kDataSheets = "what data sheets allow (decision 0035)";
 constexpr std::string_view kOfFits = "six true pairs (decision 0052)";
 

@@ -63,7 +63,7 @@ struct EvidenceModel {
 /// One value of the model and its origin.
 struct EvidenceEntry {
   std::string key;          ///< "error_rate", "walls.same_share", "fleet.copied", ...
-  double value = 0.0;       ///< Of the model that was given, or of kFleetEvidence.
+  double value = 0.0;       ///< Of the model that was given, or of kFleetEvidence or OffsetPrior.
   std::string unit;         ///< "m", "1/km", ...; "" for shares, chances and numbers.
   std::string meaning;      ///< One line, as in the configuration.
   std::string_view source;  ///< What it was fitted to or chosen by.

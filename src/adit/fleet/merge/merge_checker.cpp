@@ -128,19 +128,19 @@ double MergeChecker::evidence_of_scans(const Hypothesis& h) const {
 }
 
 double MergeChecker::most_evidence_of_scans(const Hypothesis& h) const {
-  const auto num_left = static_cast<double>(h.plan.size() - h.compared.size());
-  return prior_evidence(h) + evidence_of_places(h.places_at_best(config_.distinctive_only)) +
-         num_left * evidence_of_agreement(chances(), 0);
+  const std::size_t num_left = h.plan.size() - h.compared.size();
+  return prior_evidence(h) + evidence_of_places(h.places_at_best(config_.distinctive_only), num_left);
 }
 
-double MergeChecker::evidence_of_places(const std::vector<TestedPlace>& places) const {
+double MergeChecker::evidence_of_places(const std::vector<TestedPlace>& places, std::size_t num_more) const {
   const std::vector<double> at_places = evidence_at_places(places, chances());
-  const double sum = std::accumulate(at_places.begin(), at_places.end(), 0.0);
+  const double sum = std::accumulate(at_places.begin(), at_places.end(),
+                                     static_cast<double>(num_more) * evidence_of_agreement(chances(), 0));
   if (!config_.relief) return sum;
   const auto num = [&](PlaceOutcome outcome) {
     return static_cast<std::size_t>(std::ranges::count(places, outcome, &TestedPlace::outcome));
   };
-  return unless_copied(sum, num(PlaceOutcome::distinctive), num(PlaceOutcome::differs));
+  return unless_copied(sum, num(PlaceOutcome::distinctive) + num_more, num(PlaceOutcome::differs));
 }
 
 double MergeChecker::evidence_of_walls(const Hypothesis& h, double times) const {

@@ -93,8 +93,10 @@ class MergeChecker {
   [[nodiscard]] double prior_evidence(const Hypothesis& hypothesis) const;
   [[nodiscard]] double evidence_of_few_loops(const Hypothesis& hypothesis) const;
   [[nodiscard]] double evidence_of_scans(const Hypothesis& hypothesis) const;
-  /// In the order driven by the own robot.
-  [[nodiscard]] double evidence_of_places(const std::vector<TestedPlace>& places) const;
+  /// In the order driven by the own robot; with `num_more` distinctive ones that agree, each as if none had
+  /// agreed before.
+  [[nodiscard]] double evidence_of_places(const std::vector<TestedPlace>& places,
+                                          std::size_t num_more = 0) const;
   /// As if so many times the walls had been seen.
   [[nodiscard]] double evidence_of_walls(const Hypothesis& hypothesis, double times = 1.0) const;
   /// Poisson's log likelihood ratio of what may come and go; never positive.

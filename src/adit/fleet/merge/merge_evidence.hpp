@@ -30,8 +30,8 @@ using ChancesToGoOn = std::array<double, 8>;
 
 /// P(`num_agreed` distinctive places agree and `num_differed` show a change | tunnels built to the same plan)
 /// to P(the same | one tunnel). Neither share is known; each is beta distributed, and every place adds to
-/// what is known of it (G. Polya's urn, 1923). So no number of places that agree outweighs that some copies
-/// are good, and many changes tell a copy from a tunnel that has changed.
+/// what is known of it (G. Polya's urn, 1923). So evidence grows only with the logarithm of the number of
+/// places that agree, as some copies are good, and many changes tell a copy from a tunnel that has changed.
 [[nodiscard]] double copied_to_true(std::size_t num_agreed, std::size_t num_differed);
 
 /// What evidence `of_places` is worth, the sum over all, of which `num_agreed` are distinctive and agree and

@@ -22,7 +22,7 @@ TEST(MergeEvidence, PlacesAloneDoNotTellATunnelFromOneBuiltToTheSamePlan) {
   const double of_rarity = std::log(1.0 / kFleetEvidence.copied);
   EXPECT_LT(unless_copied(30.0, 10, 0), of_rarity + 1.5);
   EXPECT_GT(unless_copied(30.0, 10, 0), of_rarity) << "copies seldom agree that well";
-  EXPECT_LT(unless_copied(1000.0, 1000, 20), of_rarity + 3.0) << "but some do, and then everywhere";
+  EXPECT_LT(unless_copied(1000.0, 200, 0), of_rarity + 3.1) << "but some do, and then everywhere";
 }
 
 TEST(MergeEvidence, ManyChangesTellACopyFromATunnelThatHasChanged) {
@@ -33,7 +33,7 @@ TEST(MergeEvidence, ManyChangesTellACopyFromATunnelThatHasChanged) {
   EXPECT_LT(copied_to_true(31, 3), copied_to_true(30, 3));
 }
 
-// The order in which places are counted is none of them driven: any gives the same.
+// It does not matter in which order places are counted.
 TEST(MergeEvidence, SharesThatAreNotKnownAreThoseOfTheBetaBinomialDistribution) {
   const auto log_of = [](double share, double worth, double agreed, double differed) {
     const double a = share * worth;

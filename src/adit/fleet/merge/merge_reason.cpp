@@ -50,11 +50,15 @@ std::string why_walls_differ(const Hypothesis& h, RefusalKind kind) {
 std::string MergeChecker::what_is_missing(const Hypothesis& h) const {
   constexpr double kFarthestDrive = 1000.0;  // metres that it makes sense to ask for
   constexpr double kRounding = 10.0;         // metres
-  const std::size_t num_distinctive = h.num_distinctive();
-  const double num_places =
-      std::ceil((needed() - evidence(h)) / evidence_of_agreement(chances(), num_distinctive));
-  const double share = static_cast<double>(num_distinctive) / static_cast<double>(h.compared.size());
-  const double metres = kRounding * std::ceil(num_places * config_.spacing_m / share / kRounding);
+  const double share = static_cast<double>(h.num_distinctive()) / static_cast<double>(h.compared.size());
+  std::vector<TestedPlace> places = h.places(config_.distinctive_only);
+  const double wanted = evidence_of_places(places) + needed() - evidence(h);
+  double drive_m = 0.0;
+  while (drive_m <= kFarthestDrive && !(evidence_of_places(places) >= wanted)) {
+    places.push_back({0, 0, PlaceOutcome::distinctive});
+    drive_m += config_.spacing_m / share;
+  }
+  const double metres = kRounding * std::ceil(drive_m / kRounding);
   if (!(metres <= kFarthestDrive))
     return "tunnels here look alike for too long; drive the same stretch past a junction or a niche";
   return format("drive the same stretch for about another {:.0f} m", metres);
