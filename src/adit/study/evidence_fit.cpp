@@ -84,8 +84,10 @@ class Fit {
     // counts places that differ: one of them may show several.
     constexpr double kByChance = 1e-3;
     Counts copies;
-    std::ranges::copy_if(wrong_, std::back_inserter(copies),
-                         [&](const HypothesisCounts& counts) { return counts.num_distinctive >= long_run; });
+    std::ranges::copy_if(wrong_, std::back_inserter(copies), [&](const HypothesisCounts& counts) {
+      const std::size_t num = counts.num_distinctive + counts.num_changes;
+      return binomial_tail(counts.num_distinctive, num, std::clamp(goes_on, 0.01, 0.99)) < kByChance;
+    });
     add_share("fleet.copied", copies.size(), wrong_);
     add("fleet.agreement_if_copied", chance_to_agree(copies), copies);
   }
