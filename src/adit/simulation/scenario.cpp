@@ -309,10 +309,13 @@ void set_conditions(Conditions conditions, ScenarioConfig& config) {
   config.visits = field ? field_visits() : VisitConfig();
   config.traffic = field ? field_traffic() : TrafficConfig();
   config.drive = field ? field_drive(config.drive) : ideal_drive(config.drive);
-  if (field) config.wheels = field_wheels(config.wheels);
-  if (!field) config.wheels.burst_rate = 0.0;
-  if (field) config.imu = field_imu(config.imu);
-  if (!field) config.imu.vibration = config.imu.vibration_deg = 0.0;
+  if (field) {
+    config.wheels = field_wheels(config.wheels);
+    config.imu = field_imu(config.imu);
+  } else {
+    config.wheels.burst_rate = 0.0;
+    config.imu.vibration = config.imu.vibration_deg = 0.0;
+  }
 }
 
 Result<std::vector<Recording>> simulate(const World& world, const ScenarioConfig& config) {

@@ -32,17 +32,6 @@ Counts with_walls(const Counts& all, int min_patches) {
   return out;
 }
 
-/// P(`k` or more of `n` trials succeed), each with the chance `p`.
-double binomial_tail(std::size_t k, std::size_t n, double p) {
-  double sum = 0.0;
-  double term = std::pow(1.0 - p, static_cast<double>(n));
-  for (std::size_t i = 0; i <= n; ++i) {
-    if (i >= k) sum += term;
-    term *= p / (1.0 - p) * static_cast<double>(n - i) / static_cast<double>(i + 1);
-  }
-  return sum;
-}
-
 class Fit {
  public:
   Fit(const std::vector<JudgedHypothesis>& hypotheses, const EvidenceModel& model)
@@ -80,13 +69,13 @@ class Fit {
     add("fleet.agreement_if_true", chance_to_agree(right_), right_);
     const double goes_on = chance_to_agree(wrong_);
     add("prior_chance", goes_on, wrong_);
-    // Look-alikes that agree so often by chance are one in a thousand. Changes count, where the decision
-    // counts places that differ: one of them may show several.
-    constexpr double kByChance = 1e-3;
+    // A copy changes less often than look-alikes do, beyond chance. Changes count, where the decision counts
+    // places that differ: one of them may show several.
+    constexpr double kConfidence = 0.999;
     Counts copies;
     std::ranges::copy_if(wrong_, std::back_inserter(copies), [&](const HypothesisCounts& counts) {
       const std::size_t num = counts.num_distinctive + counts.num_changes;
-      return binomial_tail(counts.num_distinctive, num, std::clamp(goes_on, 0.01, 0.99)) < kByChance;
+      return share_upper_limit(counts.num_changes, num, kConfidence) < 1.0 - goes_on;
     });
     add_share("fleet.copied", copies.size(), wrong_);
     add("fleet.agreement_if_copied", chance_to_agree(copies), copies);

@@ -39,11 +39,11 @@ constexpr std::string_view kOfFits = "six true pairs (decision 0052)";
 
 constexpr std::array kOrigins = {
     Origin{"fleet.agreement_if_true", kTrueOfEleven, "2026-11-27"},
-    Origin{"fleet.true_places", kOfCopies, "2026-11-29"},
+    Origin{"fleet.agreement_if_true_worth", kOfCopies, "2026-11-29"},
     Origin{"fleet.least_chance", "places 3 m apart see in part the same (decision 0043)", "2026-11-25"},
     Origin{"fleet.copied", kOfForty, "2026-11-25"},
     Origin{"fleet.agreement_if_copied", kOfCopies, "2026-11-29"},
-    Origin{"fleet.copied_places", kOfCopies, "2026-11-29"},
+    Origin{"fleet.agreement_if_copied_worth", kOfCopies, "2026-11-29"},
     Origin{"error_rate", "one wrong merge of some 720 pairs that share nothing (decision 0060)",
            "2026-11-27"},
     Origin{"rival_rate", "106 true and 1501 false hypotheses of 34 field worlds (decision 0063)",
@@ -95,7 +95,7 @@ Fields fields_of(FleetEvidence& c) {
       {"agreement_if_true", &c.agreement_if_true, "", 0.0, 1.0,
        "chance that a place shows no change of structure that none before has shown, if the alignment is "
        "true"},
-      {"true_places", &c.true_places, "", 0.0, 1e6,
+      {"agreement_if_true_worth", &c.agreement_if_true_worth, "", 0.0, 1e6,
        "number of places that this is worth: more or less changes between two visits"},
       {"least_chance", &c.least_chance, "", 0.0, 1.0,
        "look-alikes agree at one more place at least this often, however seldom a robot has seen it"},
@@ -103,7 +103,7 @@ Fields fields_of(FleetEvidence& c) {
        "share of the tunnels that look alike that were built to the same plan"},
       {"agreement_if_copied", &c.agreement_if_copied, "", 0.0, 1.0,
        "the same chance as agreement_if_true for tunnels built to the same plan: rock and furniture differ"},
-      {"copied_places", &c.copied_places, "", 0.0, 1e6,
+      {"agreement_if_copied_worth", &c.agreement_if_copied_worth, "", 0.0, 1e6,
        "number of places that this is worth: plans are kept to more or less closely"}};
 }
 

@@ -18,11 +18,11 @@ namespace adit {
 /// What all robots of a fleet share, because the evidence of several is added up: constants, no settings.
 struct FleetEvidence {
   double agreement_if_true = 0.92;  ///< P(a place shows no change of structure that is new | one tunnel).
-  double true_places = 20.0;  ///< Places that this is worth: it differs from one pair of visits to another.
+  double agreement_if_true_worth = 20.0;  ///< Places; the share differs between pairs of visits.
   double least_chance = 0.2;  ///< Least P(look-alikes agree at one more place), whatever was measured.
   double copied = 0.002;      ///< Share of look-alikes that were built to the same plan.
-  double agreement_if_copied = 0.75;  ///< The same as agreement_if_true for these.
-  double copied_places = 8.0;         ///< Places that this is worth.
+  double agreement_if_copied = 0.75;       ///< The same as agreement_if_true for these.
+  double agreement_if_copied_worth = 8.0;  ///< Places; plans are kept to more or less closely.
 };
 /// The values in use.
 inline constexpr FleetEvidence kFleetEvidence;

@@ -40,11 +40,11 @@ double copied_to_true(std::size_t num_agreed, std::size_t num_differed) {
   };
   double ratio = 1.0;
   for (std::size_t i = 0; i < num_agreed; ++i)
-    ratio *= one_more(fleet.agreement_if_copied, fleet.copied_places, i, i) /
-             one_more(fleet.agreement_if_true, fleet.true_places, i, i);
+    ratio *= one_more(fleet.agreement_if_copied, fleet.agreement_if_copied_worth, i, i) /
+             one_more(fleet.agreement_if_true, fleet.agreement_if_true_worth, i, i);
   for (std::size_t i = 0; i < num_differed; ++i)
-    ratio *= one_more(1.0 - fleet.agreement_if_copied, fleet.copied_places, i, num_agreed + i) /
-             one_more(1.0 - fleet.agreement_if_true, fleet.true_places, i, num_agreed + i);
+    ratio *= one_more(1.0 - fleet.agreement_if_copied, fleet.agreement_if_copied_worth, i, num_agreed + i) /
+             one_more(1.0 - fleet.agreement_if_true, fleet.agreement_if_true_worth, i, num_agreed + i);
   return ratio;
 }
 

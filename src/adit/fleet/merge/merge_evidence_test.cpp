@@ -47,10 +47,10 @@ TEST(MergeEvidence, SharesThatAreNotKnownAreThoseOfTheBetaBinomialDistribution) 
   for (const std::size_t agreed : {0U, 1U, 12U, 60U})
     for (const std::size_t differed : {0U, 1U, 9U})
       EXPECT_NEAR(std::log(copied_to_true(agreed, differed)),
-                  log_of(fleet.agreement_if_copied, fleet.copied_places, static_cast<double>(agreed),
-                         static_cast<double>(differed)) -
-                      log_of(fleet.agreement_if_true, fleet.true_places, static_cast<double>(agreed),
-                             static_cast<double>(differed)),
+                  log_of(fleet.agreement_if_copied, fleet.agreement_if_copied_worth,
+                         static_cast<double>(agreed), static_cast<double>(differed)) -
+                      log_of(fleet.agreement_if_true, fleet.agreement_if_true_worth,
+                             static_cast<double>(agreed), static_cast<double>(differed)),
                   1e-9);
 }
 
