@@ -245,7 +245,7 @@ TEST(MotionFilterWithImu, FindsBiasesAndGravityOnTheMove) {
   EXPECT_LT(calm.tilt_deg, 0.5);
 }
 
-// With the noise of the data sheet the normalised error squared would be some 400.
+// A filter that believed the data sheet would take itself for twenty times as good as it is.
 TEST(MotionFilterWithImu, KnowsHowMuchItShakes) {
   const Calibrated shaken = drive_with(times(20.0));
   EXPECT_GT(shaken.nees, 0.4);
