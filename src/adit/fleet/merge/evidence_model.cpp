@@ -26,6 +26,7 @@ constexpr std::string_view kTrueOfEleven = "38 true pairs of eleven field worlds
 constexpr std::string_view kWalksOfFifteen =
     "106 first steps of look-alikes on 15 maps of five tuning worlds (decision 0043)";
 constexpr std::string_view kJudgement = "judgement: no site was counted (decision 0043)";
+constexpr std::string_view kSitesDiffer = "judgement: 5 to 20 decide the same (decision 0081)";
 constexpr std::string_view kOfCopies =
     "chosen between 27 pairs of six worlds of copies and judgement (decision 0079)";
 constexpr std::string_view kLining = "half of 20 m of fresh lining (decision 0041)";
@@ -42,6 +43,7 @@ constexpr std::array kOrigins = {
     Origin{"fleet.agreement_if_true_worth", kOfCopies, "2026-11-29"},
     Origin{"fleet.least_chance", "places 3 m apart see in part the same (decision 0043)", "2026-11-25"},
     Origin{"fleet.copied", kOfForty, "2026-11-25"},
+    Origin{"fleet.copied_worth", kSitesDiffer, "2026-11-29"},
     Origin{"fleet.agreement_if_copied", kOfCopies, "2026-11-29"},
     Origin{"fleet.agreement_if_copied_worth", kOfCopies, "2026-11-29"},
     Origin{"error_rate", "one wrong merge of some 720 pairs that share nothing (decision 0060)",
@@ -101,6 +103,8 @@ Fields fields_of(FleetEvidence& c) {
        "look-alikes agree at one more place at least this often, however seldom a robot has seen it"},
       {"copied", &c.copied, "", 0.0, 1.0,
        "share of the tunnels that look alike that were built to the same plan"},
+      {"copied_worth", &c.copied_worth, "", 0.0, 1e6,
+       "number of look-alikes that this is worth, beside those that two maps show: sites differ"},
       {"agreement_if_copied", &c.agreement_if_copied, "", 0.0, 1.0,
        "the same chance as agreement_if_true for tunnels built to the same plan: rock and furniture differ"},
       {"agreement_if_copied_worth", &c.agreement_if_copied_worth, "", 0.0, 1e6,

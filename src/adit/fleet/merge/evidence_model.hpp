@@ -19,8 +19,9 @@ namespace adit {
 struct FleetEvidence {
   double agreement_if_true = 0.92;  ///< P(a place shows no change of structure that is new | one tunnel).
   double agreement_if_true_worth = 20.0;  ///< Places; the share differs between pairs of visits.
-  double least_chance = 0.2;  ///< Least P(look-alikes agree at one more place), whatever was measured.
-  double copied = 0.002;      ///< Share of look-alikes that were built to the same plan.
+  double least_chance = 0.2;   ///< Least P(look-alikes agree at one more place), whatever was measured.
+  double copied = 0.002;       ///< Share of look-alikes that were built to the same plan.
+  double copied_worth = 10.0;  ///< Look-alikes; sites differ: where there is one copy there are more.
   double agreement_if_copied = 0.75;       ///< The same as agreement_if_true for these.
   double agreement_if_copied_worth = 8.0;  ///< Places; plans are kept to more or less closely.
 };

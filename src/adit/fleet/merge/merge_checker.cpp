@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <utility>
 
 #include "adit/core/check.hpp"
-#include "adit/fleet/merge/merge_evidence.hpp"
 #include "adit/fleet/search/path.hpp"
 
 namespace adit {
@@ -124,23 +122,36 @@ double MergeChecker::evidence_of_few_loops(const Hypothesis& h) const {
 }
 
 double MergeChecker::evidence_of_scans(const Hypothesis& h) const {
-  return prior_evidence(h) + evidence_of_places(h.places(config_.distinctive_only));
+  return prior_evidence(h) +
+         evidence_of_places(h.places(config_.distinctive_only), share_of_copies_if_true(h));
 }
 
+/// Places not yet compared are taken to agree, each as if none had agreed before, and other alignments to be
+/// no copies.
 double MergeChecker::most_evidence_of_scans(const Hypothesis& h) const {
   const std::size_t num_left = h.plan.size() - h.compared.size();
-  return prior_evidence(h) + evidence_of_places(h.places_at_best(config_.distinctive_only), num_left);
+  CountedPlaces places = counted_places(h.places_at_best(config_.distinctive_only), chances());
+  places.evidence += static_cast<double>(num_left) * evidence_of_agreement(chances(), 0);
+  places.num_agreed += num_left;
+  const CountedPlaces no_copy = {-std::numeric_limits<double>::infinity()};
+  const std::vector<CountedPlaces> others(hypotheses_.size() - 1, no_copy);
+  return prior_evidence(h) + evidence_of_places(places, share_of_copies(others));
 }
 
-double MergeChecker::evidence_of_places(const std::vector<TestedPlace>& places, std::size_t num_more) const {
-  const std::vector<double> at_places = evidence_at_places(places, chances());
-  const double sum = std::accumulate(at_places.begin(), at_places.end(),
-                                     static_cast<double>(num_more) * evidence_of_agreement(chances(), 0));
-  if (!config_.relief) return sum;
-  const auto num = [&](PlaceOutcome outcome) {
-    return static_cast<std::size_t>(std::ranges::count(places, outcome, &TestedPlace::outcome));
-  };
-  return unless_copied(sum, num(PlaceOutcome::distinctive) + num_more, num(PlaceOutcome::differs));
+double MergeChecker::evidence_of_places(const std::vector<TestedPlace>& places, double copies) const {
+  return evidence_of_places(counted_places(places, chances()), copies);
+}
+
+double MergeChecker::evidence_of_places(const CountedPlaces& places, double copies) const {
+  return config_.relief ? unless_copied(places, copies) : places.evidence;
+}
+
+double MergeChecker::share_of_copies_if_true(const Hypothesis& h) const {
+  std::vector<CountedPlaces> others;
+  for (const Hypothesis& other : hypotheses_)
+    if (&other != &h && !other.compared.empty())
+      others.push_back(counted_places(other.places(config_.distinctive_only), chances()));
+  return share_of_copies(others);
 }
 
 double MergeChecker::evidence_of_walls(const Hypothesis& h, double times) const {

@@ -26,6 +26,7 @@
 #include "adit/fleet/merge/hypothesis.hpp"
 #include "adit/fleet/merge/look_alikes.hpp"
 #include "adit/fleet/merge/merge_advice.hpp"
+#include "adit/fleet/merge/merge_evidence.hpp"
 #include "adit/fleet/sync/protocol.hpp"
 
 namespace adit {
@@ -93,10 +94,11 @@ class MergeChecker {
   [[nodiscard]] double prior_evidence(const Hypothesis& hypothesis) const;
   [[nodiscard]] double evidence_of_few_loops(const Hypothesis& hypothesis) const;
   [[nodiscard]] double evidence_of_scans(const Hypothesis& hypothesis) const;
-  /// In the order driven by the own robot; with `num_more` distinctive ones that agree, each as if none had
-  /// agreed before.
-  [[nodiscard]] double evidence_of_places(const std::vector<TestedPlace>& places,
-                                          std::size_t num_more = 0) const;
+  /// In the order driven by the own robot, where `copies` is the share of copies.
+  [[nodiscard]] double evidence_of_places(const std::vector<TestedPlace>& places, double copies) const;
+  [[nodiscard]] double evidence_of_places(const CountedPlaces& places, double copies) const;
+  /// Of the look-alikes between both maps, if this alignment is the true one: then all others are false.
+  [[nodiscard]] double share_of_copies_if_true(const Hypothesis& hypothesis) const;
   /// As if so many times the walls had been seen.
   [[nodiscard]] double evidence_of_walls(const Hypothesis& hypothesis, double times = 1.0) const;
   /// Poisson's log likelihood ratio of what may come and go; never positive.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace adit {
@@ -48,9 +49,29 @@ double copied_to_true(std::size_t num_agreed, std::size_t num_differed) {
   return ratio;
 }
 
-double unless_copied(double of_places, std::size_t num_agreed, std::size_t num_differed) {
-  const double copied = kFleetEvidence.copied;
-  return -std::log((1.0 - copied) * std::exp(-of_places) + copied * copied_to_true(num_agreed, num_differed));
+CountedPlaces counted_places(const std::vector<TestedPlace>& places, const ChancesToGoOn& chances) {
+  const std::vector<double> at_places = evidence_at_places(places, chances);
+  const auto num = [&](PlaceOutcome outcome) {
+    return static_cast<std::size_t>(std::ranges::count(places, outcome, &TestedPlace::outcome));
+  };
+  return {std::accumulate(at_places.begin(), at_places.end(), 0.0), num(PlaceOutcome::distinctive),
+          num(PlaceOutcome::differs)};
+}
+
+double share_of_copies(const std::vector<CountedPlaces>& false_ones) {
+  const double share = kFleetEvidence.copied;
+  const double worth = kFleetEvidence.copied_worth;
+  double num_copies = 0.0;
+  for (const CountedPlaces& places : false_ones) {
+    const double copied = share * copied_to_true(places.num_agreed, places.num_differed);
+    num_copies += copied / (copied + (1.0 - share) * std::exp(-places.evidence));
+  }
+  return (share * worth + num_copies) / (worth + static_cast<double>(false_ones.size()));
+}
+
+double unless_copied(const CountedPlaces& places, double share) {
+  return -std::log((1.0 - share) * std::exp(-places.evidence) +
+                   share * copied_to_true(places.num_agreed, places.num_differed));
 }
 
 double poisson_tail(std::size_t k, double mean) {

@@ -34,10 +34,23 @@ using ChancesToGoOn = std::array<double, 8>;
 /// places that agree, as some copies are good, and many changes tell a copy from a tunnel that has changed.
 [[nodiscard]] double copied_to_true(std::size_t num_agreed, std::size_t num_differed);
 
-/// What evidence `of_places` is worth, the sum over all, of which `num_agreed` are distinctive and agree and
-/// `num_differed` differ: tunnels built to the same plan agree where look-alikes would not. Walls have to add
-/// the rest.
-[[nodiscard]] double unless_copied(double of_places, std::size_t num_agreed, std::size_t num_differed);
+/// The places of one alignment, counted.
+struct CountedPlaces {
+  double evidence = 0.0;         ///< The sum of `evidence_at_places`: against look-alikes that are no copies.
+  std::size_t num_agreed = 0;    ///< Distinctive ones.
+  std::size_t num_differed = 0;  ///< Not counted with the agreed ones.
+};
+[[nodiscard]] CountedPlaces counted_places(const std::vector<TestedPlace>& places,
+                                           const ChancesToGoOn& chances);
+
+/// Share of the look-alikes between two maps that were built to the same plan, by `false_ones`, the places of
+/// alignments that are known to be false. One that agrees where look-alikes would not is a copy, and where
+/// there is one there are more. Beta distributed like the shares above.
+[[nodiscard]] double share_of_copies(const std::vector<CountedPlaces>& false_ones);
+
+/// What the evidence of places is worth where `share` of the look-alikes are copies: tunnels built to the
+/// same plan agree where look-alikes would not. Walls have to add the rest.
+[[nodiscard]] double unless_copied(const CountedPlaces& places, double share);
 
 /// P(`k` or more events, of which `mean` are expected), by Poisson's distribution.
 [[nodiscard]] double poisson_tail(std::size_t k, double mean);

@@ -17,20 +17,41 @@ TEST(MergeEvidence, PoissonTail) {
 }
 
 TEST(MergeEvidence, PlacesAloneDoNotTellATunnelFromOneBuiltToTheSamePlan) {
-  EXPECT_NEAR(unless_copied(2.0, 5, 0), 2.0, 0.1);
-  EXPECT_NEAR(unless_copied(-20.0, 5, 0), -20.0, 0.1);
+  EXPECT_NEAR(unless_copied({2.0, 5, 0}, kFleetEvidence.copied), 2.0, 0.1);
+  EXPECT_NEAR(unless_copied({-20.0, 5, 0}, kFleetEvidence.copied), -20.0, 0.1);
   const double of_rarity = std::log(1.0 / kFleetEvidence.copied);
-  EXPECT_LT(unless_copied(30.0, 10, 0), of_rarity + 1.5);
-  EXPECT_GT(unless_copied(30.0, 10, 0), of_rarity) << "copies seldom agree that well";
-  EXPECT_LT(unless_copied(1000.0, 200, 0), of_rarity + 3.1) << "but some do, and then everywhere";
+  EXPECT_LT(unless_copied({30.0, 10, 0}, kFleetEvidence.copied), of_rarity + 1.5);
+  EXPECT_GT(unless_copied({30.0, 10, 0}, kFleetEvidence.copied), of_rarity)
+      << "copies seldom agree that well";
+  EXPECT_LT(unless_copied({1000.0, 200, 0}, kFleetEvidence.copied), of_rarity + 3.1)
+      << "but some do, and then everywhere";
 }
 
 TEST(MergeEvidence, ManyChangesTellACopyFromATunnelThatHasChanged) {
   // Decision 0079: robots 1 and 3 of metro-copies-2101, merged wrongly.
-  EXPECT_LT(unless_copied(28.9, 47, 16), std::log(1.0 / kFleetEvidence.copied) - 1.0);
+  EXPECT_LT(unless_copied({28.9, 47, 16}, kFleetEvidence.copied),
+            std::log(1.0 / kFleetEvidence.copied) - 1.0);
   for (std::size_t differed = 0; differed < 20; ++differed)
     EXPECT_GT(copied_to_true(30, differed + 1), copied_to_true(30, differed));
   EXPECT_LT(copied_to_true(31, 3), copied_to_true(30, 3));
+}
+
+TEST(MergeEvidence, WhereOneLookAlikeIsACopyThereAreMore) {
+  const CountedPlaces by_chance = {-12.0, 2, 6};
+  const CountedPlaces copy = {23.0, 15, 2};
+  EXPECT_EQ(share_of_copies({}), kFleetEvidence.copied);
+  EXPECT_LT(share_of_copies({by_chance, by_chance}), kFleetEvidence.copied);
+  EXPECT_GT(share_of_copies({by_chance, by_chance}), 0.5 * kFleetEvidence.copied) << "others may be copies";
+  const double one = share_of_copies({copy, by_chance});
+  EXPECT_NEAR(
+      one, (kFleetEvidence.copied * kFleetEvidence.copied_worth + 1.0) / (kFleetEvidence.copied_worth + 2.0),
+      1e-3);
+  EXPECT_GT(share_of_copies({copy, copy, by_chance}), one);
+  EXPECT_LT(share_of_copies({copy, by_chance, by_chance}), one);
+  // The own map knows such look-alikes: they need not be copies to agree that long.
+  EXPECT_LT(share_of_copies({{1.0, 15, 2}}), 2.0 * kFleetEvidence.copied);
+  EXPECT_NEAR(unless_copied(copy, kFleetEvidence.copied) - unless_copied(copy, one),
+              std::log(one / kFleetEvidence.copied), 0.01);
 }
 
 // It does not matter in which order places are counted.

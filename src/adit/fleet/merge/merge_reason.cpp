@@ -52,9 +52,10 @@ std::string MergeChecker::what_is_missing(const Hypothesis& h) const {
   constexpr double kRounding = 10.0;         // metres
   const double share = static_cast<double>(h.num_distinctive()) / static_cast<double>(h.compared.size());
   std::vector<TestedPlace> places = h.places(config_.distinctive_only);
-  const double wanted = evidence_of_places(places) + needed() - evidence(h);
+  const double copies = share_of_copies_if_true(h);
+  const double wanted = evidence_of_places(places, copies) + needed() - evidence(h);
   double drive_m = 0.0;
-  while (drive_m <= kFarthestDrive && !(evidence_of_places(places) >= wanted)) {
+  while (drive_m <= kFarthestDrive && !(evidence_of_places(places, copies) >= wanted)) {
     places.push_back({0, 0, PlaceOutcome::distinctive});
     drive_m += config_.spacing_m / share;
   }

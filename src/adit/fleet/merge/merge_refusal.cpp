@@ -111,8 +111,10 @@ std::optional<UndecidedStretch> MergeChecker::undecided() const {
   for (const PlannedComparison& place : best.plan) out.shared.push_back(place.own);
   out.places = best.places(config_.distinctive_only);
   out.chances = chances();
-  out.evidence = [this, &best, num = static_cast<double>(out.places.size())](const auto& places) {
-    return evidence_of_places(places) + evidence_of_walls(best, static_cast<double>(places.size()) / num);
+  out.evidence = [this, &best, num = static_cast<double>(out.places.size()),
+                  copies = share_of_copies_if_true(best)](const auto& places) {
+    return evidence_of_places(places, copies) +
+           evidence_of_walls(best, static_cast<double>(places.size()) / num);
   };
   out.loops = loops_of(best);
   out.missing = std::max(needed() - evidence(best), 0.0);

@@ -155,6 +155,39 @@ TEST(MergeRival, AHypothesisFarBehindTheBestIsNoRival) {
   EXPECT_EQ(check.hypotheses[1].outcome, HypothesisOutcome::behind);
 }
 
+// The second alignment is behind. Where it agrees at most places, too, there are tunnels here that agree
+// although they are two, if the first one is true.
+TEST(MergeRival, AnotherAlignmentThatAgreesAsCopiesDoLeavesPlacesLittleToSay) {
+  const OdometryChain own = along_x(kNum);
+  const OdometryChain theirs = own;
+  const LookAlikes look_alike = look_alikes(0.5);
+  LoopsBetween between{own, theirs, kTrueLoops, {3.0, 3.0, 3.0, 0.0, 0.0, 0.0}};
+  for (const std::size_t a : {120U, 130U, 140U}) between.loops.push_back(loop_at(a, 60.0));
+  const auto checked = [&](std::uint32_t one_in) {
+    MergeChecker checker(between, {50.0, measured(look_alike)}, {});
+    return run(checker, [&](const PlannedComparison& asked) {
+      const double off =
+          (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
+      ComparedPlace place = kAgrees;
+      if (off > 5.0 && asked.theirs / 10 % one_in == 0) {
+        place = kDiffers;
+        place.structures.emplace_back(asked.theirs, 0.0, 0.0);
+      }
+      return place;
+    });
+  };
+  const MergeCheck unlike = checked(2);
+  const MergeCheck copied = checked(6);
+  const auto share = [&](const MergeCheck& check) {
+    EXPECT_EQ(check.hypotheses.size(), 2U);
+    EXPECT_EQ(check.hypotheses.back().outcome, HypothesisOutcome::behind);
+    return share_of_copies({counted_places(check.hypotheses.back().places, look_alike.chances())});
+  };
+  EXPECT_TRUE(unlike.accepted) << unlike.reason;
+  EXPECT_NEAR(unlike.evidence - copied.evidence, std::log(share(copied) / share(unlike)), 1e-3);
+  EXPECT_GT(unlike.evidence - copied.evidence, 2.0);
+}
+
 TEST(MergeRival, ALeadThatCannotBeComputedIsNone) {
   const OdometryChain own = along_x(kNum);
   const OdometryChain theirs = own;
