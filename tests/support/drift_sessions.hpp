@@ -46,13 +46,23 @@ struct DriftRobot {
   std::vector<Pose> T_session_base;
 };
 
+/// Those of a cloud's points that are chosen, with their intensities where it has them.
+template <class IsChosen>
+PointCloud chosen(const PointCloud& cloud, const IsChosen& is_chosen) {
+  PointCloud out;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!is_chosen(i)) continue;
+    out.points.push_back(cloud.points[i]);
+    if (!cloud.intensities.empty()) out.intensities.push_back(cloud.intensities[i]);
+  }
+  return out;
+}
+
 /// Every n-th point of the shuffled map, starting with point `part`.
 inline PointCloud part_of(const PointCloud& map, int part, int num_parts, std::uint64_t seed) {
-  PointCloud out;
-  for (std::size_t i = 0; i < map.size(); ++i)
-    if (mix64(seed, i) % static_cast<std::uint64_t>(num_parts) == static_cast<std::uint64_t>(part))
-      out.points.push_back(map.points[i]);
-  return out;
+  return chosen(map, [&](std::size_t i) {
+    return mix64(seed, i) % static_cast<std::uint64_t>(num_parts) == static_cast<std::uint64_t>(part);
+  });
 }
 
 /// Points of a map that are seen from `eye`: those that no other point hides, each being as wide as the
@@ -164,10 +174,7 @@ inline PointCloud without_traces(const PointCloud& map, const DriftDrive& drive)
       return std::abs(q.x()) < 0.6 && std::abs(q.y()) < 1.8 && q.z() > 0.4 && q.z() < 2.3;
     });
   });
-  PointCloud out;
-  for (std::size_t i = 0; i < map.size(); ++i)
-    if (!is_trace[i]) out.points.push_back(map.points[i]);
-  return out;
+  return chosen(map, [&](std::size_t i) { return !is_trace[i]; });
 }
 
 /// The robot that drove so. Its odometry is the way itself with drift of the stated size.
@@ -180,11 +187,11 @@ inline DriftRobot drive_through(const PointCloud& whole, const DriftDrive& drive
   std::vector<std::shared_ptr<const PointCloud>> clouds(num);
   parallel_for_each(num, [&](std::size_t k) {
     const Pose& T = robot.T_session_base[k];
-    PointCloud cloud;
+    std::vector<char> is_seen(map.size(), 0);
     for (const std::size_t i : visible_from(map, T * Vector3(0.0, 0.0, drive.eye_m), drive.sight_m))
-      if (mix64(drive.seed, i) % static_cast<std::uint64_t>(drive.layers) ==
-          k % static_cast<std::size_t>(drive.layers))
-        cloud.points.push_back(map.points[i]);
+      is_seen[i] = mix64(drive.seed, i) % static_cast<std::uint64_t>(drive.layers) ==
+                   k % static_cast<std::size_t>(drive.layers);
+    PointCloud cloud = chosen(map, [&](std::size_t i) { return is_seen[i]; });
     clouds[k] = std::make_shared<const PointCloud>(
         voxel_downsample(transformed(T.inverse(), std::move(cloud)), config.cloud_voxel));
   });

@@ -203,7 +203,7 @@ void measure_light(const Sensor& sensor, const Sweep& sweep, const RayDraws& cha
   report.has_intensities = !sweep.surfaces.are_alike();
   if (!report.has_intensities) return;
   add_noise_by_signal(sensor.returns(), signals, rays.size, errors);
-  add_intensities(rays, signals, sensor.reach(), chance, report.intensities);
+  add_intensities(sensor.returns(), rays, signals, sensor.reach(), chance, report.intensities);
 }
 
 /// The rays of one column as they were cast, a block after the other, and in which directions they are

@@ -56,6 +56,9 @@ Fields fields_of(LidarErrorConfig& c) {
       {"jitter_s", &c.jitter_s, "s", 0, 0.02, "of the stamp of each scan"},
       {"false_returns", &c.false_returns, "", 0, 0.5,
        "share of rays that report a range between sensor and surface"},
+      {"response", &c.response, "", 0, 1, "intensities are reported to the power of 1 and this"},
+      {"fall_off", &c.fall_off, "", 0, 3,
+       "they change with the range to this power, left from its correction"},
       {"opposed", &c.opposed, "", 0, 0,
        "bias, walk and drift are one sigma instead of drawn, up on robots 0, 3, ..., down on 1, 2, ..."}};
 }
@@ -75,6 +78,8 @@ LidarErrorConfig field_lidar_errors() {
   c.clock_s = 0.01;
   c.jitter_s = 0.0005;
   c.false_returns = 1e-4;
+  c.response = 0.15;
+  c.fall_off = 0.5;
   return c;
 }
 
@@ -111,6 +116,8 @@ LidarUnit draw_lidar_unit(const LidarErrorConfig& c, std::size_t rings, std::siz
   unit.intensity_walk =
       one(c.intensity_walk);  // draws that are new come last and leave the others as they were
   unit.on_before_s = c.warm_up_s * rng.uniform();
+  unit.response = 1.0 + c.response * within_limits(rng);
+  unit.fall_off = c.fall_off * within_limits(rng);
   return unit;
 }
 

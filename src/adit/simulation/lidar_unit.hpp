@@ -38,6 +38,8 @@ struct LidarErrorConfig {
   double clock_s = 0.0;        ///< By which wheels and IMU are stamped late, each by its own.
   double jitter_s = 0.0;       ///< Of each scan's stamp.
   double false_returns = 0.0;  ///< Share of rays that report a range between the sensor and the surface.
+  double response = 0.0;       ///< Intensities are reported to the power of 1 and this.
+  double fall_off = 0.0;       ///< They change with the range to this power: raw, or corrected by too much.
   /// Range bias, walk and drift are one standard deviation instead of drawn, up on robots 0 and 3, down on 1
   /// and 2, and so on: the worst pairs of a fleet, for curves of the outcome over an amplitude.
   bool opposed = false;
@@ -66,6 +68,8 @@ struct LidarUnit {
   Duration imu_late{};                 ///< The same of the IMU.
   double jitter_s = 0.0;               ///< Standard deviation of the stamps of scans, seconds.
   double false_returns = 0.0;          ///< Share of rays that report too short a range.
+  double response = 1.0;               ///< Power to which intensities are reported.
+  double fall_off = 0.0;               ///< Power of the range with which they change beside.
 
   /// What is added to ranges at that time after the start of the drive whatever they meet, rings apart.
   [[nodiscard]] double bias_at(Duration since_start) const;

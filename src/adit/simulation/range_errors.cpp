@@ -62,6 +62,8 @@ ReturnModel::ReturnModel(const LidarConfig& c, const LidarUnit& unit, double dus
       dropout_width(static_cast<float>(c.dropout_end_deg * kDegree) - dropout_start),
       walk(static_cast<float>(unit.incidence_walk / std::pow(1.0 - std::cos(kWalkStatedAt), 2))),
       intensity_walk(static_cast<float>(unit.intensity_walk)),
+      response(static_cast<float>(unit.response)),
+      fall_off(static_cast<float>(unit.fall_off)),
       false_returns(static_cast<float>(unit.false_returns)),
       false_or_dust(static_cast<float>(unit.false_returns + dust)) {}
 
@@ -104,14 +106,23 @@ ADIT_WIDE_VECTORS void report_ranges(const ReturnModel& returns, const RayDraws&
   }
 }
 
-ADIT_WIDE_VECTORS void add_intensities(const RayBlock& rays, const RayBlock::Numbers& signals, float reach,
-                                       const RayDraws& chance, RayBlock::Numbers& intensities) {
-  constexpr float kSpread = 0.1F;  // of readings, evenly
+ADIT_WIDE_VECTORS void add_intensities(const ReturnModel& returns, const RayBlock& rays,
+                                       const RayBlock::Numbers& signals, float reach, const RayDraws& chance,
+                                       RayBlock::Numbers& intensities) {
+  constexpr float kSpread = 0.1F;       // of readings, evenly
+  constexpr float kBrightest = 255.0F;  // that is reported
   constexpr float kPercent = 100.0F * kNominalReflectivity;
   for (std::size_t i = 0; i < rays.size; ++i) {
     const float share = rays.distances[i] / reach;
     const float reading = kPercent * signals[i] * share * share;
-    intensities[i] = std::min(255.0F, reading * (1.0F + kSpread * (chance.share[i] - 0.5F)));
+    intensities[i] = std::min(kBrightest, reading * (1.0F + kSpread * (chance.share[i] - 0.5F)));
+  }
+  if (returns.response == 1.0F && returns.fall_off == 0.0F) return;
+  constexpr float kAsStated = 10.0F;  // metres at which an intensity is what it would be without fall-off
+  for (std::size_t i = 0; i < rays.size; ++i) {
+    const float raw = std::pow(intensities[i], returns.response) *
+                      std::pow(rays.distances[i] / kAsStated, returns.fall_off);
+    intensities[i] = std::clamp(std::round(raw), 1.0F, kBrightest);
   }
 }
 

@@ -35,6 +35,8 @@ struct ReturnModel {
   float dropout_width;      ///< Radians to where all are lost.
   float walk;               ///< Metres per squared (1 - cosine of the incidence).
   float intensity_walk;     ///< Metres, of the weakest return.
+  float response;           ///< Power to which intensities are reported,
+  float fall_off;           ///< and of the range with which they change.
   float false_returns;      ///< Share of rays that report too short a range.
   float false_or_dust;      ///< Share of these and of rays that end in dust.
 
@@ -57,9 +59,9 @@ void add_noise_by_signal(const ReturnModel& returns, const RayBlock::Numbers& si
 /// The ranges that are reported, or RayHit::kMiss.
 void report_ranges(const ReturnModel& returns, const RayDraws& chance, const RayBlock& rays,
                    const RangeErrors& errors, RayBlock::Numbers& ranges);
-/// Reflectivity times the cosine of the incidence, in percent, as far as the signal tells. `reach`:
-/// LidarConfig::reach.
-void add_intensities(const RayBlock& rays, const RayBlock::Numbers& signals, float reach,
-                     const RayDraws& chance, RayBlock::Numbers& intensities);
+/// Reflectivity times the cosine of the incidence, in percent, as far as the signal tells, up to 255; where
+/// the unit reports it in another way, as a whole number from 1 on. `reach`: LidarConfig::reach.
+void add_intensities(const ReturnModel& returns, const RayBlock& rays, const RayBlock::Numbers& signals,
+                     float reach, const RayDraws& chance, RayBlock::Numbers& intensities);
 
 }  // namespace adit

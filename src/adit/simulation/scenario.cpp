@@ -15,6 +15,8 @@
 namespace adit {
 namespace {
 
+constexpr std::uint64_t kDustStream = 0x64757374;
+
 // What drives and drifts around all robots.
 struct Surroundings {
   VisitConfig visits;
@@ -86,7 +88,7 @@ struct Robot {
       if (!caster) return fail(name, caster.error());
       there = *std::move(caster);
     }
-    sweep.surfaces = around->surfaces;
+    sweep.surfaces = around->surfaces.on_visit(mix64(seed, kDustStream));
     sweep.air =
         air_at(end, sweep.T_world_lidar_end.translation(), around->air, around->clouds[number], around->seed);
     Scan scan = cast_scan(raycaster, lidar, sweep, unit);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "adit/core/pose.hpp"
 #include "adit/core/rng.hpp"
@@ -13,8 +14,10 @@ namespace adit {
 namespace {
 
 constexpr float kWellBelowMiss = 1e4F;  ///< Metres: cells of rays without a hit are not used.
+constexpr std::uint64_t kEvennessStream = 0x6576656e;
 constexpr float kSignsPerMetre = 2.0F;
 constexpr float kSignReflectivity = 0.9F;
+constexpr float kBrightest = 0.9F;
 constexpr float kPuddlesPerMetre = 0.4F;
 constexpr float kMirrorCosine = 0.34202F;  ///< Of 70 degrees: more head-on, water returns next to nothing.
 constexpr float kLevel = 0.95F;            ///< Upward part of a floor's normal.
@@ -56,13 +59,19 @@ float fresnel(float cosine) {
 Fields fields_of(SurfaceConfig& c) {
   return {{"contrast", &c.contrast, "", 0, 2,
            "spread of reflectivities, 1: 5 to 60 %; noise, drop-out and intensity follow; 0: none of this"},
+          {"evenness", &c.evenness, "", 0, 1,
+           "worlds have from this share less contrast to none less, each its own, evenly"},
+          {"visit_change", &c.visit_change, "", 0, 2,
+           "sigma of the decimal logarithm by which dust and damp change a patch between two visits"},
           {"patch", &c.patch, "m", 0.1, 100, "size of patches of one reflectivity"},
           {"signs", &c.signs, "", 0, 1,
            "share of squares of half a metre that reflect 90 %; none where contrast is 0"},
           {"wet", &c.wet, "", 0, 1, "share of the floor under water, which mirrors grazing rays"}};
 }
 
-SurfaceConfig field_surfaces() { return {1.0, 3.0, 0.002, 0.03}; }
+SurfaceConfig field_surfaces() {
+  return {.contrast = 1.0, .evenness = 0.75, .visit_change = 0.23, .patch = 3.0, .signs = 0.002, .wet = 0.03};
+}
 
 Surfaces::Surfaces(const SurfaceConfig& config, std::uint64_t seed)
     : are_alike_(config.contrast == 0.0),
@@ -71,11 +80,22 @@ Surfaces::Surfaces(const SurfaceConfig& config, std::uint64_t seed)
       num_wet_(static_cast<std::uint64_t>(config.wet * 0x1p32)),
       seed_(seed) {
   constexpr auto kNominal = static_cast<double>(kNominalReflectivity);
+  constexpr double kLogisticSigma = std::numbers::pi / std::numbers::sqrt3;
+  const double contrast =
+      config.contrast * (1.0 - config.evenness * Rng(mix64(seed, kEvennessStream)).uniform());
   for (std::size_t i = 0; i < palette_.size(); ++i) {
     const double rank = (static_cast<double>(i) + 0.5) / static_cast<double>(palette_.size());
-    const double scaled = kNominal * std::pow(reflectivity_at(rank) / kNominal, config.contrast);
+    const double scaled = kNominal * std::pow(reflectivity_at(rank) / kNominal, contrast);
     palette_[i] = static_cast<float>(std::min(scaled, 1.0));
+    const double logistic = std::log(rank / (1.0 - rank)) / kLogisticSigma;  // as good as normal here
+    changes_[i] = static_cast<float>(std::pow(10.0, config.visit_change * logistic));
   }
+}
+
+Surfaces Surfaces::on_visit(std::uint64_t seed) const {
+  Surfaces out = *this;
+  out.visit_ = seed;
+  return out;
 }
 
 void Surfaces::reflectivities(const RayBlock& rays, RayBlock::Numbers& out) const {
@@ -89,6 +109,7 @@ void Surfaces::reflectivities(const RayBlock& rays, RayBlock::Numbers& out) cons
     const std::uint64_t bits = hash_of_cell(seed_, cell_of(p.x(), per_metre_), cell_of(p.y(), per_metre_),
                                             cell_of(p.z(), per_metre_));
     out[i] = palette_[bits >> 56U];
+    if (visit_ != 0) out[i] = std::min(out[i] * changes_[mix64(bits, visit_) >> 56U], kBrightest);
     if (num_signs_ == 0) continue;
     const std::uint64_t sign = hash_of_cell(~seed_, cell_of(p.x(), kSignsPerMetre),
                                             cell_of(p.y(), kSignsPerMetre), cell_of(p.z(), kSignsPerMetre));

@@ -77,6 +77,43 @@ TEST(Surfaces, HaveSignsAsOftenAsTold) {
   EXPECT_LT(num, 45);
 }
 
+TEST(Surfaces, ChangeBetweenVisits) {
+  SurfaceConfig config;
+  config.contrast = 1.0;
+  const auto logs = [&](const Surfaces& surfaces) {
+    std::vector<double> out;
+    for (const float r : reflectivities_at(surfaces, places(), {0, 0, 1}))
+      out.push_back(std::log10(static_cast<double>(r)));
+    return out;
+  };
+  const std::vector<double> before = logs({config, 3});
+  EXPECT_EQ(logs(Surfaces(config, 3).on_visit(1)), before) << "nothing changes";
+  config.visit_change = 0.2;
+  const std::vector<double> first = logs(Surfaces(config, 3).on_visit(1));
+  EXPECT_EQ(first, logs(Surfaces(config, 3).on_visit(1)));
+  EXPECT_NE(first, logs(Surfaces(config, 3).on_visit(2)));
+  double squares = 0.0;
+  for (std::size_t i = 0; i < first.size(); ++i) squares += std::pow(first[i] - before[i], 2);
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(first.size())), 0.2, 0.04);
+}
+
+TEST(Surfaces, OfSomeWorldsAreMoreEven) {
+  SurfaceConfig config;
+  config.contrast = 1.0;
+  config.evenness = 0.75;
+  double least = 1.0;
+  double most = 0.0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const auto found = reflectivities_at({config, seed}, places(), {0, 0, 1});
+    const double tenfold = std::log10(std::ranges::max(found) / std::ranges::min(found));
+    least = std::min(least, tenfold);
+    most = std::max(most, tenfold);
+  }
+  EXPECT_LT(least, 0.5);
+  EXPECT_GT(least, 0.2) << "a quarter of a factor of twelve";
+  EXPECT_GT(most, 0.9);
+}
+
 TEST(Signal, FallsAsTheLidarEquationSays) {
   RayBlock rays = ending_at({{50, 0, 0}, {100, 0, 0}, {50, 0, 0}}, {0, 0, 0});
   rays.cosines[2] = 0.5F;
@@ -200,6 +237,17 @@ TEST(Signal, BringsIntensityAndNoiseToAScan) {
   EXPECT_GT(*std::ranges::min_element(cloud.intensities), 2.0F);  // 5 % at 60 degrees at most
   EXPECT_GT(spread_of_walls(cloud_in_a_room(120.0, 1.0), 120.0), 1.2 * spread_of_walls(cloud, 20.0));
   EXPECT_LT(cloud_in_a_room(190.0, 1.0).size(), cloud.size());  // dark walls return too little there
+}
+
+TEST(Signal, IsReportedAsTheUnitDoes) {
+  LidarUnit unit;
+  unit.response = 0.5;
+  unit.fall_off = 1.0;
+  const PointCloud plain = cloud_in_a_room(20.0, 1.0);
+  const PointCloud raw = cloud_in_a_room(20.0, 1.0, unit);
+  ASSERT_EQ(raw.size(), plain.size());
+  for (std::size_t i = 0; i < raw.size(); ++i)
+    EXPECT_NEAR(raw.intensities[i], std::sqrt(plain.intensities[i]) * raw.points[i].norm() / 10.0F, 0.6F);
 }
 
 TEST(Signal, WalksWithIntensity) {

@@ -48,7 +48,19 @@ class LookAlikes {
 /// What a robot has measured on its own map, to judge what it shares with others.
 struct Measured {
   LookAlikes look_alikes;  ///< What became of places that only look alike, followed along the path.
-  EqualSignShares walls;   ///< Measured on its own walls seen twice, and on walls of places that look alike.
+  /// Both measured on its own walls seen twice, and on walls of places that look alike.
+  ///@{
+  EqualSignShares walls;
+  BrightnessMatches brightness = {};
+  ///@}
+  void set_same(const WallOffsets& own) {
+    walls.set_same(own.counted());
+    brightness.set_same(own.brightness());
+  }
+  void add_other(const WallOffsets& others) {
+    walls.add_other(others.counted());
+    brightness.add_other(others.brightness());
+  }
 };
 /// The same each time it is called; the first call measures, which takes seconds.
 using MeasuredWhenAsked = std::function<const Measured&()>;

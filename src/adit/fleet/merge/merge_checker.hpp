@@ -99,8 +99,14 @@ class MergeChecker {
   [[nodiscard]] double evidence_of_places(const CountedPlaces& places, double copies) const;
   /// Of the look-alikes between both maps, if this alignment is the true one: then all others are false.
   [[nodiscard]] double share_of_copies_if_true(const Hypothesis& hypothesis) const;
-  /// As if so many times the walls had been seen.
+  /// Of their relief and brightness, as if so many times the walls had been seen.
+  ///@{
   [[nodiscard]] double evidence_of_walls(const Hypothesis& hypothesis, double times = 1.0) const;
+  [[nodiscard]] double evidence_of_brightness(const Hypothesis& hypothesis, double times = 1.0) const;
+  ///@}
+  [[nodiscard]] double most_evidence_of_walls() const;
+  /// Than relief does.
+  [[nodiscard]] bool brightness_speaks_more_against(const Hypothesis& hypothesis) const;
   /// Poisson's log likelihood ratio of what may come and go; never positive.
   [[nodiscard]] double evidence_of_things(const Hypothesis& hypothesis) const;
   /// What a hypothesis can reach when all that is left to compare speaks for it.
