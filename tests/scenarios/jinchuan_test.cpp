@@ -177,7 +177,7 @@ TEST(Jinchuan, WallsAreAsDarkAndBrightAfterTwentyTwoDaysAndOtherWallsAreNot) {
               same.correlation, same.sigma, same.num_patches);
   EXPECT_GT(same.num_patches, 500U);
   EXPECT_GT(same.correlation, 0.4);
-  EXPECT_GT(matches.evidence(same), 0.4);
+  EXPECT_GT(matches.evidence(same), 0.1);
   for (const double ahead_m : {5.0, 8.0, 12.0, 16.0, 20.0}) {
     const BrightnessMatch other = match_along_drift(april_in_may, may, ahead_m);
     std::printf("  moved by %.0f m: %.2f +- %.2f on %zu patches, evidence %.1f\n", ahead_m, other.correlation,

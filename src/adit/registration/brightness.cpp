@@ -115,6 +115,7 @@ double BrightnessMatches::evidence(const BrightnessMatch& found, double times) c
     num += 1.0;
   }
   mean /= num;
+  if (same_.correlation <= mean) return 0.0;
   double variance = std::pow(model_.other_sigma, 2) * model_.prior_others;
   for (const BrightnessMatch& other : others_)
     variance += std::max(0.0, std::pow(other.correlation - mean, 2) - std::pow(other.sigma, 2));
@@ -124,9 +125,7 @@ double BrightnessMatches::evidence(const BrightnessMatch& found, double times) c
   constexpr int kParts = 20;
   double of_same = 0.0;
   for (int i = 0; i < kParts; ++i)
-    of_same +=
-        normal_density(found.correlation - std::max(same_.correlation, 0.0) * (i + 0.5) / kParts, sigma) /
-        kParts;
+    of_same += normal_density(found.correlation - same_.correlation * (i + 0.5) / kParts, sigma) / kParts;
   return std::log(((1.0 - model_.changed) * of_same + model_.changed * of_other) /
                   ((1.0 - model_.copied) * of_other + model_.copied * of_same));
 }

@@ -110,7 +110,7 @@ TEST(Brightness, SpeaksForOneTunnelTheMoreTheBetterItMatches) {
     before = evidence;
   }
   EXPECT_LE(before, known().most_evidence());
-  EXPECT_GT(before, 0.9 * known().most_evidence());
+  EXPECT_GT(before, 0.8 * known().most_evidence());
   EXPECT_LT(known().evidence({500, 0.05, 0.05}), -0.3);
   EXPECT_GE(known().evidence({500, -0.5, 0.02}), std::log(model.changed)) << "dust may have covered all";
 }
@@ -121,7 +121,7 @@ TEST(Brightness, SaysNothingWhereItWasHardlySeenOrTellsNothing) {
       << "own walls were not measured";
   BrightnessMatches blind{BrightnessModel()};
   blind.set_same({1000, 0.05, 0.05});  // what the sensor reports is noise
-  EXPECT_LT(std::abs(blind.evidence({500, 0.05, 0.1})), 0.5);
+  EXPECT_EQ(blind.evidence({500, 0.05, 0.1}), 0.0);
   EXPECT_GT(known().evidence({500, 0.5, 0.3}, 4.0), known().evidence({500, 0.5, 0.3})) << "four times as far";
 }
 
