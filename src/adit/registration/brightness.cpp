@@ -23,8 +23,10 @@ Eigen::Matrix<double, 1, kTerms> terms_of(const ReturnsOfPatch& patch, std::size
   return terms;
 }
 
+/// Never 0, so that its logarithm is finite.
 double normal_density(double off, double sigma) {
-  return std::exp(-0.5 * off * off / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
+  constexpr double kLeast = 1e-300;
+  return std::exp(-0.5 * off * off / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi)) + kLeast;
 }
 
 /// What these leave of one sensor's logarithms. Nothing counts for more than two standard

@@ -115,6 +115,12 @@ TEST(Brightness, SpeaksForOneTunnelTheMoreTheBetterItMatches) {
   EXPECT_GE(known().evidence({500, -0.5, 0.02}), std::log(model.changed)) << "dust may have covered all";
 }
 
+TEST(Brightness, SaysSomethingFiniteOfWhatNobodyExpects) {
+  const double least = known().evidence({500, -1.0, 1e-4});
+  EXPECT_GE(least, std::log(BrightnessModel().changed));
+  EXPECT_LE(least, 0.0);
+}
+
 TEST(Brightness, SaysNothingWhereItWasHardlySeenOrTellsNothing) {
   EXPECT_EQ(known().evidence({static_cast<std::size_t>(BrightnessModel().few_patches) - 1, 0.9, 0.1}), 0.0);
   EXPECT_EQ(BrightnessMatches(BrightnessModel()).evidence({500, 0.9, 0.1}), 0.0)

@@ -16,7 +16,7 @@ struct OnPatch {
   SensorTerms by_sensors = SensorTerms::Zero();
   Vector6 by_fit = Vector6::Zero();
   Eigen::Vector2d by_known = Eigen::Vector2d::Zero();
-  std::array<WallReturn, 2> returns;  // intensities, ranges and cosines themselves
+  std::array<Vector3, 2> returns = {Vector3::Zero(), Vector3::Zero()};  // see return_of
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
   Eigen::Vector3f from_sensor = Eigen::Vector3f::Zero();
   int num_points = 0;
@@ -71,10 +71,9 @@ double sensors_in(const OffsetParts& found) {
   return whole > 0.0 ? std::clamp(1.0 - found.left.squaredNorm() / whole, 0.0, 1.0) : 0.0;
 }
 
-void add(WallReturn& sum, float intensity, const Eigen::Vector3f& ray, const Eigen::Vector3f& normal) {
-  sum.log_intensity += intensity;
-  sum.log_range += ray.norm();
-  sum.log_cosine += std::abs(ray.dot(normal)) / ray.norm();
+/// Intensity, range and cosine of the incidence.
+Vector3 return_of(float intensity, const Eigen::Vector3f& ray, const Eigen::Vector3f& normal) {
+  return {intensity, ray.norm(), std::abs(ray.dot(normal)) / ray.norm()};
 }
 
 std::optional<ReturnsOfPatch> returns_of(const OnPatch& sum, int min_points) {
@@ -86,9 +85,9 @@ std::optional<ReturnsOfPatch> returns_of(const OnPatch& sum, int min_points) {
   out.left_m = mean(sum.from_sensor.y());
   out.above_m = mean(sum.from_sensor.z());
   for (std::size_t i = 0; i < out.by_sensor.size(); ++i) {
-    const WallReturn& all = sum.returns[i];
-    out.by_sensor[i] = {std::log10(mean(all.log_intensity)), std::log10(mean(all.log_range)),
-                        std::log10(std::max(mean(all.log_cosine), kGrazing))};
+    const Vector3& all = sum.returns[i];
+    out.by_sensor[i] = {std::log10(mean(all[0])), std::log10(mean(all[1])),
+                        std::log10(std::max(mean(all[2]), kGrazing))};
   }
   return out;
 }
@@ -143,8 +142,8 @@ std::vector<PatchOffset> patch_offsets(const SearchableSurface& a, const Searcha
     terms_of.add(pair, 1.0, sum.by_sensors, sum.by_known);
     ++sum.num_points;
     if (!(pair.intensity_a > 0.0F && pair.intensity_b > 0.0F)) continue;
-    add(sum.returns[0], pair.intensity_a, pair.seen_by_a - a.viewpoint(), pair.normal);
-    add(sum.returns[1], pair.intensity_b, p - viewpoint_b, pair.normal);
+    sum.returns[0] += return_of(pair.intensity_a, pair.seen_by_a - a.viewpoint(), pair.normal);
+    sum.returns[1] += return_of(pair.intensity_b, p - viewpoint_b, pair.normal);
     sum.normal += pair.normal;
     sum.from_sensor += p - a.viewpoint();
     ++sum.num_intensities;

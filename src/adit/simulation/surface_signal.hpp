@@ -23,9 +23,9 @@ struct SurfaceConfig {
   double evenness = 0.0;  ///< Worlds have from this much less contrast to none less, each its own, evenly.
   double visit_change = 0.0;  ///< Sigma of the decimal logarithm by which dust and damp change a patch
                               ///< between two visits.
-  double patch = 3.0;  ///< Metres: size of patches of one reflectivity.
-  double signs = 0.0;  ///< Share of squares of half a metre that are painted or reflecting (90 %).
-  double wet = 0.0;    ///< Share of the floor under water, which mirrors at grazing angles.
+  double patch = 3.0;         ///< Metres: size of patches of one reflectivity.
+  double signs = 0.0;         ///< Share of squares of half a metre that are painted or reflecting (90 %).
+  double wet = 0.0;           ///< Share of the floor under water, which mirrors at grazing angles.
 };
 /// The keys are the names of the members; in the configuration of a run they begin with
 /// "simulation.surfaces.".

@@ -10,11 +10,10 @@
 ///
 /// The decision is Wald's sequential probability ratio test ("Sequential tests of statistical hypotheses",
 /// 1945): log likelihood ratios add up over the distinctive places and have to reach log(1 / error_rate),
-/// together with those of the relief of walls (WallOffsets) and the prior, the share of all loops that
-/// speak for this alignment. It is one-sided against copies: scans that differ may not be more than true
-/// places would leave. And every other
-/// hypothesis has to stay behind by log(1 / rival_rate). `MergeChecker::decide` reads in that order;
-/// docs/decisions/0010 tells why.
+/// together with those of the relief and the brightness of walls (WallOffsets) and the prior, the share of
+/// all loops that speak for this alignment. It is one-sided against copies: scans that differ may not be more
+/// than true places would leave. And every other hypothesis has to stay behind by log(1 / rival_rate).
+/// `MergeChecker::decide` reads in that order; docs/decisions/0010 tells why.
 #pragma once
 
 #include <cstdint>
@@ -42,7 +41,7 @@ enum class MergeDecision : std::uint8_t {
   no_loops,             ///< No loop aligns the maps.
   scans_differ,         ///< At more places than a true alignment leaves.
   nothing_distinctive,  ///< All places that agree would agree if displaced along the tunnel, too.
-  other_walls,          ///< The evidence would do if the relief of the walls did not speak against it.
+  other_walls,          ///< The evidence would do if the walls did not speak against it.
   too_little_evidence,  ///< Less than needed, although some places are distinctive.
   too_few_loops,        ///< Evidence enough, by fewer loops than MergeCheckConfig::min_loops.
   rival,                ///< Another hypothesis has nearly as much evidence.
