@@ -8,6 +8,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 [ $# -gt 0 ] || { sed -n '4,7s/^# //p' "$0" >&2; exit 2; }
 seconds=$1
+[[ $seconds =~ ^[1-9][0-9]*$ ]] || { echo "fuzz: SECONDS is a whole number from 1 on, not '$seconds'" >&2; exit 2; }
 shift
 kinds=("$@")
 [ ${#kinds[@]} -gt 0 ] || kinds=(mcap bag db3 pcd ply bin tum csv g2o jrl cbor yaml adit loops control config session)
@@ -35,8 +36,9 @@ for kind in "${kinds[@]}"; do
       echo "fuzz: $kind: failed after $inputs inputs; see $log" >&2
       continue 2
     fi
-    used=$((used + $(awk '{ printf "%d", $1 + $2 + 1 }' <<<"$slice")))
-    inputs=$((inputs + $(sed -n 's/^stat::number_of_executed_units: *//p' "$log")))
+    used=$((used + $(awk '{ ran = $1 + $2; printf "%.0f", ran < 1 ? 1 : ran }' <<<"$slice")))
+    ran=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
+    inputs=$((inputs + ${ran:-0}))
   done
   echo "fuzz: $kind: $inputs inputs in $used s of processor time," \
     "$(sed -n 's/.*DONE *cov: \([0-9]*\) .*/\1/p' "$log") edges reached; none failed"

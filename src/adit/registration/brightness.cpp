@@ -30,10 +30,11 @@ double normal_density(double off, double sigma) {
 }
 
 /// What these leave of one sensor's logarithms. Nothing counts for more than two standard
-/// deviations: a sign is one bright patch, not all that is seen.
+/// deviations: a sign is one bright patch, not all that is seen. None where the sensor tells nothing apart.
 Eigen::VectorXd residuals_of(const std::vector<ReturnsOfPatch>& returns, std::size_t sensor) {
   constexpr double kMostSigmas = 2.0;
-  constexpr double kRidge = 1e-6;  // where all patches are equally far, say
+  constexpr double kRidge = 1e-6;      // where all patches are equally far, say
+  constexpr double kToldApart = 1e-3;  // decades
   const Eigen::Index num = std::ssize(returns);
   Eigen::Matrix<double, Eigen::Dynamic, kTerms> terms(num, kTerms);
   Eigen::VectorXd logs(num);
@@ -42,11 +43,13 @@ Eigen::VectorXd residuals_of(const std::vector<ReturnsOfPatch>& returns, std::si
     logs[i] = patch.by_sensor[sensor].log_intensity;
     terms.row(i) = terms_of(patch, sensor);
   }
+  logs.array() -= logs.mean();  // else the ridge would leave a part of a constant, which is alike for both
   const Eigen::Matrix<double, kTerms, kTerms> normal =
       terms.transpose() * terms + kRidge * Eigen::Matrix<double, kTerms, kTerms>::Identity();
   const Eigen::VectorXd left = logs - terms * normal.ldlt().solve(terms.transpose() * logs);
-  const double most = kMostSigmas * std::sqrt(left.squaredNorm() / static_cast<double>(num));
-  return left.cwiseMax(-most).cwiseMin(most);
+  const double sigma = std::sqrt(left.squaredNorm() / static_cast<double>(num));
+  if (!(sigma > kToldApart)) return Eigen::VectorXd::Zero(num);
+  return left.cwiseMax(-kMostSigmas * sigma).cwiseMin(kMostSigmas * sigma);
 }
 
 /// Sums of the products of two sensors' residuals.
@@ -64,7 +67,7 @@ struct Products {
 }  // namespace
 
 BrightnessMatch brightness_match(const std::vector<ReturnsOfPatch>& returns) {
-  if (std::ssize(returns) < 2 * kTerms) return {};
+  if (returns.empty()) return {};
   const Eigen::VectorXd left_a = residuals_of(returns, 0);
   const Eigen::VectorXd left_b = residuals_of(returns, 1);
   // A patch is one piece of wall, however often it is seen.
@@ -82,6 +85,7 @@ BrightnessMatch brightness_match(const std::vector<ReturnsOfPatch>& returns) {
     patch.num += 1.0;
     patch.stretch = returns[i].stretch;
   }
+  if (std::ssize(patches) < 2 * kTerms) return {};
   Products all;
   std::map<std::size_t, Products> stretches;
   for (const auto& [number, patch] : patches) {
@@ -121,17 +125,19 @@ double BrightnessMatches::evidence(const BrightnessMatch& found, double times) c
   double variance = std::pow(model_.other_sigma, 2) * model_.prior_others;
   for (const BrightnessMatch& other : others_)
     variance += std::max(0.0, std::pow(other.correlation - mean, 2) - std::pow(other.sigma, 2));
-  const double of_other =
-      normal_density(found.correlation - mean, std::hypot(sigma, std::sqrt(variance / num)));
+  // Less than other tunnels have on average tells no more than that, and never for one tunnel.
+  const double correlation = std::max(found.correlation, mean);
+  const double of_other = normal_density(correlation - mean, std::hypot(sigma, std::sqrt(variance / num)));
 
   constexpr int kParts = 20;
   double of_same = 0.0;
   for (int i = 0; i < kParts; ++i)
-    of_same += normal_density(found.correlation - same_.correlation * (i + 0.5) / kParts, sigma) / kParts;
+    of_same += normal_density(correlation - same_.correlation * (i + 0.5) / kParts, sigma) / kParts;
+  if (found.correlation <= mean) of_same = std::min(of_same, of_other);
   return std::log(((1.0 - model_.changed) * of_same + model_.changed * of_other) /
                   ((1.0 - model_.copied) * of_other + model_.copied * of_same));
 }
 
-double BrightnessMatches::most_evidence() const { return -std::log(model_.copied); }
+double BrightnessMatches::most_evidence() const { return std::log((1.0 - model_.changed) / model_.copied); }
 
 }  // namespace adit

@@ -65,8 +65,9 @@ class BrightnessMatches {
   /// `few_patches` patches were seen, here or on the own walls, or where those match no better than others.
   /// Of one tunnel any correlation may be found from none up to that of the own walls, as the visits are
   /// apart and the sensors two; at the rate `changed` it is that of other tunnels. Those may be as bright as
-  /// the first by their plan, at the rate `copied`. So it lies between log(changed) and log(1 / copied).
-  /// `times`: as if there were so many times as many stretches, with the same correlation.
+  /// the first by their plan, at the rate `copied`. So it lies between log(changed / (1 - copied)) and log((1
+  /// - changed) / copied). `times`: as if there were so many times as many stretches, with the same
+  /// correlation.
   [[nodiscard]] double evidence(const BrightnessMatch& found, double times = 1.0) const;
   /// The most that `evidence` can be.
   [[nodiscard]] double most_evidence() const;

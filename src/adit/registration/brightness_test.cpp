@@ -90,9 +90,13 @@ TEST(Brightness, APatchThatIsSeenOftenIsOne) {
 TEST(Brightness, NothingIsFoundWhereNothingIsSeen) {
   EXPECT_EQ(brightness_match({}), BrightnessMatch());
   EXPECT_EQ(brightness_match(wall(1.0, {}, {}, 19)), BrightnessMatch());
-  std::vector<ReturnsOfPatch> even(100);
-  for (std::size_t i = 0; i < even.size(); ++i) even[i].patch = even[i].stretch = i;
-  EXPECT_EQ(brightness_match(even), BrightnessMatch());
+  std::vector<ReturnsOfPatch> twice = wall(1.0, {}, {}, 10, 2);
+  EXPECT_EQ(brightness_match(twice), BrightnessMatch()) << "20 returns of ten patches";
+  std::vector<ReturnsOfPatch> even = wall(1.0);
+  for (ReturnsOfPatch& patch : even) patch.by_sensor[0].log_intensity = 2.0;
+  EXPECT_EQ(brightness_match(even).num_patches, 0U) << "one sensor reports the same of all";
+  for (ReturnsOfPatch& patch : even) patch.by_sensor[1].log_intensity = 2.4;
+  EXPECT_EQ(brightness_match(even).num_patches, 0U);
 }
 
 BrightnessMatches known() {
@@ -110,14 +114,15 @@ TEST(Brightness, SpeaksForOneTunnelTheMoreTheBetterItMatches) {
     before = evidence;
   }
   EXPECT_LE(before, known().most_evidence());
-  EXPECT_GT(before, 0.8 * known().most_evidence());
+  EXPECT_GT(before, 0.9 * known().most_evidence());
   EXPECT_LT(known().evidence({500, 0.05, 0.05}), -0.3);
-  EXPECT_GE(known().evidence({500, -0.5, 0.02}), std::log(model.changed)) << "dust may have covered all";
+  EXPECT_GE(known().evidence({500, -0.5, 0.02}), std::log(model.changed / (1.0 - model.copied)))
+      << "dust may have covered all";
 }
 
 TEST(Brightness, SaysSomethingFiniteOfWhatNobodyExpects) {
   const double least = known().evidence({500, -1.0, 1e-4});
-  EXPECT_GE(least, std::log(BrightnessModel().changed));
+  EXPECT_GE(least, std::log(BrightnessModel().changed / (1.0 - BrightnessModel().copied)));
   EXPECT_LE(least, 0.0);
 }
 
@@ -135,6 +140,12 @@ TEST(Brightness, WhereOwnLookAlikesMatchItSaysLess) {
   BrightnessMatches regular = known();
   for (int i = 0; i < 8; ++i) regular.add_other({500, 0.6, 0.1});
   EXPECT_LT(regular.evidence({500, 0.6, 0.1}), 0.3);
+  double before = -100.0;
+  for (const double correlation : {-0.2, 0.0, 0.1, 0.3, 0.46}) {
+    EXPECT_LE(regular.evidence({500, correlation, 0.1}), 0.0) << correlation;
+    EXPECT_GE(regular.evidence({500, correlation, 0.1}), before) << correlation;
+    before = regular.evidence({500, correlation, 0.1});
+  }
   EXPECT_GT(known().evidence({500, 0.6, 0.1}), 1.0);
   BrightnessMatches hardly = known();
   hardly.add_other({static_cast<std::size_t>(BrightnessModel().few_patches) - 1, 0.9, 0.3});

@@ -56,9 +56,9 @@ Fields fields_of(LidarErrorConfig& c) {
       {"jitter_s", &c.jitter_s, "s", 0, 0.02, "of the stamp of each scan"},
       {"false_returns", &c.false_returns, "", 0, 0.5,
        "share of rays that report a range between sensor and surface"},
-      {"response", &c.response, "", 0, 1, "intensities are reported to the power of 1 and this"},
+      {"response", &c.response, "", 0, 0.45, "intensities are reported to the power of 1 and this"},
       {"fall_off", &c.fall_off, "", 0, 3,
-       "they change with the range to this power, left from its correction"},
+       "intensities change with the range, in tens of metres, to this power"},
       {"opposed", &c.opposed, "", 0, 0,
        "bias, walk and drift are one sigma instead of drawn, up on robots 0, 3, ..., down on 1, 2, ..."}};
 }

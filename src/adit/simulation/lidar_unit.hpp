@@ -39,7 +39,7 @@ struct LidarErrorConfig {
   double jitter_s = 0.0;       ///< Of each scan's stamp.
   double false_returns = 0.0;  ///< Share of rays that report a range between the sensor and the surface.
   double response = 0.0;       ///< Intensities are reported to the power of 1 and this.
-  double fall_off = 0.0;       ///< They change with the range to this power: raw, or corrected by too much.
+  double fall_off = 0.0;       ///< They change with range / 10 m to this power: raw, or overcorrected.
   /// Range bias, walk and drift are one standard deviation instead of drawn, up on robots 0 and 3, down on 1
   /// and 2, and so on: the worst pairs of a fleet, for curves of the outcome over an amplitude.
   bool opposed = false;
@@ -69,7 +69,7 @@ struct LidarUnit {
   double jitter_s = 0.0;               ///< Standard deviation of the stamps of scans, seconds.
   double false_returns = 0.0;          ///< Share of rays that report too short a range.
   double response = 1.0;               ///< Power to which intensities are reported.
-  double fall_off = 0.0;               ///< Power of the range with which they change beside.
+  double fall_off = 0.0;               ///< Power of range / 10 m with which they change beside.
 
   /// What is added to ranges at that time after the start of the drive whatever they meet, rings apart.
   [[nodiscard]] double bias_at(Duration since_start) const;

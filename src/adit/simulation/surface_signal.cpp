@@ -109,7 +109,8 @@ void Surfaces::reflectivities(const RayBlock& rays, RayBlock::Numbers& out) cons
     const std::uint64_t bits = hash_of_cell(seed_, cell_of(p.x(), per_metre_), cell_of(p.y(), per_metre_),
                                             cell_of(p.z(), per_metre_));
     out[i] = palette_[bits >> 56U];
-    if (visit_ != 0) out[i] = std::min(out[i] * changes_[mix64(bits, visit_) >> 56U], kBrightest);
+    if (visit_ != 0 && changes_.front() != 1.0F)
+      out[i] = std::min(out[i] * changes_[mix64(bits, visit_) >> 56U], kBrightest);
     if (num_signs_ == 0) continue;
     const std::uint64_t sign = hash_of_cell(~seed_, cell_of(p.x(), kSignsPerMetre),
                                             cell_of(p.y(), kSignsPerMetre), cell_of(p.z(), kSignsPerMetre));

@@ -35,8 +35,8 @@ struct SurfaceConfig {
 /// smooth concrete 24, dry sand 57: A. Wehr and U. Lohr, "Airborne laser scanning: an introduction and
 /// overview", 1999, table 2), one square in 500 a sign; one floor patch in 30 wet, which is chosen. A lining
 /// is more even than that: a world's contrast is a quarter of it at least. Two visits to one drift, 22 days
-/// apart, have intensities with a correlation of 0.5 (decision 0082), and these have 0.6 where the contrast is
-/// whole: a patch changes by a factor of 1.7.
+/// apart, have intensities with a correlation of 0.5 (decision 0082), and these have 0.6 where the contrast
+/// is whole: a patch changes by a factor of 1.7.
 [[nodiscard]] SurfaceConfig field_surfaces();
 
 /// The reflectivity for which data sheets state a sensor's reach.

@@ -160,7 +160,7 @@ double MergeChecker::evidence_of_walls(const Hypothesis& h, double times) const 
 }
 
 double MergeChecker::evidence_of_brightness(const Hypothesis& h, double times) const {
-  if (!config_.brightness) return 0.0;
+  if (!config_.relief || !config_.brightness) return 0.0;
   return own_.measured().brightness.evidence(h.offsets.brightness(), times);
 }
 
