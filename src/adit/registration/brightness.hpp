@@ -28,9 +28,9 @@ struct WallReturn {
 
 /// A patch that two sensors saw from one place.
 struct ReturnsOfPatch {
-  std::size_t patch = 0;    ///< Counted from 0; may be seen again from another place.
-  std::size_t stretch = 0;  ///< One side of 10 m of tunnel, counted from 0.
-  std::array<WallReturn, 2> by_sensor = {};
+  std::size_t patch = 0;                     ///< Counted from 0; may be seen again from another place.
+  std::size_t stretch = 0;                   ///< One side of 10 m of tunnel, counted from 0.
+  std::array<WallReturn, 2> by_sensor = {};  ///< Of the first robot, then of the other.
   /// Where in the cross section, in the frame of the first robot: x ahead, y to the left, z up.
   ///@{
   Vector3 normal = Vector3::Zero();  ///< Of the wall, towards free space; unit length.
@@ -41,9 +41,9 @@ struct ReturnsOfPatch {
 
 /// How alike two sensors find the brightness of walls.
 struct BrightnessMatch {
-  std::size_t num_patches = 0;
-  double correlation = 0.0;  ///< Over patches, of what is left, -1 to 1.
-  double sigma = 1.0;        ///< Standard deviation of that, by how stretches differ and how many they are.
+  std::size_t num_patches = 0;  ///< Seen by both.
+  double correlation = 0.0;     ///< Over patches, of what is left, -1 to 1.
+  double sigma = 1.0;  ///< Standard deviation of that, by how stretches differ and how many they are.
   bool operator==(const BrightnessMatch&) const = default;
 };
 
@@ -54,6 +54,7 @@ struct BrightnessMatch {
 class BrightnessMatches {
  public:
   BrightnessMatches() = default;
+  /// As long as nothing is measured, what `model` states counts.
   explicit BrightnessMatches(const BrightnessModel& model) : model_(model) {}
 
   /// That of the robot's own walls, seen twice: between two visits it is no better.

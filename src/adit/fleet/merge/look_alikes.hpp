@@ -53,10 +53,12 @@ struct Measured {
   EqualSignShares walls;
   BrightnessMatches brightness = {};
   ///@}
+  /// Of the own walls, seen twice.
   void set_same(const WallOffsets& own) {
     walls.set_same(own.counted());
     brightness.set_same(own.brightness());
   }
+  /// Of a place that looks like another one.
   void add_other(const WallOffsets& others) {
     walls.add_other(others.counted());
     brightness.add_other(others.brightness());

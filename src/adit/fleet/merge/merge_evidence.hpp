@@ -40,6 +40,7 @@ struct CountedPlaces {
   std::size_t num_agreed = 0;    ///< Distinctive ones.
   std::size_t num_differed = 0;  ///< Not counted with the agreed ones.
 };
+/// In the order driven.
 [[nodiscard]] CountedPlaces counted_places(const std::vector<TestedPlace>& places,
                                            const ChancesToGoOn& chances);
 
