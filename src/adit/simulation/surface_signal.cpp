@@ -60,7 +60,7 @@ Fields fields_of(SurfaceConfig& c) {
   return {{"contrast", &c.contrast, "", 0, 2,
            "spread of reflectivities, 1: 5 to 60 %; noise, drop-out and intensity follow; 0: none of this"},
           {"evenness", &c.evenness, "", 0, 1,
-           "worlds have from this share less contrast to none less, each its own, evenly"},
+           "each world draws its contrast evenly, from this share less than what is stated to all of it"},
           {"visit_change", &c.visit_change, "", 0, 2,
            "sigma of the decimal logarithm by which dust and damp change a patch between two visits"},
           {"patch", &c.patch, "m", 0.1, 100, "size of patches of one reflectivity"},
@@ -109,7 +109,7 @@ void Surfaces::reflectivities(const RayBlock& rays, RayBlock::Numbers& out) cons
     const std::uint64_t bits = hash_of_cell(seed_, cell_of(p.x(), per_metre_), cell_of(p.y(), per_metre_),
                                             cell_of(p.z(), per_metre_));
     out[i] = palette_[bits >> 56U];
-    if (visit_ != 0 && changes_.front() != 1.0F)
+    if (visit_ != 0 && changes_.front() != 1.0F)  // else nothing changes between visits
       out[i] = std::min(out[i] * changes_[mix64(bits, visit_) >> 56U], kBrightest);
     if (num_signs_ == 0) continue;
     const std::uint64_t sign = hash_of_cell(~seed_, cell_of(p.x(), kSignsPerMetre),

@@ -19,8 +19,8 @@ namespace adit {
 
 /// Surfaces as the laser sees them. All alike and dry by default.
 struct SurfaceConfig {
-  double contrast = 0.0;  ///< 0: noise depends on range alone and there is no intensity. 1: as in a mine.
-  double evenness = 0.0;  ///< Worlds have from this much less contrast to none less, each its own, evenly.
+  double contrast = 0.0;      ///< 0: noise depends on range alone and there is no intensity. 1: as in a mine.
+  double evenness = 0.0;      ///< Each world draws its contrast: this share less than stated, to all of it.
   double visit_change = 0.0;  ///< Sigma of the decimal logarithm by which dust and damp change a patch
                               ///< between two visits.
   double patch = 3.0;         ///< Metres: size of patches of one reflectivity.

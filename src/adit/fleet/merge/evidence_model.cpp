@@ -26,7 +26,8 @@ constexpr std::string_view kTrueOfEleven = "38 true pairs of eleven field worlds
 constexpr std::string_view kWalksOfFifteen =
     "106 first steps of look-alikes on 15 maps of five tuning worlds (decision 0043)";
 constexpr std::string_view kJudgement = "judgement: no site was counted (decision 0043)";
-constexpr std::string_view kSitesDiffer = "judgement: 5 to 20 decide the same (decision 0081)";
+constexpr std::string_view kSitesDiffer =
+    "judgement: 5 and 20 decide all but three of 57 pairs alike (decision 0081)";
 constexpr std::string_view kOfCopies =
     "chosen between 27 pairs of six worlds of copies and judgement (decision 0079)";
 constexpr std::string_view kLining = "half of 20 m of fresh lining (decision 0041)";
