@@ -53,10 +53,9 @@ Table hypotheses_of(const SavedMerge& merge) {
                         "most {}), the best first. A merge needs an evidence of {:.1f}, and every "
                         "other alignment has to stay well behind. Evidence is the logarithm of "
                         "a likelihood ratio: of loops and places, where only distinctive places that "
-                        "agree speak for it and changes against it, and of walls: how dark and "
-                        "bright they are, and their relief (equal signs: the share of patches on which "
-                        "two pairs of scans find the wall displaced to the same side; half for one wall). "
-                        "Movable objects (vehicles, pallets) "
+                        "agree speak for it and changes against it, and of the relief of walls "
+                        "(equal signs: the share of patches on which two pairs of scans find the wall "
+                        "displaced to the same side; half for one wall). Movable objects (vehicles, pallets) "
                         "speak little against it. Few loops speak against an alignment, unless registration "
                         "without a guess finds "
                         "more of its places again than it misses.",

@@ -8,10 +8,8 @@
 #include <fstream>
 #include <string>
 
-#include "adit/fleet/merge/keyframe_store.hpp"
 #include "adit/io/cloud_files.hpp"
 #include "adit/registration/registration.hpp"
-#include "adit/registration/relief.hpp"
 #include "adit/slam/meeting.hpp"
 #include "support/data.hpp"
 #include "support/drift_sessions.hpp"
@@ -141,51 +139,6 @@ TEST(Jinchuan, CutsOfTheRampAndItsCrosscutsRegisterToNoCutOfTheDriftBefore) {
   EXPECT_EQ(num_false, 0);
   EXPECT_EQ(num_right, num_found);
   EXPECT_GE(num_right, of_april.size() - 1);
-}
-
-/// How alike two sessions are in brightness, the April one moved by `ahead_m` along the drift.
-BrightnessMatch match_along_drift(const PointCloud& april_in_may, const PointCloud& may, double ahead_m) {
-  const RegistrationConfig config = registration_of_the_program();
-  const auto stands = [&](double ahead) {
-    return test::stands_along(may, {.way = middle_of_drift(ahead, 60.0 + ahead), .spacing_m = 6.0});
-  };
-  const auto seen_from = [&](const PointCloud& map, const Pose& stand) {
-    const Vector3 eye = stand * Vector3(0.0, 0.0, 1.5);
-    std::vector<char> is_seen(map.size(), 0);
-    for (const std::size_t i : test::visible_from(map, eye, config.relief.max_range_m)) is_seen[i] = 1;
-    PointCloud seen = test::chosen(map, [&](std::size_t i) { return is_seen[i]; });
-    return scan_of(transformed(stand.inverse(), std::move(seen)), Vector3(0.0, 0.0, 1.5), config);
-  };
-  const std::vector<Pose> here = stands(0.0);
-  const std::vector<Pose> there = stands(ahead_m);
-  WallOffsets offsets(config.relief);
-  for (std::size_t i = 0; i < std::min(here.size(), there.size()); ++i)
-    offsets.add(
-        patch_offsets(seen_from(may, here[i]), seen_from(april_in_may, there[i]), Pose(), here[i], config));
-  return offsets.brightness();
-}
-
-TEST(Jinchuan, WallsAreAsDarkAndBrightAfterTwentyTwoDaysAndOtherWallsAreNot) {
-  ADIT_NEED_DATA("scans/jinchuan/session_2025-04-21.ply");
-  const PointCloud may = jinchuan_map(kMay);
-  const PointCloud april_in_may = transformed(stated_T_may_april(), jinchuan_map(kApril));
-  BrightnessMatches matches{BrightnessModel()};
-  const BrightnessMatch same = match_along_drift(april_in_may, may, 0.0);
-  const BrightnessMatch own = match_along_drift(may, may, 0.0);
-  matches.set_same(own);
-  std::printf("brightness: own walls %.2f; after 22 days %.2f +- %.2f on %zu patches\n", own.correlation,
-              same.correlation, same.sigma, same.num_patches);
-  EXPECT_GT(same.num_patches, 500U);
-  EXPECT_GT(same.correlation, 0.4);
-  EXPECT_GT(matches.evidence(same), 0.1);
-  for (const double ahead_m : {5.0, 8.0, 12.0, 16.0, 20.0}) {
-    const BrightnessMatch other = match_along_drift(april_in_may, may, ahead_m);
-    std::printf("  moved by %.0f m: %.2f +- %.2f on %zu patches, evidence %.1f\n", ahead_m, other.correlation,
-                other.sigma, other.num_patches, matches.evidence(other));
-    EXPECT_GT(other.num_patches, 50U);
-    EXPECT_LT(other.correlation, same.correlation - 0.1);
-    EXPECT_LT(matches.evidence(other), 0.0);
-  }
 }
 
 /// Both robots meet under the default policy; `T_a_b` joins the frames of the maps that they drove through.

@@ -99,21 +99,6 @@ Fields fields_of(ReliefModel& c) {
       {"min_patches", &c.min_patches, "", 1, 1000000, "patches of two maps needed before they are evidence"}};
 }
 
-Fields fields_of(BrightnessModel& c) {
-  return {
-      {"other_correlation", &c.other_correlation, "", 0.0, 1.0,
-       "correlation between the brightness of one tunnel and of another that looks alike"},
-      {"other_sigma", &c.other_sigma, "", 0.01, 1.0, "its standard deviation from one such to the next"},
-      {"prior_others", &c.prior_others, "", 0.1, 1000.0,
-       "number of look-alikes of the own map that both are worth"},
-      {"changed", &c.changed, "", 1e-6, 0.5,
-       "share of the pairs of visits to one tunnel whose brightness is that of others: dust, damp, another "
-       "kind of sensor"},
-      {"copied", &c.copied, "", 1e-6, 0.5,
-       "share of the tunnels that agree, but are others, that are as bright and as dark by their plan"},
-      {"few_patches", &c.few_patches, "", 5, 1000000, "patches needed before their correlation counts"}};
-}
-
 Fields fields_of(RegistrationConfig& c) {
   Fields all;
   for (Fields (*const stage)(RegistrationConfig&) :

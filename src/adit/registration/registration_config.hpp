@@ -41,18 +41,6 @@ struct ReliefModel {
 /// The keys are the names of the fields.
 [[nodiscard]] Fields fields_of(ReliefModel& model);
 
-/// How alike the brightness of walls is found on two visits, and that of other walls (BrightnessMatches).
-struct BrightnessModel {
-  double other_correlation = 0.2;
-  double other_sigma = 0.15;
-  double prior_others = 4.0;
-  double changed = 0.25;
-  double copied = 0.05;
-  int few_patches = 50;
-};
-/// The keys are the names of the fields.
-[[nodiscard]] Fields fields_of(BrightnessModel& model);
-
 /// What is left of the consistency graph: its innermost k-core, or its maximum clique.
 enum class Pruning { k_core, clique };
 /// Both ways.

@@ -16,11 +16,7 @@ struct OnPatch {
   SensorTerms by_sensors = SensorTerms::Zero();
   Vector6 by_fit = Vector6::Zero();
   Eigen::Vector2d by_known = Eigen::Vector2d::Zero();
-  std::array<Vector3, 2> returns = {Vector3::Zero(), Vector3::Zero()};  // see return_of
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
-  Eigen::Vector3f from_sensor = Eigen::Vector3f::Zero();
   int num_points = 0;
-  int num_intensities = 0;
 };
 
 /// One side of a stretch of tunnel, which fresh lining or a widened face would move as a whole.
@@ -71,27 +67,6 @@ double sensors_in(const OffsetParts& found) {
   return whole > 0.0 ? std::clamp(1.0 - found.left.squaredNorm() / whole, 0.0, 1.0) : 0.0;
 }
 
-/// Intensity, range and cosine of the incidence.
-Vector3 return_of(float intensity, const Eigen::Vector3f& ray, const Eigen::Vector3f& normal) {
-  return {intensity, ray.norm(), std::abs(ray.dot(normal)) / ray.norm()};
-}
-
-std::optional<ReturnsOfPatch> returns_of(const OnPatch& sum, int min_points) {
-  if (sum.num_intensities < min_points) return {};
-  constexpr double kGrazing = 0.01;  // the least cosine that is told from 0
-  const auto mean = [&](double of_all) { return of_all / sum.num_intensities; };
-  ReturnsOfPatch out;
-  out.normal = sum.normal.normalized().cast<double>();
-  out.left_m = mean(sum.from_sensor.y());
-  out.above_m = mean(sum.from_sensor.z());
-  for (std::size_t i = 0; i < out.by_sensor.size(); ++i) {
-    const Vector3& all = sum.returns[i];
-    out.by_sensor[i] = {std::log10(mean(all[0])), std::log10(mean(all[1])),
-                        std::log10(std::max(mean(all[2]), kGrazing))};
-  }
-  return out;
-}
-
 float intensity_of(const OrientedPoints& points, std::size_t i) {
   return points.intensities.empty() ? 0.0F : points.intensities[i];
 }
@@ -118,7 +93,6 @@ std::vector<PatchOffset> patch_offsets(const SearchableSurface& a, const Searcha
   const auto max_offset = static_cast<float>(config.max_offset_m);
   const auto min_cosine = static_cast<float>(config.min_normal_cosine);
   const SensorTermsOf terms_of(a, b, T_a_b);
-  const Eigen::Vector3f viewpoint_b = R * b.viewpoint() + t;
   std::map<WallPatch, OnPatch> patches;
   for (std::size_t i = 0; i < b.points().size(); ++i) {
     const Eigen::Vector3f p = R * b.points().points[i] + t;
@@ -141,19 +115,12 @@ std::vector<PatchOffset> patch_offsets(const SearchableSurface& a, const Searcha
     sum.by_fit += motion_terms(pair);
     terms_of.add(pair, 1.0, sum.by_sensors, sum.by_known);
     ++sum.num_points;
-    if (!(pair.intensity_a > 0.0F && pair.intensity_b > 0.0F)) continue;
-    sum.returns[0] += return_of(pair.intensity_a, pair.seen_by_a - a.viewpoint(), pair.normal);
-    sum.returns[1] += return_of(pair.intensity_b, p - viewpoint_b, pair.normal);
-    sum.normal += pair.normal;
-    sum.from_sensor += p - a.viewpoint();
-    ++sum.num_intensities;
   }
   std::vector<PatchOffset> out;
   for (const auto& [where, sum] : patches)
     if (sum.num_points >= config.min_points)
       out.push_back({where, sum.metres / sum.num_points, sum.by_sensors / sum.num_points,
-                     sum.by_fit / sum.num_points, sum.by_known / sum.num_points,
-                     returns_of(sum, config.min_points)});
+                     sum.by_fit / sum.num_points, sum.by_known / sum.num_points});
   return out;
 }
 
@@ -161,7 +128,6 @@ void WallOffsets::add(const std::vector<PatchOffset>& of_a_pair) {
   first_of_pair_.push_back(std::ssize(offsets_));
   offsets_.insert(offsets_.end(), of_a_pair.begin(), of_a_pair.end());
   counted_.reset();
-  brightness_.reset();
 }
 
 OffsetParts WallOffsets::parts() const {
@@ -185,22 +151,6 @@ OffsetParts WallOffsets::parts() const {
   }
   centre_intensities(system.by_sensors, known);
   return taken_apart(system, {});
-}
-
-const BrightnessMatch& WallOffsets::brightness() const {
-  if (brightness_) return *brightness_;
-  const std::vector<std::size_t> stretches = stretches_of(offsets_, config_.patch_m);
-  std::map<WallPatch, std::size_t> patches;
-  std::vector<ReturnsOfPatch> returns;
-  for (std::size_t i = 0; i < offsets_.size(); ++i) {
-    if (!offsets_[i].returns) continue;
-    const std::size_t patch = patches.emplace(offsets_[i].patch, patches.size()).first->second;
-    returns.push_back(*offsets_[i].returns);
-    returns.back().patch = patch;
-    returns.back().stretch = stretches[i];
-  }
-  brightness_ = brightness_match(returns);
-  return *brightness_;
 }
 
 double WallOffsets::share_of_sensors() const { return counted_once().share_of_sensors; }

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "adit/core/pose.hpp"
-#include "adit/registration/brightness.hpp"
 #include "adit/registration/registration_config.hpp"
 #include "adit/registration/searchable_surface.hpp"
 #include "adit/registration/sensor_difference.hpp"
@@ -32,9 +31,6 @@ struct PatchOffset {
   Vector6 by_fit = Vector6::Zero();              ///< and an error of the fit (motion_terms).
   /// And a constant error of the returns of a and of b whose intensity is known.
   Eigen::Vector2d by_known = Eigen::Vector2d::Zero();
-  /// What a and b report of it, its patch and stretch not counted yet; none where too few points have an
-  /// intensity.
-  std::optional<ReturnsOfPatch> returns = {};
 };
 
 /// One offset per patch near a that both scans saw well. `T_a_b` is the fit of the points of b to a, in the
@@ -58,8 +54,6 @@ class WallOffsets {
   /// The share of the sum of squared offsets, without what the fits explain, that the sensors explain; 0
   /// without offsets.
   [[nodiscard]] double share_of_sensors() const;
-  /// Over the patches whose intensities are known; those that were moved as a whole count, too.
-  [[nodiscard]] const BrightnessMatch& brightness() const;
 
  private:
   /// What one robust fit says of all offsets.
@@ -74,11 +68,7 @@ class WallOffsets {
   ReliefConfig config_;
   std::vector<PatchOffset> offsets_;
   std::vector<Eigen::Index> first_of_pair_;
-  /// Until offsets are added: the fit takes milliseconds.
-  ///@{
-  mutable std::optional<Counted> counted_;
-  mutable std::optional<BrightnessMatch> brightness_;
-  ///@}
+  mutable std::optional<Counted> counted_;  ///< Until offsets are added: the fit takes milliseconds.
 };
 
 }  // namespace adit

@@ -56,9 +56,7 @@ Fields fields_of(MergeCheckConfig& c) {
        "agreement counts only where a displacement along the path would show"},
       {"relief", &c.relief, "", 0, 0,
        "compare the relief of walls, too: walls that stay apart in the same direction in all scans are "
-       "others"},
-      {"brightness", &c.brightness, "", 0, 0,
-       "with relief: compare how dark and bright walls are, too, where recordings have intensities"}};
+       "others"}};
   append(fields, "evidence", fields_of(c.evidence));
   append(fields, "discernment", fields_of(c.discernment));
   return fields;

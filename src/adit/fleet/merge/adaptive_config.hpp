@@ -46,7 +46,6 @@ struct MergeCheckConfig {
   int misplaced_quorum = 3;
   bool distinctive_only = true;
   bool relief = true;
-  bool brightness = true;
   EvidenceModel evidence;
   DiscernmentConfig discernment;
 };

@@ -32,12 +32,12 @@ Discernment::Discernment(const std::shared_ptr<const RobotMap>& map, OdometryCha
 const Measured& Discernment::measured() {
   if (measured_) return *measured_;
   const EvidenceModel& model = config_.merge_check.evidence;
-  Measured measured{LookAlikes(model), EqualSignShares(model.walls), BrightnessMatches(model.brightness)};
-  measured.set_same(compare_own_walls());
+  Measured measured{LookAlikes(model), EqualSignShares(model.walls)};
+  measured.walls.set_same(compare_own_walls().counted());
   LookAlikeWalks walks(*this, chain_, *features_, config_);
   walks.start(find_look_alikes_());
   walks.follow(measured);
-  measured.add_other(compare_displaced_walls());
+  measured.walls.add_other(compare_displaced_walls().counted());
   measured_ = std::move(measured);
   return *measured_;
 }

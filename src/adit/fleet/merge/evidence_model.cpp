@@ -36,9 +36,6 @@ constexpr std::string_view kOfScans = "pairs of scans of the tuning worlds (deci
 constexpr std::string_view kLoopsOfFortyTwo =
     "167 true and 414 false hypotheses of 42 seen field worlds (decision 0066)";
 constexpr std::string_view kOfWalls = "three tuning worlds (decision 0015)";
-constexpr std::string_view kJinchuan =
-    "two real sessions of one drift, laid over one another displaced by 5 to 20 m (decision 0082)";
-constexpr std::string_view kBrightnessJudged = "judgement: one real pair of visits is known (decision 0082)";
 constexpr std::string_view kDataSheets = "what data sheets allow (decision 0035)";
 constexpr std::string_view kOfFits = "six true pairs (decision 0052)";
 
@@ -86,12 +83,6 @@ constexpr std::array kOrigins = {
     Origin{"walls.lined_share", kOfElevenWorlds, "2026-11-27"},
     Origin{"walls.few_patches", kOfWalls, "2026-11-22"},
     Origin{"walls.min_patches", kOfElevenWorlds, "2026-11-27"},
-    Origin{"brightness.other_correlation", kJinchuan, "2026-11-29"},
-    Origin{"brightness.other_sigma", kJinchuan, "2026-11-29"},
-    Origin{"brightness.prior_others", "as walls.prior_stretches", "2026-11-29"},
-    Origin{"brightness.changed", kBrightnessJudged, "2026-11-29"},
-    Origin{"brightness.copied", kBrightnessJudged, "2026-11-29"},
-    Origin{"brightness.few_patches", "chosen: not measured", "2026-11-29"},
     Origin{"sensors.bias_m", kDataSheets, "2026-11-24"},
     Origin{"sensors.walk_m", kDataSheets, "2026-11-24"},
     Origin{"sensors.per_tenfold_m",
@@ -174,7 +165,6 @@ Fields fields_of(EvidenceModel& c) {
       {"things_speak_at_most", &c.things_speak_at_most, "", 0.0, 100.0,
        "evidence that such things take away at most: they come and go"}};
   append(fields, "walls", fields_of(c.walls));
-  append(fields, "brightness", fields_of(c.brightness));
   return fields;
 }
 

@@ -57,9 +57,8 @@ struct EvidenceModel {
   double things_speak_at_most = 1.0;
 
   ReliefModel walls = {};
-  BrightnessModel brightness = {};
 };
-/// Keys carry the units and meanings; those of `walls` and `brightness` begin with these names.
+/// Keys carry the units and meanings; those of `walls` begin with "walls.".
 [[nodiscard]] Fields fields_of(EvidenceModel& model);
 
 /// One value of the model and its origin.

@@ -100,7 +100,7 @@ void LookAlikeWalks::follow(Measured& measured) {
     }
     std::erase_if(walks_, [](const Walk& walk) { return walk.is_over; });
   }
-  for (const WallOffsets& of_one : offsets) measured.add_other(of_one);
+  for (const WallOffsets& of_one : offsets) measured.walls.add_other(of_one.counted());
 }
 
 std::optional<OwnComparison> LookAlikeWalks::place_at(const Walk& walk, double path_m, double apart_m) const {

@@ -48,21 +48,7 @@ class LookAlikes {
 /// What a robot has measured on its own map, to judge what it shares with others.
 struct Measured {
   LookAlikes look_alikes;  ///< What became of places that only look alike, followed along the path.
-  /// Both measured on its own walls seen twice, and on walls of places that look alike.
-  ///@{
-  EqualSignShares walls;
-  BrightnessMatches brightness = {};
-  ///@}
-  /// Of the own walls, seen twice.
-  void set_same(const WallOffsets& own) {
-    walls.set_same(own.counted());
-    brightness.set_same(own.brightness());
-  }
-  /// Of a place that looks like another one.
-  void add_other(const WallOffsets& others) {
-    walls.add_other(others.counted());
-    brightness.add_other(others.brightness());
-  }
+  EqualSignShares walls;   ///< Measured on its own walls seen twice, and on walls of places that look alike.
 };
 /// The same each time it is called; the first call measures, which takes seconds.
 using MeasuredWhenAsked = std::function<const Measured&()>;

@@ -155,23 +155,7 @@ double MergeChecker::share_of_copies_if_true(const Hypothesis& h) const {
 }
 
 double MergeChecker::evidence_of_walls(const Hypothesis& h, double times) const {
-  if (!config_.relief) return 0.0;
-  return own_.measured().walls.evidence(h.offsets.counted(), times) + evidence_of_brightness(h, times);
-}
-
-double MergeChecker::evidence_of_brightness(const Hypothesis& h, double times) const {
-  if (!config_.relief || !config_.brightness) return 0.0;
-  return own_.measured().brightness.evidence(h.offsets.brightness(), times);
-}
-
-bool MergeChecker::brightness_speaks_more_against(const Hypothesis& h) const {
-  const double of_brightness = evidence_of_brightness(h);
-  return of_brightness < 0.0 && of_brightness < evidence_of_walls(h) - of_brightness;
-}
-
-double MergeChecker::most_evidence_of_walls() const {
-  return own_.measured().walls.most_evidence() +
-         (config_.brightness ? own_.measured().brightness.most_evidence() : 0.0);
+  return config_.relief ? own_.measured().walls.evidence(h.offsets.counted(), times) : 0.0;
 }
 
 double MergeChecker::evidence_of_things(const Hypothesis& h) const {
@@ -224,7 +208,7 @@ std::optional<std::size_t> MergeChecker::whose_walls_to_compare(const std::vecto
   // Walls that speak against it are looked at more closely, too, before anything is forgiven.
   const bool may_decide = decision == MergeDecision::too_little_evidence ||
                           (decision == MergeDecision::other_walls && forgivable > 0.0);
-  const double possible = most_evidence_of_walls() - evidence_of_walls(best) + forgivable;
+  const double possible = own_.measured().walls.most_evidence() - evidence_of_walls(best) + forgivable;
   return may_decide && evidence(best) + possible >= needed() ? std::optional(order.front()) : std::nullopt;
 }
 

@@ -10,10 +10,11 @@
 ///
 /// The decision is Wald's sequential probability ratio test ("Sequential tests of statistical hypotheses",
 /// 1945): log likelihood ratios add up over the distinctive places and have to reach log(1 / error_rate),
-/// together with those of the relief and the brightness of walls (WallOffsets) and the prior, the share of
-/// all loops that speak for this alignment. It is one-sided against copies: scans that differ may not be more
-/// than true places would leave. And every other hypothesis has to stay behind by log(1 / rival_rate).
-/// `MergeChecker::decide` reads in that order; docs/decisions/0010 tells why.
+/// together with those of the relief of walls (WallOffsets) and the prior, the share of all loops that
+/// speak for this alignment. It is one-sided against copies: scans that differ may not be more than true
+/// places would leave. And every other
+/// hypothesis has to stay behind by log(1 / rival_rate). `MergeChecker::decide` reads in that order;
+/// docs/decisions/0010 tells why.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +42,7 @@ enum class MergeDecision : std::uint8_t {
   no_loops,             ///< No loop aligns the maps.
   scans_differ,         ///< At more places than a true alignment leaves.
   nothing_distinctive,  ///< All places that agree would agree if displaced along the tunnel, too.
-  other_walls,          ///< The evidence would do if the walls did not speak against it.
+  other_walls,          ///< The evidence would do if the relief of the walls did not speak against it.
   too_little_evidence,  ///< Less than needed, although some places are distinctive.
   too_few_loops,        ///< Evidence enough, by fewer loops than MergeCheckConfig::min_loops.
   rival,                ///< Another hypothesis has nearly as much evidence.
@@ -98,14 +99,8 @@ class MergeChecker {
   [[nodiscard]] double evidence_of_places(const CountedPlaces& places, double copies) const;
   /// Of the look-alikes between both maps, if this alignment is the true one: then all others are false.
   [[nodiscard]] double share_of_copies_if_true(const Hypothesis& hypothesis) const;
-  /// Of their relief and brightness, as if so many times the walls had been seen.
-  ///@{
+  /// As if so many times the walls had been seen.
   [[nodiscard]] double evidence_of_walls(const Hypothesis& hypothesis, double times = 1.0) const;
-  [[nodiscard]] double evidence_of_brightness(const Hypothesis& hypothesis, double times = 1.0) const;
-  ///@}
-  [[nodiscard]] double most_evidence_of_walls() const;
-  /// Than relief does.
-  [[nodiscard]] bool brightness_speaks_more_against(const Hypothesis& hypothesis) const;
   /// Poisson's log likelihood ratio of what may come and go; never positive.
   [[nodiscard]] double evidence_of_things(const Hypothesis& hypothesis) const;
   /// What a hypothesis can reach when all that is left to compare speaks for it.

@@ -45,14 +45,6 @@ std::string why_walls_differ(const Hypothesis& h, RefusalKind kind) {
           : what_differs(RefusalKind::changed_or_other));
 }
 
-std::string why_brightness_differs(const Hypothesis& h) {
-  const BrightnessMatch& found = h.offsets.brightness();
-  return format(
-      "the walls differ: what both robots found dark and bright on {} patches has a correlation of {:.2f}: "
-      "{}",
-      found.num_patches, found.correlation, what_differs(RefusalKind::changed_or_other));
-}
-
 }  // namespace
 
 std::string MergeChecker::what_is_missing(const Hypothesis& h) const {
@@ -79,8 +71,7 @@ std::string MergeChecker::why(MergeDecision decision, const std::vector<std::siz
   const std::size_t num_agreeing = h.num_agreeing();
   switch (decision) {
     case MergeDecision::other_walls:
-      return brightness_speaks_more_against(h) ? why_brightness_differs(h)
-                                               : why_walls_differ(h, refused_kind(decision, best_first));
+      return why_walls_differ(h, refused_kind(decision, best_first));
     case MergeDecision::scans_differ:
       return format("scans differ at {} of {} places along the stretch that {} loops align: {}",
                     h.num_differing(), h.compared.size(), h.loops.size(),

@@ -80,7 +80,6 @@ RefusalKind MergeChecker::kind_where_scans_differ(const Hypothesis& h) const {
 /// robots' walls, what is left may be an error that the model of sensors does not have.
 RefusalKind MergeChecker::kind_where_walls_differ(const Hypothesis& h) const {
   constexpr double kLargerPart = 0.5;
-  if (brightness_speaks_more_against(h)) return RefusalKind::changed_or_other;
   return h.num_differing() == 0 && h.offsets.share_of_sensors() > kLargerPart ? RefusalKind::sensor
                                                                               : RefusalKind::changed_or_other;
 }

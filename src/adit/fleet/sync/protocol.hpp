@@ -177,7 +177,7 @@ struct MergeHypothesis {
   double from_best_m = 0.0;      ///< Metres between where it and the best one put the other robot.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> loops;  ///< Keyframes of a and b.
   std::vector<TestedPlace> places{};  ///< In the order driven by a; left out where it is refuted.
-  double walls = 0.0;                 ///< The part of the evidence that comes from walls: relief, brightness.
+  double walls = 0.0;                 ///< The part of the evidence that comes from the relief of walls.
   HypothesisCounts counts{};          ///< Stated where it is refuted, too.
 
   /// Places that differ, without those that are explained.
