@@ -3,7 +3,6 @@
 #include "adit/fleet/search/candidate_search.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -20,9 +19,9 @@ Fields fields_of(SearchConfig& c) {
       {"ring_keys", &c.ring_keys, "", 1, 100000,
        "keyframes of the peer, those with the nearest ring keys, that each is compared with; in place of "
        "loops.place.num_candidates"},
-      {"standing_out", &c.standing_out, "", 0.0, 1.0,
-       "share of the candidates with the smallest distance over that to the most similar other place of the "
-       "own map; the others have the smallest distance"},
+      {"stand_out", &c.stand_out, "", 0, 0,
+       "rank candidates by their distance over that to the most similar other place of the own map; "
+       "otherwise by their distance"},
       {"of_a_place", &c.of_a_place, "", 1, 1e6, "at most this many candidates of one place"},
       {"place_keyframes", &c.place_keyframes, "", 1, 1e6,
        "keyframes nearer than this in index count as one place"},
@@ -77,38 +76,29 @@ const std::vector<double>& CandidateSearch::self_distances() {
 }
 
 std::vector<LoopCandidate> CandidateSearch::most_promising(std::vector<LoopCandidate> found) {
-  return chosen_of(std::move(found), config_.candidates, config_.standing_out);
+  return standing_out(std::move(found), static_cast<std::size_t>(config_.candidates));
 }
 
-std::vector<LoopCandidate> CandidateSearch::chosen_of(std::vector<LoopCandidate> found, int num,
-                                                      double standing_out) {
+std::vector<LoopCandidate> CandidateSearch::standing_out(std::vector<LoopCandidate> found, std::size_t num) {
   const std::vector<double>& self = self_distances();
-  const auto rank_by = [&](const auto& distance) {
-    std::ranges::sort(found, {},
-                      [&](const LoopCandidate& c) { return std::tuple(distance(c), c.query, c.match); });
+  const auto ratio = [&](const LoopCandidate& c) {
+    return config_.stand_out ? c.distance / std::max(self[c.query.index], 1e-6) : c.distance;
   };
+  std::ranges::sort(found, {},
+                    [&](const LoopCandidate& c) { return std::tuple(ratio(c), c.query, c.match); });
   const auto are_of_one_place = [&](std::uint32_t i, std::uint32_t k) {
     return (i < k ? k - i : i - k) < static_cast<std::uint32_t>(config_.place_keyframes);
   };
-  rank_by([](const LoopCandidate& c) { return c.distance; });
-  std::set<KeyframeId> queries;
-  std::erase_if(found, [&](const LoopCandidate& c) { return !queries.insert(c.query).second; });  // other lanes
   std::vector<LoopCandidate> chosen;
-  const auto choose_up_to = [&](double up_to) {
-    for (const LoopCandidate& candidate : found) {
-      if (static_cast<double>(chosen.size()) >= up_to) return;
-      const auto is_near = [&](const LoopCandidate& c) {
-        return are_of_one_place(c.query.index, candidate.query.index);
-      };
-      if (queries.contains(candidate.query) && std::ranges::count_if(chosen, is_near) < config_.of_a_place) {
-        queries.erase(candidate.query);
-        chosen.push_back(candidate);
-      }
-    }
-  };
-  choose_up_to(std::round((1.0 - standing_out) * num));
-  rank_by([&](const LoopCandidate& c) { return c.distance / std::max(self[c.query.index], 1e-6); });
-  choose_up_to(num);
+  std::set<KeyframeId> queries;
+  for (const LoopCandidate& candidate : found) {
+    if (chosen.size() == num) break;
+    if (!queries.insert(candidate.query).second) continue;  // from another lane
+    const auto of_this_place = std::ranges::count_if(chosen, [&](const LoopCandidate& c) {
+      return are_of_one_place(c.query.index, candidate.query.index);
+    });
+    if (of_this_place < config_.of_a_place) chosen.push_back(candidate);
+  }
   return chosen;
 }
 
@@ -131,7 +121,7 @@ std::vector<LoopCandidate> CandidateSearch::revisits() {
   for (const std::optional<LoopCandidate>& candidate : best)
     if (candidate) found.push_back(*candidate);
   if (found.empty()) return found;
-  return chosen_of(std::move(found), config_.revisit_candidates, 1.0);
+  return standing_out(std::move(found), static_cast<std::size_t>(config_.revisit_candidates));
 }
 
 }  // namespace adit

@@ -22,7 +22,7 @@ struct SearchConfig {
   int candidates = 64;
   int query_stride = 2;
   int ring_keys = 200;
-  double standing_out = 0.5;
+  bool stand_out = true;
   int of_a_place = 3;
   int place_keyframes = 6;
   double lane_m = 1.0;
@@ -62,8 +62,8 @@ class CandidateSearch {
   /// Of the own map; made when it is first asked for, valid as long as this.
   [[nodiscard]] const SelfSimilarity& self_similarity();
 
-  /// Of what `most_similar_places` found, the most similar ones and those that stand out most from look-alikes
-  /// in the own map, at most a few of each place.
+  /// Of what `most_similar_places` found, those that stand out most from look-alikes in the own map, at most
+  /// a few of each place.
   [[nodiscard]] std::vector<LoopCandidate> most_promising(std::vector<LoopCandidate> found);
 
   /// Candidates within the own map.
@@ -71,9 +71,7 @@ class CandidateSearch {
 
  private:
   [[nodiscard]] const std::vector<double>& self_distances();
-  /// `num` of them at most, the share `standing_out` of them by how much they stand out.
-  [[nodiscard]] std::vector<LoopCandidate> chosen_of(std::vector<LoopCandidate> found, int num,
-                                                     double standing_out);
+  [[nodiscard]] std::vector<LoopCandidate> standing_out(std::vector<LoopCandidate> found, std::size_t num);
 
   std::shared_ptr<const RobotMap> map_;
   OdometryChain chain_;
