@@ -4,10 +4,51 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+
+#include "adit/core/rng.hpp"
 
 namespace adit {
 namespace {
+
+constexpr ChancesToGoOn kChances = {0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9};
+
+/// Whether the next place agrees, by what the places before it showed.
+using Agrees = std::function<bool(Rng&, const std::vector<TestedPlace>&)>;
+
+/// As often as P. Polya's urn says of a share that is not known.
+Agrees by_urn(double share, double worth) {
+  return [=](Rng& rng, const std::vector<TestedPlace>& before) {
+    const auto agreed =
+        static_cast<double>(std::ranges::count(before, PlaceOutcome::distinctive, &TestedPlace::outcome));
+    return rng.uniform() < (share * worth + agreed) / (worth + static_cast<double>(before.size()));
+  };
+}
+
+bool look_alike_agrees(Rng& rng, const std::vector<TestedPlace>& before) {
+  const auto last =
+      std::ranges::find(before.rbegin(), before.rend(), PlaceOutcome::differs, &TestedPlace::outcome);
+  return rng.uniform() < chance_to_go_on(kChances, static_cast<std::size_t>(last - before.rbegin()));
+}
+
+/// The share of drives past 60 places whose evidence reaches `needed` at any place, asked at each.
+double share_that_reaches(double needed, double copied, std::uint64_t seed, const Agrees& agrees) {
+  constexpr int kDrives = 3000;
+  Rng rng(seed);
+  int num = 0;
+  for (int drive = 0; drive < kDrives; ++drive) {
+    std::vector<TestedPlace> places;
+    double most = -1e9;
+    while (places.size() < 60 && most < needed) {
+      places.push_back({.outcome = agrees(rng, places) ? PlaceOutcome::distinctive : PlaceOutcome::differs});
+      most = std::max(most, unless_copied(counted_places(places, kChances), copied));
+    }
+    num += most >= needed;
+  }
+  return static_cast<double>(num) / kDrives;
+}
 
 TEST(MergeEvidence, PoissonTail) {
   EXPECT_DOUBLE_EQ(poisson_tail(0, 2.0), 1.0);
@@ -52,6 +93,24 @@ TEST(MergeEvidence, WhereOneLookAlikeIsACopyThereAreMore) {
   EXPECT_LT(share_of_copies({{1.0, 15, 2}}), 2.0 * kFleetEvidence.copied);
   EXPECT_NEAR(unless_copied(copy, kFleetEvidence.copied) - unless_copied(copy, one),
               std::log(one / kFleetEvidence.copied), 0.01);
+}
+
+// What a repeated meeting adds is more places of the same alignment. Likelihood ratios that go on are a
+// martingale where the alignment is false: asked at every place, as few reach a threshold as if asked once
+// (J. Ville, 1939). So the meetings of two robots spend one error rate, however many they are.
+TEST(MergeEvidence, FalseAlignmentsReachAThresholdAsSeldomAsItStatesHoweverOftenTheyAreAsked) {
+  const FleetEvidence& fleet = kFleetEvidence;
+  const double needed = 3.0;
+  for (const double copied : {fleet.copied, 0.2}) {
+    const double look_alikes = share_that_reaches(needed, copied, 1, look_alike_agrees);
+    const double copies = share_that_reaches(
+        needed, copied, 2, by_urn(fleet.agreement_if_copied, fleet.agreement_if_copied_worth));
+    EXPECT_LT((1.0 - copied) * look_alikes + copied * copies, std::exp(-needed)) << copied;
+    EXPECT_GT(look_alikes + copies, 0.0) << "a threshold that none reaches shows nothing";
+  }
+  EXPECT_GT(share_that_reaches(needed, fleet.copied, 3,
+                               by_urn(fleet.agreement_if_true, fleet.agreement_if_true_worth)),
+            0.9);
 }
 
 // It does not matter in which order places are counted.
