@@ -30,6 +30,11 @@ enum class PlaceQuestion : std::uint8_t {
 }
 ///@}
 
+/// Whether that question is put to submaps, which are registered, and not to views, which are compared.
+[[nodiscard]] constexpr bool asks_to_register(PlaceQuestion question) {
+  return question == PlaceQuestion::registration;
+}
+
 /// Two keyframes that stand side by side if the loops are true.
 struct PlannedComparison {
   std::uint32_t own = 0;     ///< Index of a keyframe of the own map.

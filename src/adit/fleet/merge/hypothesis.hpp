@@ -17,11 +17,11 @@
 
 namespace adit {
 
-/// Where registration without a guess puts two scans.
+/// Where registration without a guess puts the submaps of a place.
 enum class FoundAgain : std::uint8_t {
   not_asked,  ///< It was not tried.
-  there,      ///< Where their fit has them.
-  slides,     ///< The scans are free to slide along the tunnel, which tells nothing.
+  there,      ///< Where the fit of what was seen has them.
+  slides,     ///< They are free to slide along the tunnel, which tells nothing.
   elsewhere,  ///< Or nowhere.
 };
 

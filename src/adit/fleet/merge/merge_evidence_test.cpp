@@ -13,7 +13,7 @@
 namespace adit {
 namespace {
 
-constexpr ChancesToGoOn kChances = {0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9};
+constexpr ChancesToGoOn kOfLookAlikes = {0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9};
 
 /// Whether the next place agrees, by what the places before it showed.
 using Agrees = std::function<bool(Rng&, const std::vector<TestedPlace>&)>;
@@ -30,7 +30,7 @@ Agrees by_urn(double share, double worth) {
 bool look_alike_agrees(Rng& rng, const std::vector<TestedPlace>& before) {
   const auto last =
       std::ranges::find(before.rbegin(), before.rend(), PlaceOutcome::differs, &TestedPlace::outcome);
-  return rng.uniform() < chance_to_go_on(kChances, static_cast<std::size_t>(last - before.rbegin()));
+  return rng.uniform() < chance_to_go_on(kOfLookAlikes, static_cast<std::size_t>(last - before.rbegin()));
 }
 
 /// The share of drives past 60 places whose evidence reaches `needed` at any place, asked at each.
@@ -43,7 +43,7 @@ double share_that_reaches(double needed, double copied, std::uint64_t seed, cons
     double most = -1e9;
     while (places.size() < 60 && most < needed) {
       places.push_back({.outcome = agrees(rng, places) ? PlaceOutcome::distinctive : PlaceOutcome::differs});
-      most = std::max(most, unless_copied(counted_places(places, kChances), copied));
+      most = std::max(most, unless_copied(counted_places(places, kOfLookAlikes), copied));
     }
     num += most >= needed;
   }

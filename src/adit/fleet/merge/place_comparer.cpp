@@ -29,6 +29,12 @@ SearchableSurface received_scan(const Clouds::Cloud& received, const Registratio
   return scan_of(scan, received.viewpoint.cast<double>(), config);
 }
 
+Features features_of(const Clouds::Cloud& submap, const RegistrationConfig& config) {
+  PointCloud cloud;
+  cloud.points = submap.points;
+  return compute_features(cloud, config);
+}
+
 }  // namespace
 
 bool PlaceComparer::agrees_displaced(std::uint32_t own, const SeenSurface& theirs,
@@ -39,21 +45,32 @@ bool PlaceComparer::agrees_displaced(std::uint32_t own, const SeenSurface& their
   });
 }
 
-FoundAgain PlaceComparer::found_again(const SeenSurface& own, const SeenSurface& theirs,
-                                      const Pose& T_own_theirs) const {
+FoundAgain PlaceComparer::found_again(const PlannedComparison& place, const SubmapOfTheirs& theirs) const {
   constexpr double kSamePlace = 0.5;  // metres
   constexpr double kSameWay = 0.2;    // radians
-  const auto features = [&](const SeenSurface& view) {
-    PointCloud cloud;
-    cloud.points = view.points().points;
-    return compute_features(cloud, registration_);
-  };
-  const Registration found = register_features(features(own), features(theirs), registration_);
+  const Registration found =
+      register_features(discernment_.features().at(place.own), theirs.features, registration_);
   if (found.verdict != LoopVerdict::accepted) return FoundAgain::elsewhere;
   if (found.weak_axis < kWeakAxis) return FoundAgain::slides;
-  const Vector6 off = (T_own_theirs.inverse() * *found.T_a_b).log();
+  const LocalFit near = fit_near(discernment_.views().at(place.own), theirs.surface, place.T_own_theirs,
+                                 discernment_.limit(), registration_);
+  const Vector6 off = (near.T_a_b.inverse() * *found.T_a_b).log();
   const bool is_there = off.head<3>().norm() < kSamePlace && off.tail<3>().norm() < kSameWay;
   return is_there ? FoundAgain::there : FoundAgain::elsewhere;
+}
+
+void PlaceComparer::prepare_submaps(const std::vector<std::uint32_t>& keyframes) {
+  discernment_.views().prepare(keyframes);
+  discernment_.features().prepare(keyframes);
+}
+
+std::vector<ComparedPlace> PlaceComparer::look_for(
+    const std::vector<PlannedComparison>& asked,
+    const std::function<SubmapOfTheirs(std::size_t i)>& theirs) const {
+  std::vector<ComparedPlace> places(asked.size());
+  parallel_for_each(asked.size(),
+                    [&](std::size_t i) { places[i].found_again = found_again(asked[i], theirs(i)); });
+  return places;
 }
 
 PlaceComparer::Fitted PlaceComparer::fit(const PlannedComparison& place, const SeenSurface& theirs) const {
@@ -62,10 +79,6 @@ PlaceComparer::Fitted PlaceComparer::fit(const PlannedComparison& place, const S
   const LocalFit near = fit_near(own, theirs, place.T_own_theirs, limit, registration_);
   Fitted out{{near.agreement.largest_difference / limit}, near.T_a_b};
   ComparedPlace& found = out.place;
-  if (place.question == PlaceQuestion::registration) {  // all else was compared before
-    found.found_again = found.differs() ? FoundAgain::elsewhere : found_again(own, theirs, near.T_a_b);
-    return out;
-  }
   const auto above_limit = [&](const std::vector<DifferingPatch>& patches) {
     std::vector<Vector3> places;
     for (const DifferingPatch& patch : patches)
@@ -134,10 +147,19 @@ std::vector<ComparedPlace> PlaceComparer::places_of(std::vector<Fitted> found) {
 
 std::vector<ComparedPlace> PlaceComparer::with_views(const std::vector<PlannedComparison>& asked,
                                                      const PeerSession::Views& views) {
+  const bool is_to_register = !asked.empty() && asks_to_register(asked.front().question);
   std::vector<std::optional<SeenSurface>> theirs(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
     theirs[i].emplace(received_view(views.at(asked[i].theirs), registration_));
   });
+  if (is_to_register) {
+    prepare_submaps(own_keyframes(asked));
+    std::vector<Features> features(asked.size());
+    parallel_for_each(asked.size(), [&](std::size_t i) {
+      features[i] = features_of(views.at(asked[i].theirs), registration_);
+    });
+    return look_for(asked, [&](std::size_t i) -> SubmapOfTheirs { return {*theirs[i], features[i]}; });
+  }
   std::vector<Fitted> found =
       compare_views(asked, [&](std::size_t i) -> const SeenSurface& { return *theirs[i]; }, {});
   const std::vector<std::size_t> with_walls = those_with_walls(asked, found);
@@ -151,6 +173,14 @@ std::vector<ComparedPlace> PlaceComparer::with_views(const std::vector<PlannedCo
 
 std::vector<ComparedPlace> PlaceComparer::within_own_map(const std::vector<PlannedComparison>& asked) {
   const std::vector<std::uint32_t> later = their_keyframes(asked);
+  if (!asked.empty() && asks_to_register(asked.front().question)) {
+    std::vector<std::uint32_t> both = own_keyframes(asked);
+    both.insert(both.end(), later.begin(), later.end());
+    prepare_submaps(both);
+    return look_for(asked, [&](std::size_t i) -> SubmapOfTheirs {
+      return {discernment_.views().at(later[i]), discernment_.features().at(later[i])};
+    });
+  }
   std::vector<Fitted> found = compare_views(
       asked, [&](std::size_t i) -> const SeenSurface& { return discernment_.views().at(later[i]); }, later);
   const std::vector<std::size_t> with_walls = those_with_walls(asked, found);

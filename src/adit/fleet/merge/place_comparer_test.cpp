@@ -32,7 +32,8 @@ ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
       own, chain_of(graph_of(*own)), [] { return std::vector<LoopCandidate>(); },
       std::make_shared<FeatureStore>(own, config.registration, config.submap), config);
   PlaceComparer comparer(*own, discernment, config.registration);
-  Clouds::Cloud cloud = clouds_of(*theirs, {{kBesideTheBlock}, CloudKind::view},
+  const CloudKind kind = asks_to_register(question) ? CloudKind::submap : CloudKind::view;
+  Clouds::Cloud cloud = clouds_of(*theirs, {{kBesideTheBlock}, kind},
                                   {config.registration.voxel_size, config.submap, config.view})
                             .clouds[0];
   PointCloud seen;
@@ -83,7 +84,17 @@ TEST(PlaceComparer, RegistrationFindsAPlaceAgainWhereItCannotSlide) {
   EXPECT_EQ(compared(kBlock, everything, PlaceQuestion::registration).found_again, FoundAgain::there);
   EXPECT_NE(compared(kBlock, away_from_the_block, PlaceQuestion::registration).found_again,
             FoundAgain::there);
-  EXPECT_EQ(compared({}, everything, PlaceQuestion::registration).found_again, FoundAgain::elsewhere);
+  EXPECT_NE(compared({}, everything, PlaceQuestion::registration).found_again, FoundAgain::there);
+}
+
+// One point in `one_in` of those that a dense sensor has.
+TEST(PlaceComparer, ASparseSensorIsFoundAgainByItsSubmap) {
+  const auto one_in = [](std::uint64_t num) {
+    return [num](const Eigen::Vector3f& p) {
+      return mix64(1, static_cast<std::uint64_t>((p.array() * 1000.0F).abs().sum())) % num == 0;
+    };
+  };
+  EXPECT_EQ(compared(kBlock, one_in(3), PlaceQuestion::registration).found_again, FoundAgain::there);
 }
 
 TEST(PlaceComparer, ABlockThatOnlyOneTubeHasDiffers) {

@@ -10,10 +10,10 @@
 namespace adit {
 namespace {
 
-constexpr RobotId kSelf{0};
-constexpr RobotId kPeer{1};
+constexpr RobotId kSearching{0};
+constexpr RobotId kSearched{1};
 
-ScanContext random_place(Rng& rng) {
+ScanContext a_random_place(Rng& rng) {
   const ScanContextConfig grid;
   std::vector<float> heights(static_cast<std::size_t>(grid.num_rings * grid.num_sectors));
   for (float& height : heights) height = static_cast<float>(rng.uniform(0.5, 5.0));
@@ -22,11 +22,11 @@ ScanContext random_place(Rng& rng) {
 
 /// A straight drive of `num` keyframes, two metres apart, past places of which no two are alike but those
 /// that are named.
-struct Drive {
+struct StraightDrive {
   std::shared_ptr<RobotMap> map = std::make_shared<RobotMap>();
   OdometryChain chain;
 
-  explicit Drive(std::size_t num, const std::vector<std::pair<std::size_t, std::size_t>>& alike = {})
+  explicit StraightDrive(std::size_t num, const std::vector<std::pair<std::size_t, std::size_t>>& alike = {})
       : chain(made(num, alike)) {}
 
   [[nodiscard]] CandidateSearch search(const SearchConfig& config) const {
@@ -37,11 +37,11 @@ struct Drive {
   OdometryChain made(std::size_t num, const std::vector<std::pair<std::size_t, std::size_t>>& alike) {
     Rng rng(7);
     std::vector<Pose> poses;
-    map->id = kSelf;
+    map->id = kSearching;
     for (std::size_t k = 0; k < num; ++k) {
       poses.push_back(Pose::planar(2.0 * static_cast<double>(k), 0.0, 0.0));
-      map->keyframes.push_back({{kSelf, static_cast<std::uint32_t>(k)}, {}, poses.back(), nullptr});
-      map->places.push_back(random_place(rng));
+      map->keyframes.push_back({{kSearching, static_cast<std::uint32_t>(k)}, {}, poses.back(), nullptr});
+      map->places.push_back(a_random_place(rng));
     }
     for (const auto& [one, other] : alike) map->places[other] = map->places[one];
     return {poses, std::vector<Matrix6>(num - 1, random_walk({}, 2.0))};
@@ -49,7 +49,7 @@ struct Drive {
 };
 
 LoopCandidate candidate(std::uint32_t query, std::uint32_t match, double distance) {
-  return {{kSelf, query}, {kPeer, match}, 0.0, distance};
+  return {{kSearching, query}, {kSearched, match}, 0.0, distance};
 }
 
 std::vector<std::uint32_t> queries_of(const std::vector<LoopCandidate>& candidates) {
@@ -59,7 +59,7 @@ std::vector<std::uint32_t> queries_of(const std::vector<LoopCandidate>& candidat
 }
 
 TEST(SelfSimilarity, FindsThePlaceThatLooksAlikeAndNotTheOneBeside) {
-  const Drive drive(60, {{10, 40}, {20, 22}});
+  const StraightDrive drive(60, {{10, 40}, {20, 22}});
   const SelfSimilarity self(drive.map, drive.chain, PlaceIndexConfig());
   const auto there = self.most_similar(10);
   ASSERT_TRUE(there);
@@ -71,7 +71,7 @@ TEST(SelfSimilarity, FindsThePlaceThatLooksAlikeAndNotTheOneBeside) {
 }
 
 TEST(CandidateSearch, PlacesThatLookLikeOthersOfTheOwnMapComeLast) {
-  const Drive drive(60, {{10, 40}});
+  const StraightDrive drive(60, {{10, 40}});
   const std::vector<LoopCandidate> found = {candidate(10, 5, 0.02), candidate(30, 9, 0.03)};
   SearchConfig config;
   EXPECT_EQ(queries_of(drive.search(config).most_promising(found)), (std::vector{30U, 10U}));
@@ -80,7 +80,7 @@ TEST(CandidateSearch, PlacesThatLookLikeOthersOfTheOwnMapComeLast) {
 }
 
 TEST(CandidateSearch, TakesAFewOfEachPlaceAndNoMoreThanAreAskedFor) {
-  const Drive drive(60);
+  const StraightDrive drive(60);
   std::vector<LoopCandidate> found;
   for (std::uint32_t k = 0; k < 60; ++k) found.push_back(candidate(k, k, 0.001 * (k + 1)));
   SearchConfig config;
@@ -93,7 +93,7 @@ TEST(CandidateSearch, TakesAFewOfEachPlaceAndNoMoreThanAreAskedFor) {
 
 TEST(CandidateSearch, AKeyframeIsTakenOnceFromItsBestLane) {
   const std::vector<LoopCandidate> chosen =
-      Drive(30).search({}).most_promising({candidate(4, 8, 0.3), candidate(4, 7, 0.1)});
+      StraightDrive(30).search({}).most_promising({candidate(4, 8, 0.3), candidate(4, 7, 0.1)});
   ASSERT_EQ(chosen.size(), 1U);
   EXPECT_EQ(chosen[0].match.index, 7U);
 }

@@ -67,12 +67,12 @@ class PeerSession {
   void await_clouds_of(const std::vector<LoopCandidate>& candidates);
   /// Candidates that wait for clouds.
   [[nodiscard]] std::size_t num_waiting() const;
-  /// Views by the peer's keyframe.
+  /// Views, or submaps, by the peer's keyframe.
   using Views = std::map<std::uint32_t, Clouds::Cloud>;
-  /// The peer's keyframes whose views the merge check needs; none ends the comparison, and all views are
-  /// forgotten.
-  void await_comparison_of(std::vector<std::uint32_t> keyframes);
-  /// Forgets views that are not awaited; they are asked for again when they are.
+  /// The peer's keyframes whose clouds the merge check needs; none ends the comparison, and all clouds are
+  /// forgotten, as are those of the other kind.
+  void await_comparison_of(std::vector<std::uint32_t> keyframes, CloudKind kind = CloudKind::view);
+  /// Forgets clouds that are not awaited; they are asked for again when they are.
   void forget_views();
 
   /// The clouds to ask for next.
@@ -86,9 +86,9 @@ class PeerSession {
   [[nodiscard]] std::vector<Arrived> arrived(const Clouds& clouds) const;
   /// They were registered, and wait no longer.
   void finish_registration(const std::vector<Arrived>& arrived);
-  /// Keeps the views that the merge check waits for. Other alignments of the maps compare the same ones.
+  /// Keeps the clouds that the merge check waits for. Other alignments of the maps compare the same ones.
   void take_views(const Clouds& clouds);
-  /// Whether the merge check has all views that it waits for.
+  /// Whether the merge check has all clouds that it waits for.
   [[nodiscard]] bool has_comparison() const { return missing_views().empty(); }
   /// All that have come and were not forgotten.
   [[nodiscard]] const Views& views() const { return views_; }
@@ -104,6 +104,7 @@ class PeerSession {
   bool is_searched_ = false;
   std::map<std::uint32_t, std::vector<LoopCandidate>> waiting_;  ///< By the peer's keyframe.
   std::vector<std::uint32_t> to_compare_;
+  CloudKind compared_ = CloudKind::view;  ///< Of `to_compare_` and `views_`.
   Views views_;
 };
 
