@@ -35,6 +35,11 @@ Features features_of(const Clouds::Cloud& submap, const RegistrationConfig& conf
   return compute_features(cloud, config);
 }
 
+/// One question is put to all.
+bool are_to_be_registered(const std::vector<PlannedComparison>& asked) {
+  return !asked.empty() && asks_to_register(asked.front().question);
+}
+
 }  // namespace
 
 bool PlaceComparer::agrees_displaced(std::uint32_t own, const SeenSurface& theirs,
@@ -64,12 +69,11 @@ void PlaceComparer::prepare_submaps(const std::vector<std::uint32_t>& keyframes)
   discernment_.features().prepare(keyframes);
 }
 
-std::vector<ComparedPlace> PlaceComparer::look_for(
-    const std::vector<PlannedComparison>& asked,
-    const std::function<SubmapOfTheirs(std::size_t i)>& theirs) const {
+std::vector<ComparedPlace> PlaceComparer::look_for(const std::vector<PlannedComparison>& asked,
+                                                   const std::vector<SubmapOfTheirs>& theirs) const {
   std::vector<ComparedPlace> places(asked.size());
   parallel_for_each(asked.size(),
-                    [&](std::size_t i) { places[i].found_again = found_again(asked[i], theirs(i)); });
+                    [&](std::size_t i) { places[i].found_again = found_again(asked[i], theirs[i]); });
   return places;
 }
 
@@ -147,18 +151,19 @@ std::vector<ComparedPlace> PlaceComparer::places_of(std::vector<Fitted> found) {
 
 std::vector<ComparedPlace> PlaceComparer::with_views(const std::vector<PlannedComparison>& asked,
                                                      const PeerSession::Views& views) {
-  const bool is_to_register = !asked.empty() && asks_to_register(asked.front().question);
   std::vector<std::optional<SeenSurface>> theirs(asked.size());
   parallel_for_each(asked.size(), [&](std::size_t i) {
     theirs[i].emplace(received_view(views.at(asked[i].theirs), registration_));
   });
-  if (is_to_register) {
+  if (are_to_be_registered(asked)) {
     prepare_submaps(own_keyframes(asked));
     std::vector<Features> features(asked.size());
     parallel_for_each(asked.size(), [&](std::size_t i) {
       features[i] = features_of(views.at(asked[i].theirs), registration_);
     });
-    return look_for(asked, [&](std::size_t i) -> SubmapOfTheirs { return {*theirs[i], features[i]}; });
+    std::vector<SubmapOfTheirs> submaps;
+    for (std::size_t i = 0; i < asked.size(); ++i) submaps.push_back({*theirs[i], features[i]});
+    return look_for(asked, submaps);
   }
   std::vector<Fitted> found =
       compare_views(asked, [&](std::size_t i) -> const SeenSurface& { return *theirs[i]; }, {});
@@ -173,13 +178,14 @@ std::vector<ComparedPlace> PlaceComparer::with_views(const std::vector<PlannedCo
 
 std::vector<ComparedPlace> PlaceComparer::within_own_map(const std::vector<PlannedComparison>& asked) {
   const std::vector<std::uint32_t> later = their_keyframes(asked);
-  if (!asked.empty() && asks_to_register(asked.front().question)) {
+  if (are_to_be_registered(asked)) {
     std::vector<std::uint32_t> both = own_keyframes(asked);
     both.insert(both.end(), later.begin(), later.end());
     prepare_submaps(both);
-    return look_for(asked, [&](std::size_t i) -> SubmapOfTheirs {
-      return {discernment_.views().at(later[i]), discernment_.features().at(later[i])};
-    });
+    std::vector<SubmapOfTheirs> submaps;
+    for (const std::uint32_t k : later)
+      submaps.push_back({discernment_.views().at(k), discernment_.features().at(k)});
+    return look_for(asked, submaps);
   }
   std::vector<Fitted> found = compare_views(
       asked, [&](std::size_t i) -> const SeenSurface& { return discernment_.views().at(later[i]); }, later);

@@ -54,13 +54,12 @@ class PlaceComparer {
     const SeenSurface& surface;
     const Features& features;
   };
-  /// Registers submaps of places that were compared before; those of the own keyframes are made.
-  [[nodiscard]] std::vector<ComparedPlace> look_for(
-      const std::vector<PlannedComparison>& asked,
-      const std::function<SubmapOfTheirs(std::size_t i)>& theirs) const;
-  [[nodiscard]] FoundAgain found_again(const PlannedComparison& place, const SubmapOfTheirs& theirs) const;
-  /// Makes what registering those keyframes needs.
+  /// Makes what registering those own keyframes needs.
   void prepare_submaps(const std::vector<std::uint32_t>& keyframes);
+  /// Registers places that were compared before, one submap of theirs for each.
+  [[nodiscard]] std::vector<ComparedPlace> look_for(const std::vector<PlannedComparison>& asked,
+                                                    const std::vector<SubmapOfTheirs>& theirs) const;
+  [[nodiscard]] FoundAgain found_again(const PlannedComparison& place, const SubmapOfTheirs& theirs) const;
   /// Of the places where walls are asked for and the views agree.
   [[nodiscard]] static std::vector<std::size_t> those_with_walls(const std::vector<PlannedComparison>& asked,
                                                                  const std::vector<Fitted>& found);
