@@ -18,7 +18,7 @@ constexpr ChancesToGoOn kOfLookAlikes = {0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9
 /// Whether the next place agrees, by what the places before it showed.
 using Agrees = std::function<bool(Rng&, const std::vector<TestedPlace>&)>;
 
-/// As often as P. Polya's urn says of a share that is not known.
+/// As often as Polya's urn says of a share that is not known.
 Agrees by_urn(double share, double worth) {
   return [=](Rng& rng, const std::vector<TestedPlace>& before) {
     const auto agreed =
