@@ -24,7 +24,7 @@ constexpr float kIntensityOfPeer = 100.0F;
 /// are left out.
 ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
                        const std::function<bool(const Eigen::Vector3f&)>& is_seen_by_peer,
-                       PlaceQuestion question = PlaceQuestion::agreement) {
+                       PlaceQuestion question = PlaceQuestion::agreement, CloudKind sent = CloudKind::view) {
   const auto own = in_a_tube(kBlock);
   const auto theirs = in_a_tube(boxes_of_peer, {1});
   const AdaptiveConfig config;
@@ -32,8 +32,7 @@ ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
       own, chain_of(graph_of(*own)), [] { return std::vector<LoopCandidate>(); },
       std::make_shared<FeatureStore>(own, config.registration, config.submap), config);
   PlaceComparer comparer(*own, discernment, config.registration);
-  const CloudKind kind = asks_to_register(question) ? CloudKind::submap : CloudKind::view;
-  Clouds::Cloud cloud = clouds_of(*theirs, {{kBesideTheBlock}, kind},
+  Clouds::Cloud cloud = clouds_of(*theirs, {{kBesideTheBlock}, sent},
                                   {config.registration.voxel_size, config.submap, config.view})
                             .clouds[0];
   PointCloud seen;
@@ -79,22 +78,25 @@ TEST(PlaceComparer, WallsKnowTheIntensitiesThatThePeerSent) {
   }
 }
 
-TEST(PlaceComparer, RegistrationFindsAPlaceAgainWhereItCannotSlide) {
-  EXPECT_EQ(compared(kBlock, everything).found_again, FoundAgain::not_asked);
-  EXPECT_EQ(compared(kBlock, everything, PlaceQuestion::registration).found_again, FoundAgain::there);
-  EXPECT_NE(compared(kBlock, away_from_the_block, PlaceQuestion::registration).found_again,
-            FoundAgain::there);
-  EXPECT_NE(compared({}, everything, PlaceQuestion::registration).found_again, FoundAgain::there);
+FoundAgain found_again(const std::vector<test::Box>& boxes_of_peer,
+                       const std::function<bool(const Eigen::Vector3f&)>& is_seen_by_peer,
+                       CloudKind sent = CloudKind::submap) {
+  return compared(boxes_of_peer, is_seen_by_peer, PlaceQuestion::registration, sent).found_again;
 }
 
-// One point in `one_in` of those that a dense sensor has.
-TEST(PlaceComparer, ASparseSensorIsFoundAgainByItsSubmap) {
-  const auto one_in = [](std::uint64_t num) {
-    return [num](const Eigen::Vector3f& p) {
-      return mix64(1, static_cast<std::uint64_t>((p.array() * 1000.0F).abs().sum())) % num == 0;
-    };
+TEST(PlaceComparer, RegistrationFindsAPlaceAgainWhereItCannotSlide) {
+  EXPECT_EQ(compared(kBlock, everything).found_again, FoundAgain::not_asked);
+  EXPECT_EQ(found_again(kBlock, everything), FoundAgain::there);
+  EXPECT_NE(found_again(kBlock, away_from_the_block), FoundAgain::there);
+  EXPECT_NE(found_again({}, everything), FoundAgain::there);
+}
+
+TEST(PlaceComparer, ASubmapOfFewPointsIsFoundAgainWhereAViewIsNot) {
+  const auto one_of_three = [](const Eigen::Vector3f& p) {
+    return mix64(1, static_cast<std::uint64_t>((p.array() * 1000.0F).abs().sum())) % 3 == 0;
   };
-  EXPECT_EQ(compared(kBlock, one_in(3), PlaceQuestion::registration).found_again, FoundAgain::there);
+  EXPECT_EQ(found_again(kBlock, one_of_three), FoundAgain::there);
+  EXPECT_NE(found_again(kBlock, one_of_three, CloudKind::view), FoundAgain::there);
 }
 
 TEST(PlaceComparer, ABlockThatOnlyOneTubeHasDiffers) {
