@@ -201,8 +201,9 @@ void MotionFilter::measure(const WheelDelta& wheel) {
   if (sigmas > kHuber) innovation(0, 0) *= sigmas / kHuber;
   const Columns6 cross = covariance_ * H.transpose();
   Columns6 gain = innovation.ldlt().solve(cross.transpose()).transpose();
-  // Scans correct these. Here their derivative, the counted distance, has the noise of the residual in it, and the
-  // product of both is not zero in the mean (errors in variables): every scale would come out too small.
+  // Scans correct these. Here their derivative, the counted distance, has the noise of the residual in it,
+  // and the product of both is not zero in the mean (errors in variables): every scale would come out too
+  // small.
   gain.row(kScale).setZero();
   gain.row(kSlip).setZero();
   correct(-gain * residual,

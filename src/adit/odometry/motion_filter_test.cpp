@@ -270,8 +270,9 @@ TEST(MotionFilter, WheelsThatSlipWeighLessUntilTheRestKnowsNoBetter) {
   EXPECT_NEAR(drive(0.21, 100), 0.21, 5e-3);
 }
 
-// A second of slip by 30 % is no error of the radius, and neither is slip to and fro. The derivative by the scale is the
-// counted distance, which has that slip in it: were the scale corrected by wheels, a tenth of the way would be lost here.
+// A second of slip by 30 % is no error of the radius, and neither is slip to and fro. The derivative by the
+// scale is the counted distance, which has that slip in it: were the scale corrected by wheels, a tenth of
+// the way would be lost here.
 TEST(MotionFilter, NoSlipIsTakenForTheScaleWhereScansLeaveTheWayOpen) {
   Filter filter({.speed = 0.1});
   Rng rng(5);
