@@ -66,8 +66,8 @@ class MotionFilter {
   /// what is said of the first scan is ignored. Of `motion`, what was measured in between, the IMU.
   void predict(Stamp begin, Stamp end, const SensedMotion& motion);
   /// What the wheels say about the interval predicted last. The farther off ahead, the less they weigh: they
-  /// may slip. Their scale and slip are not corrected by it, only considered: scans tell those (S. F. Schmidt,
-  /// 1966). Source: Huber, "Robust Estimation of a Location Parameter" (1964).
+  /// may slip. Their scale and slip are not corrected by it, only considered: scans tell those (S. F.
+  /// Schmidt, 1966). Source: Huber, "Robust Estimation of a Location Parameter" (1964).
   void measure(const WheelDelta& wheel);
 
   /// The motion in the interval predicted last.
