@@ -127,7 +127,7 @@ TEST_F(Growing, APersonOverrulesTheTest) {
       << "taken back, and not quoted";
   EXPECT_TRUE(text_of("vetoed/ahead/trajectory.tum") == text_of("s/ahead/trajectory.tum"));
 
-  expect_refused("slam --session " + in("vetoed") + " --confirm far,ahead", 1, "no alignment was found");
+  expect_refused("slam --session " + in("vetoed") + " --confirm far,behind", 1, "no alignment was found");
   expect_refused("slam --session " + in("s") + " --veto ahead,nobody", 1,
                  "no robot is called nobody; there are: ahead behind");
   expect_refused("slam --session " + in("s") + " --veto ahead", 2, "names no two robots");
