@@ -29,7 +29,7 @@ struct AgentConfig {
   MergePolicy policy = MergePolicy::adaptive;
   PlaceIndexConfig place;
   RegistrationConfig registration;  ///< Read under MergePolicy::paper alone, like the next.
-  FixedLoopNoise loop_noise;
+  LoopNoise loop_noise;
   int max_candidates = 6000;
   int candidates_per_peer = 8;
   AdaptiveConfig adaptive;  ///< Read under MergePolicy::adaptive alone.

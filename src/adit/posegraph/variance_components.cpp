@@ -77,7 +77,7 @@ std::optional<std::vector<double>> fitted_numbers(const BasicPoseGraph<P>& graph
 template <class P>
 bool improve(const BasicPoseGraph<P>& graph, const BasicPoseGraph<P>& solved,
              const std::vector<std::size_t>& source_of_edge, const std::vector<double>& edge_weights,
-             std::vector<VarianceComponent>& components) {
+             double least_variance, std::vector<VarianceComponent>& components) {
   const auto fitted = fitted_numbers(solved, source_of_edge, components.size(), edge_weights);
   if (!fitted) return false;
   std::vector<VarianceComponent> next(components.size());
@@ -93,7 +93,7 @@ bool improve(const BasicPoseGraph<P>& graph, const BasicPoseGraph<P>& solved,
   for (std::size_t s = 0; s < next.size(); ++s) {
     VarianceComponent& c = next[s];
     c.redundancy = std::max(0.0, static_cast<double>(c.num_edges) * P::kDof - (*fitted)[s]);
-    c.variance = (kPriorRedundancy + c.chi2) / (kPriorRedundancy + c.redundancy);
+    c.variance = std::max(least_variance, (kPriorRedundancy + c.chi2) / (kPriorRedundancy + c.redundancy));
     changes = changes || std::abs(c.variance / components[s].variance - 1.0) > kSettled;
   }
   components = std::move(next);
@@ -105,8 +105,8 @@ bool improve(const BasicPoseGraph<P>& graph, const BasicPoseGraph<P>& solved,
 template <class P>
 BalancedSolution<P> optimize_balanced(const BasicPoseGraph<P>& graph,
                                       const std::vector<std::size_t>& source_of_edge, std::size_t num_sources,
-                                      const OptimizerConfig& config,
-                                      const std::vector<double>& edge_weights) {
+                                      const OptimizerConfig& config, const std::vector<double>& edge_weights,
+                                      double least_variance) {
   ADIT_CHECK(source_of_edge.size() == graph.edges.size(), "a source for each edge");
   ADIT_CHECK(std::ranges::all_of(source_of_edge, [&](std::size_t s) { return s < num_sources; }),
              "sources are numbered from 0 to num_sources - 1");
@@ -121,7 +121,7 @@ BalancedSolution<P> optimize_balanced(const BasicPoseGraph<P>& graph,
     out.solution = std::move(solution);
     if (!out.solution.ok()) break;
     for (std::size_t i = 0; i < solved.nodes.size(); ++i) solved.nodes[i].pose = out.solution.poses[i];
-    if (!improve(graph, solved, source_of_edge, edge_weights, out.components)) break;
+    if (!improve(graph, solved, source_of_edge, edge_weights, least_variance, out.components)) break;
     for (std::size_t e = 0; e < graph.edges.size(); ++e)
       solved.edges[e].information = graph.edges[e].information / out.components[source_of_edge[e]].variance;
   }
@@ -130,9 +130,9 @@ BalancedSolution<P> optimize_balanced(const BasicPoseGraph<P>& graph,
 
 template BalancedSolution<Pose> optimize_balanced(const PoseGraph&, const std::vector<std::size_t>&,
                                                   std::size_t, const OptimizerConfig&,
-                                                  const std::vector<double>&);
+                                                  const std::vector<double>&, double);
 template BalancedSolution<Pose2> optimize_balanced(const PoseGraph2&, const std::vector<std::size_t>&,
                                                    std::size_t, const OptimizerConfig&,
-                                                   const std::vector<double>&);
+                                                   const std::vector<double>&, double);
 
 }  // namespace adit

@@ -34,7 +34,8 @@ struct BalancedSolution {
 ///
 /// Residuals alone say too little of a variance: what few measurements check fits almost exactly, whatever it
 /// is worth. chi2 is divided by the redundancy, n - tr(Omega J H^-1 J^T), whose trace is estimated by random
-/// signs, the same ones every time. Both count as added to six numbers that fit as stated.
+/// signs, the same ones every time. Both count as added to six numbers that fit as stated. No variance counts
+/// as less than `least_variance`: residuals do not show the errors that all measurements of a source share.
 /// Fails where `optimize` does. Source: Foerstner, "Ein Verfahren zur Schaetzung von Varianz- und
 /// Kovarianzkomponenten" (AVN 1979); Hutchinson, "A stochastic estimator of the trace of the influence
 /// matrix" (Communications in Statistics 1990).
@@ -42,6 +43,7 @@ template <class P>
 [[nodiscard]] BalancedSolution<P> optimize_balanced(const BasicPoseGraph<P>& graph,
                                                     const std::vector<std::size_t>& source_of_edge,
                                                     std::size_t num_sources, const OptimizerConfig& config,
-                                                    const std::vector<double>& edge_weights);
+                                                    const std::vector<double>& edge_weights,
+                                                    double least_variance = 0.0);
 
 }  // namespace adit

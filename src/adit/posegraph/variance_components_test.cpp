@@ -79,6 +79,16 @@ TEST(VarianceComponents, TellSourcesThatStateTooMuchFromThoseThatStateTooLittle)
   }
 }
 
+TEST(VarianceComponents, NoSourceCountsAsBetterThanTheLeast) {
+  const Drive<Pose> drive = laps<Pose>(240, 1, 0.1, 4.0, 1);
+  const auto free = balanced(drive).components;
+  const auto bounded =
+      optimize_balanced(drive.graph, drive.source_of_edge, kNumSources, {}, {}, 1.0).components;
+  EXPECT_LT(free[kOdometry].variance, 0.5);
+  EXPECT_EQ(bounded[kOdometry].variance, 1.0);
+  EXPECT_GT(bounded[kLoops].variance, 2.0) << "those that err more than they state are found out still";
+}
+
 TEST(VarianceComponents, BringTheSolutionNearerToTheTruth) {
   double squared = 0.0;
   double squared_unbalanced = 0.0;

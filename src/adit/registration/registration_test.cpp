@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "adit/core/decompositions.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/rng.hpp"
 #include "adit/registration/verification.hpp"
@@ -47,7 +48,27 @@ PointCloud hall(std::uint64_t layout, std::uint64_t sample) {
   return cloud;
 }
 
-/// A straight smooth tube of 5 m radius, seen from its axis, x.
+constexpr double kBendRadius = 18.0;  // metres
+
+/// A smooth tube of 4 m radius that turns to the left, seen from its axis, where it leads along x. Its floor
+/// is flat, so that it does not roll.
+PointCloud bend(std::uint64_t sample) {
+  Rng rng(sample);
+  PointCloud cloud;
+  for (int k = 0; k < 40000; ++k) {
+    const double turned = rng.uniform(-0.8, 0.8);
+    const double angle = rng.uniform(0.0, 2.0 * std::numbers::pi);
+    const double radius = 4.0 + 0.01 * rng.normal();
+    const double from_centre = kBendRadius - radius * std::cos(angle);
+    const double up = std::max(radius * std::sin(angle), -2.0 + 0.01 * rng.normal());
+    cloud.points.push_back(
+        Vector3(from_centre * std::sin(turned), kBendRadius - from_centre * std::cos(turned), up)
+            .cast<float>());
+  }
+  return cloud;
+}
+
+/// A straight smooth tube of 4 m radius, seen from its axis, x.
 PointCloud tube(std::uint64_t sample) {
   Rng rng(sample);
   PointCloud cloud;
@@ -134,6 +155,19 @@ TEST(Registration, KnowsThatATubeIsOpenAlongItsAxis) {
   EXPECT_LT(r.weak_axis, 0.01);
   EXPECT_GT(std::abs(r.weak_direction.x()), 0.99);
   EXPECT_NE(r.reason.find("slide along"), std::string::npos) << r.reason;
+}
+
+TEST(Registration, KnowsThatABendIsOpenAlongItsArc) {
+  RegistrationConfig config;
+  config.min_inliers = 3;
+  const Registration r = register_clouds(bend(17), bend(18), config);
+  ASSERT_EQ(r.verdict, LoopVerdict::accepted) << r.reason;
+  EXPECT_GT(r.weak_axis, 0.01) << "a translation alone meets walls";
+  const Matrix6 covariance = inverse(r.information);
+  EXPECT_GT(std::sqrt(covariance(0, 0)), 1.0);
+  EXPECT_NEAR(covariance(5, 0) / covariance(0, 0), 1.0 / kBendRadius, 0.2 / kBendRadius)
+      << "who is farther along has turned farther";
+  EXPECT_LT(std::sqrt(covariance(2, 2)), 0.05) << "upwards, it is held";
 }
 
 TEST(Registration, DifferentPlacesAreRejectedBecauseNothingLooksAlike) {

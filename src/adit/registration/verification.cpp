@@ -30,7 +30,8 @@ constexpr double kRegion = 8.0;
 struct PairSums {
   Matrix6 cross_hessian = Matrix6::Zero();
   Matrix6 hessian = Matrix6::Zero();
-  std::map<VoxelKey, Vector6> gradients;  ///< By region of cloud b.
+  Matrix6 displacements = Matrix6::Zero();  ///< Squares of how far the points move, per twist of frame b.
+  std::map<VoxelKey, Vector6> gradients;    ///< By region of cloud b.
   double squared_residuals = 0.0;
   double num_pairs = 0.0;
 };
@@ -52,6 +53,9 @@ PairSums sum_over_pairs(const Features& a, const Features& b, const std::vector<
     jacobian_b << n_b, p_b.cross(n_b);
     sums.cross_hessian += r.jacobian * jacobian_b.transpose();
     sums.hessian += r.jacobian * r.jacobian.transpose();
+    Eigen::Matrix<double, 3, 6> moved;
+    moved << Matrix3::Identity(), -so3::hat(p_b);
+    sums.displacements += moved.transpose() * moved;
     sums.gradients.try_emplace(*region, Vector6::Zero()).first->second += r.value * r.jacobian;
     sums.squared_residuals += r.value * r.value;
     sums.num_pairs += 1.0;
@@ -89,14 +93,27 @@ Matrix6 information_of(const PairSums& sums, double variance) {
   return 0.5 * (information + information.transpose());
 }
 
-/// The information where the translation may also be off by `kSlide` along `direction` (frame b), by
-/// Woodbury's identity: the residuals say little of that direction, and what they say comes from the sampling
-/// of the clouds, which is not independent from point to point.
-Matrix6 sliding_along(const Vector3& direction, const Matrix6& information) {
-  Vector6 d = Vector6::Zero();
-  d.head<3>() = direction;
-  const Vector6 v = information * d;
-  return information - v * v.transpose() / (1.0 / (kSlide * kSlide) + d.dot(v));
+/// The information where the pose may also be off along `twist` (frame b) by `kSlide` of it, by Woodbury's
+/// identity.
+Matrix6 sliding_along(const Vector6& twist, const Matrix6& information) {
+  const Vector6 v = information * twist;
+  return information - v * v.transpose() / (1.0 / (kSlide * kSlide) + twist.dot(v));
+}
+
+/// The information where the clouds are free to slide: along a straight tube, along a bend, about the axis of
+/// a round one (slippable motions, N. Gelfand and L. J. Guibas, "Shape Segmentation Using Local Slippage
+/// Analysis", SGP 2004, eq. 4). Along such a motion the points hardly move against the walls, and what their
+/// residuals say of it comes from the sampling of the clouds, which is not independent from point to point.
+Matrix6 without_slippable(const PairSums& sums, Matrix6 information) {
+  // Twists by which the points move by one metre in the mean square, of which `values` is against the walls.
+  const Eigen::LLT<Matrix6> displacement(sums.displacements / sums.num_pairs);
+  if (displacement.info() != Eigen::Success) return information;
+  const Matrix6 onto_twists = displacement.matrixU().solve(Matrix6::Identity());
+  const auto [values, vectors] =
+      symmetric_eigen(Matrix6(onto_twists.transpose() * (sums.cross_hessian / sums.num_pairs) * onto_twists));
+  for (int i = 0; i < 6 && values[i] < kWeakAxis; ++i)
+    information = sliding_along(onto_twists * vectors.col(i), information);
+  return information;
 }
 
 double share(std::size_t part, std::size_t whole) {
@@ -127,7 +144,7 @@ Evidence gather_evidence(const Features& a, const PointGrid& grid_a, const Featu
   const double trace = values.cwiseMax(0.0).sum();
   if (trace > 0.0) out.weak_axis = std::max(values[0], 0.0) / trace;
   out.weak_direction = T_a_b.rotation() * directions.col(0);
-  if (out.weak_axis < kWeakAxis) out.information = sliding_along(directions.col(0), out.information);
+  out.information = without_slippable(sums, out.information);
   return out;
 }
 

@@ -170,6 +170,10 @@ MeasurementSource source_of(const PoseGraph& graph, const PoseGraph::Edge& edge)
   return {edge.kind, {std::min(from, to), std::max(from, to)}};
 }
 
+/// Loops of two robots share the errors of two LiDARs, and those that were selected fit one another: none
+/// counts as better than it states (decision 0086).
+constexpr double kLeastVariance = 1.0;
+
 /// What each source is worth, estimated with the poses, from the poses and weights of `solved`.
 Solution<Pose> balanced(PoseGraph graph, const Solution<Pose>& solved, const OptimizerConfig& config,
                         std::map<MeasurementSource, VarianceComponent>& variances) {
@@ -179,7 +183,7 @@ Solution<Pose> balanced(PoseGraph graph, const Solution<Pose>& solved, const Opt
     sources.push_back(numbers.try_emplace(source_of(graph, edge), numbers.size()).first->second);
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) graph.nodes[i].pose = solved.poses[i];
   BalancedSolution<Pose> found =
-      optimize_balanced(graph, sources, numbers.size(), config, solved.edge_weights);
+      optimize_balanced(graph, sources, numbers.size(), config, solved.edge_weights, kLeastVariance);
   if (!found.solution.ok()) return solved;
   for (const auto& [source, number] : numbers) variances[source] = found.components[number];
   found.solution.edge_weights = solved.edge_weights;

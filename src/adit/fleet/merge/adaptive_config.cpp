@@ -67,6 +67,9 @@ Fields fields_of(AdaptiveConfig& c) {
   Fields fields = fields_of(c.search);
   fields.push_back({"one_place_m", &c.one_place_m, "m", 0.1, 1000.0,
                     "loops whose keyframes stand farther apart are rejected: not one place"});
+  fields.push_back({"loop_translation", &c.loop_noise.translation, "m", 1e-4, 10.0,
+                    "sigma of what two LiDARs' errors add to what a registration states"});
+  fields.push_back({"loop_rotation_deg", &c.loop_noise.rotation_deg, "deg", 1e-3, 90.0, "likewise"});
   append(fields, "registration", fields_of(c.registration));
   append(fields, "submap", fields_of(c.submap));
   append(fields, "view", fields_of(c.view));

@@ -13,12 +13,6 @@
 
 namespace adit {
 
-Matrix6 information_of(const FixedLoopNoise& noise) {
-  Vector6 sigma;
-  sigma << Vector3::Constant(noise.translation), Vector3::Constant(noise.rotation_deg * kDegree);
-  return sigma.cwiseAbs2().cwiseInverse().asDiagonal();
-}
-
 std::vector<LoopClosure> LoopRegistration::with_clouds(const std::vector<PeerSession::Arrived>& arrived,
                                                        const Clouds& clouds) {
   std::vector<std::uint32_t> own;
@@ -57,6 +51,7 @@ LoopClosure LoopRegistration::registered(const LoopCandidate& candidate, const F
   loop.to = candidate.match;
   loop.T_from_to = registration.T_a_b.value_or(Pose());
   loop.information = config_.noise ? information_of(*config_.noise) : registration.information;
+  if (config_.more_noise) loop.information = with_noise(*config_.more_noise, loop.information);
   loop.place_distance = candidate.distance;
   loop.num_inliers = registration.num_inliers;
   loop.overlap = registration.overlap;

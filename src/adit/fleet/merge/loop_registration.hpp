@@ -11,18 +11,11 @@
 #include <vector>
 
 #include "adit/fleet/merge/keyframe_store.hpp"
+#include "adit/fleet/merge/loop_noise.hpp"
 #include "adit/fleet/sync/peer_session.hpp"
 #include "adit/registration/registration_config.hpp"
 
 namespace adit {
-
-/// Sigmas that all loops of the paper's policies have, as in Swarm-SLAM's back-end.
-struct FixedLoopNoise {
-  double translation = 0.1;   ///< Metres.
-  double rotation_deg = 0.6;  ///< About each axis.
-};
-/// Diagonal, [translation; rotation] in 1/m^2 and 1/rad^2.
-[[nodiscard]] Matrix6 information_of(const FixedLoopNoise& noise);
 
 /// How candidates are registered, and which of those that fit are loops.
 struct LoopRegistrationConfig {
@@ -30,7 +23,8 @@ struct LoopRegistrationConfig {
   /// Farther apart, in metres, two scans may show the same walls, but it is not one place.
   double one_place_m = std::numeric_limits<double>::infinity();
   bool upright = false;  ///< Both robots stand on floors: no loop tilts one by more than 60 degrees.
-  std::optional<FixedLoopNoise> noise = {};  ///< Instead of what each registration says of itself.
+  std::optional<LoopNoise> noise = {};       ///< Instead of what each registration says of itself.
+  std::optional<LoopNoise> more_noise = {};  ///< Besides what it says.
 };
 
 /// Registers own keyframes with those of peers and with one another.

@@ -48,7 +48,7 @@ struct StraightDrive {
   }
 };
 
-LoopCandidate candidate(std::uint32_t query, std::uint32_t match, double distance) {
+LoopCandidate found_candidate(std::uint32_t query, std::uint32_t match, double distance) {
   return {{kSearching, query}, {kSearched, match}, 0.0, distance};
 }
 
@@ -72,7 +72,7 @@ TEST(SelfSimilarity, FindsThePlaceThatLooksAlikeAndNotTheOneBeside) {
 
 TEST(CandidateSearch, PlacesThatLookLikeOthersOfTheOwnMapComeLast) {
   const StraightDrive drive(60, {{10, 40}});
-  const std::vector<LoopCandidate> found = {candidate(10, 5, 0.02), candidate(30, 9, 0.03)};
+  const std::vector<LoopCandidate> found = {found_candidate(10, 5, 0.02), found_candidate(30, 9, 0.03)};
   SearchConfig config;
   EXPECT_EQ(queries_of(drive.search(config).most_promising(found)), (std::vector{30U, 10U}));
   config.stand_out = false;
@@ -82,7 +82,7 @@ TEST(CandidateSearch, PlacesThatLookLikeOthersOfTheOwnMapComeLast) {
 TEST(CandidateSearch, TakesAFewOfEachPlaceAndNoMoreThanAreAskedFor) {
   const StraightDrive drive(60);
   std::vector<LoopCandidate> found;
-  for (std::uint32_t k = 0; k < 60; ++k) found.push_back(candidate(k, k, 0.001 * (k + 1)));
+  for (std::uint32_t k = 0; k < 60; ++k) found.push_back(found_candidate(k, k, 0.001 * (k + 1)));
   SearchConfig config;
   config.stand_out = false;
   config.of_a_place = 2;
@@ -93,7 +93,7 @@ TEST(CandidateSearch, TakesAFewOfEachPlaceAndNoMoreThanAreAskedFor) {
 
 TEST(CandidateSearch, AKeyframeIsTakenOnceFromItsBestLane) {
   const std::vector<LoopCandidate> chosen =
-      StraightDrive(30).search({}).most_promising({candidate(4, 8, 0.3), candidate(4, 7, 0.1)});
+      StraightDrive(30).search({}).most_promising({found_candidate(4, 8, 0.3), found_candidate(4, 7, 0.1)});
   ASSERT_EQ(chosen.size(), 1U);
   EXPECT_EQ(chosen[0].match.index, 7U);
 }
