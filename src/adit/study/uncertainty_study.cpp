@@ -7,6 +7,7 @@
 #include "adit/core/angles.hpp"
 #include "adit/core/decompositions.hpp"
 #include "adit/core/format.hpp"
+#include "adit/evaluation/ate.hpp"
 #include "adit/fleet/joint/merge_accuracy.hpp"
 #include "adit/posegraph/gnc.hpp"
 #include "adit/posegraph/marginals.hpp"
@@ -20,19 +21,42 @@ constexpr double kRightPlace = 2.0;  // metres: what a registration that found t
 constexpr double kRightTurn = 10.0;  // degrees
 constexpr double kEvery = 10.0;      // metres between the poses that are compared; nearer ones err alike
 
-/// A robot's keyframes where its odometry and where the truth has them.
+/// A robot's keyframes where its odometry has them, and where the truth has the base as the LiDAR is taken to
+/// be mounted on it.
 struct Placed {
   StatedPath path;
   std::vector<Pose> truth;
 };
 
+/// By how much the LiDAR is turned on its mount against what the robot takes it for. All poses share that,
+/// and no path is longer or more bent for it: it is the rotation that is left, in the mean, where the
+/// positions fit best.
+Result<Pose> turn_of_mount(const Trajectory& estimate, const Trajectory& truth) {
+  const Result<AteResult> fit = ate(estimate, truth);
+  if (!fit) return tl::unexpected(fit.error());
+  Matrix3 sum = Matrix3::Zero();
+  for (const StampedPose& pose : estimate) {
+    const Result<Pose> T_world_base = pose_at(truth, pose.stamp);
+    if (T_world_base)
+      sum += T_world_base->rotation_matrix().transpose() *
+             (fit->T_world_estimate * pose.T_world_body).rotation_matrix();
+  }
+  const Svd3 parts = svd(sum);
+  const Vector3 signs(1.0, 1.0, (parts.u * parts.v.transpose()).determinant());
+  return Pose(Matrix3(parts.u * signs.asDiagonal() * parts.v.transpose()), Vector3::Zero());
+}
+
 Result<Placed> placed(const RobotRun& run) {
+  Trajectory estimate;
+  for (const Keyframe& keyframe : run.map->keyframes) estimate.push_back({keyframe.stamp, keyframe.T_odom_base});
+  const Result<Pose> turn = turn_of_mount(estimate, run.truth);
+  if (!turn) return fail(run.result.name, turn.error());
   Placed out;
   for (const Keyframe& keyframe : run.map->keyframes) {
     const Result<Pose> T_world_base = pose_at(run.truth, keyframe.stamp);
     if (!T_world_base) return fail(run.result.name, T_world_base.error());
     out.path.T_odom_keyframe.push_back(keyframe.T_odom_base);
-    out.truth.push_back(*T_world_base);
+    out.truth.push_back(*T_world_base * *turn);
   }
   out.path.step_covariances = run.map->step_covariances;
   out.path.pose_noise = run.map->pose_noise;

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 /// The bytes of a message, written and read one after the other. Each type of the protocol has a `put` and a
-/// `get` in this namespace (wire.cpp), which `vector` finds by the Writer or Reader that they take.
+/// `get` in this namespace (wire.cpp, wire_merge_checks.cpp), which `vector` finds by the Writer or Reader
+/// that they take.
 #pragma once
 
 #include <bit>
@@ -10,6 +11,7 @@
 #include <cstring>
 #include <limits>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -80,5 +82,17 @@ class Reader {
   std::size_t at_ = 0;
   bool ok_ = true;
 };
+
+/// As many bytes as the text has, behind their number.
+///@{
+inline void put(Writer& out, const std::string& text) {
+  out.scalar(static_cast<std::uint32_t>(text.size()));
+  for (const char c : text) out.scalar(c);
+}
+inline void get(Reader& in, std::string& text) {
+  const auto size = in.scalar<std::uint32_t>();
+  for (std::uint32_t i = 0; i < size && in.ok(); ++i) text.push_back(in.scalar<char>());
+}
+///@}
 
 }  // namespace adit::wire
