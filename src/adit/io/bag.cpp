@@ -29,7 +29,7 @@ Bag bag_of(const std::shared_ptr<const mcap::Reader>& reader) {
   bag.own = own_metadata(contents);
   if (!contents.torn.empty())
     bag.warnings.push_back(
-        format("{}; {} messages in front of that are read", contents.torn, contents.messages.size()));
+        format("{}; {} messages in front of the cut are read", contents.torn, contents.messages.size()));
   if (!contents.summary_fault.empty())
     bag.warnings.push_back(index_warning(contents.summary_fault, contents.messages.size(), "mcap recover"));
   TopicIndex topics;

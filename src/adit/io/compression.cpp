@@ -102,6 +102,54 @@ Result<std::string> decompress_bz2(std::string_view bytes, std::size_t size) {
   }
 }
 
+/// What `give` puts into the room that it is shown, call by call, until it puts nothing there or `size` bytes
+/// have come. Memory is taken as they come.
+template <class Give>
+std::string collected(std::size_t size, const Give& give) {
+  constexpr std::size_t kFirst = std::size_t{1} << 20U;
+  std::string out;
+  for (std::size_t done = 0;;) {
+    if (done == out.size()) out.resize(std::min(size, std::max(kFirst, 2 * done)));
+    const std::size_t given = done < out.size() ? give(out.data() + done, out.size() - done) : 0;
+    done += given;
+    if (given > 0) continue;
+    out.resize(done);
+    return out;
+  }
+}
+
+std::string front_of_zstd(std::string_view bytes, std::size_t size) {
+  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), &ZSTD_freeDCtx);
+  ADIT_CHECK(context != nullptr, "out of memory");
+  ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
+  return collected(size, [&](char* to, std::size_t room) {
+    ZSTD_outBuffer out{to, room, 0};
+    std::size_t state = 1;
+    while (out.pos == 0 && in.pos < in.size && ZSTD_isError(state) == 0)
+      state = ZSTD_decompressStream(context.get(), &out, &in);
+    return out.pos;
+  });
+}
+
+std::string front_of_lz4(std::string_view bytes, std::size_t size) {
+  LZ4F_dctx* context = nullptr;
+  ADIT_CHECK(LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) == 0, "out of memory");
+  const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> owner(
+      context, &LZ4F_freeDecompressionContext);
+  return collected(size, [&](char* to, std::size_t room) {
+    std::size_t given = 0;
+    while (given == 0) {
+      std::size_t taken = bytes.size();
+      given = room;
+      if (LZ4F_isError(LZ4F_decompress(context, to, &given, bytes.data(), &taken, nullptr)) != 0)
+        return std::size_t{0};
+      bytes.remove_prefix(taken);
+      if (taken == 0) break;
+    }
+    return given;
+  });
+}
+
 }  // namespace
 
 std::string compress_zstd(std::string_view bytes) {
@@ -132,6 +180,12 @@ Result<std::string> decompress(std::string_view bytes, std::string_view compress
     return fail(format("compression '{}' is unknown; lz4, zstd and bz2 are known", compression));
   if (bytes.size() != size) return fail(format("{} bytes, not the {} announced", bytes.size(), size));
   return std::string(bytes);
+}
+
+std::string decompress_front(std::string_view bytes, std::string_view compression, std::size_t size) {
+  if (compression == "zstd") return front_of_zstd(bytes, size);
+  if (compression == "lz4") return front_of_lz4(bytes, size);
+  return compression.empty() ? std::string(bytes.substr(0, size)) : std::string();
 }
 
 std::string compress_lzf(std::string_view bytes) {

@@ -19,6 +19,11 @@ namespace adit {
 /// GiB, of zstd only where that is more than 64 times `bytes`.
 Result<std::string> decompress(std::string_view bytes, std::string_view compression, std::size_t size);
 
+/// Of data that are cut: as many of the `size` bytes as what is there gives, whole blocks of it. Of bz2,
+/// whose blocks are larger than chunks, none; nor of data that are damaged at their begin.
+[[nodiscard]] std::string decompress_front(std::string_view bytes, std::string_view compression,
+                                           std::size_t size);
+
 /// Whether the bytes begin as a zstd frame does.
 [[nodiscard]] bool is_zstd(std::string_view bytes);
 /// A zstd frame that states its own size; bounds as of decompress.

@@ -5,6 +5,7 @@
 #include <bzlib.h>
 #include <gtest/gtest.h>
 
+#include "adit/core/rng.hpp"
 #include "adit/io/crc32.hpp"
 #include "support/files.hpp"
 
@@ -107,6 +108,30 @@ TEST(Crc32, IsTheOneOfMcapAndContinues) {
   EXPECT_EQ(crc32("123456789"), 0xCBF43926U);  // the check value of the CRC catalogue
   EXPECT_EQ(crc32("6789", crc32("12345")), 0xCBF43926U);
   EXPECT_EQ(crc32("", 17U), 17U);
+}
+
+TEST(Compression, OfDataThatAreCutTheFrontIsGiven) {
+  Rng rng(3);
+  std::string bytes(1'000'000, '\0');
+  for (char& c : bytes) c = static_cast<char>(rng.uniform(0.0, 32.0));
+  const std::string packed = compress_zstd(bytes);
+  std::size_t last = 0;
+  for (const double share : {0.0, 0.2, 0.5, 0.8, 1.0}) {
+    const auto size = static_cast<std::size_t>(share * static_cast<double>(packed.size()));
+    const std::string front =
+        decompress_front(std::string_view(packed).substr(0, size), "zstd", bytes.size());
+    EXPECT_TRUE(bytes.starts_with(front));
+    EXPECT_GE(front.size(), last);
+    EXPECT_GE(static_cast<double>(front.size() + 200'000), share * 1e6) << "blocks are of 128 kB";
+    last = front.size();
+  }
+  EXPECT_EQ(last, bytes.size());
+  EXPECT_EQ(decompress_front(packed, "zstd", 10), bytes.substr(0, 10));
+  EXPECT_EQ(decompress_front(bytes, "", 10), bytes.substr(0, 10));
+  for (const char* compression : {"zstd", "lz4", "bz2", "unheard of"}) {
+    EXPECT_EQ(decompress_front("no such frame", compression, 100), "") << compression;
+    EXPECT_EQ(decompress_front("", compression, 100), "") << compression;
+  }
 }
 
 }  // namespace

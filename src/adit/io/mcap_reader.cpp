@@ -81,6 +81,18 @@ Result<std::string> read_chunk(const ByteSource& source, std::uint64_t offset) {
   });
 }
 
+/// The front of the records of a chunk that reaches past the end of the file.
+Result<std::string> read_cut_chunk(const ByteSource& source, std::uint64_t offset) {
+  constexpr std::uint64_t kMost = std::uint64_t{1}
+                                  << 28U;  // a damaged length is no reason to read all the rest
+  const std::uint64_t start = offset + kRecordHead;
+  const Result<std::string> bytes = source.read(start, std::min(source.size - start, kMost));
+  if (!bytes) return tl::unexpected(bytes.error());
+  const std::optional<Chunk> chunk = decode_cut_chunk(*bytes);
+  if (!chunk) return fail_at(offset, "a chunk is cut off in its head");
+  return decompress_front(chunk->records, chunk->compression, std::min(chunk->uncompressed_size, kMost));
+}
+
 /// Schemas and channels, wherever they stand.
 Result<> take_definition(Contents& contents, Opcode opcode, std::uint64_t offset, std::string_view content) {
   if (opcode == Opcode::schema) {
@@ -96,19 +108,42 @@ Result<> take_definition(Contents& contents, Opcode opcode, std::uint64_t offset
   return {};
 }
 
-/// Notes every message of an expanded chunk.
-Result<> index_records(Contents& contents, std::string_view records, std::size_t chunk) {
+/// Notes every whole message of an expanded chunk. How far whole records reach.
+Result<std::uint64_t> index_front(Contents& contents, std::string_view records, std::size_t chunk) {
   RecordCursor cursor(records);
   while (const std::optional<RecordView> record = cursor.next()) {
     if (Result<> taken = take_definition(contents, record->opcode, record->offset, record->content); !taken)
-      return taken;
+      return tl::unexpected(taken.error());
     if (record->opcode != Opcode::message) continue;
     const Result<Message> message = decode_at<Message>(record->offset, record->content, "message");
     if (!message) return tl::unexpected(message.error());
     contents.messages.push_back({message->channel_id, message->log_time, chunk, record->offset});
   }
-  if (cursor.offset() == records.size()) return {};
-  return fail_at(cursor.offset(), "a record of the chunk reaches past its end");
+  return cursor.offset();
+}
+
+/// Notes every message of an expanded chunk.
+Result<> index_records(Contents& contents, std::string_view records, std::size_t chunk) {
+  const Result<std::uint64_t> end = index_front(contents, records, chunk);
+  if (!end) return tl::unexpected(end.error());
+  if (*end == records.size()) return {};
+  return fail_at(*end, "a record of the chunk reaches past its end");
+}
+
+/// What is there of a chunk that reaches past the end of the file, as far as it can be read.
+void scan_cut_chunk(const ByteSource& source, Contents& contents, std::uint64_t offset) {
+  const Result<std::string> opcode = source.read(offset, std::min<std::uint64_t>(source.size - offset, 1));
+  if (!opcode || opcode->empty() || static_cast<Opcode>(opcode->front()) != Opcode::chunk) return;
+  const Result<std::string> records = read_cut_chunk(source, offset);
+  if (!records) return;
+  contents.cut_chunk = contents.chunks.size();
+  contents.chunks.emplace_back().chunk_start = offset;
+  const std::size_t num_before = contents.messages.size();
+  // What was read in front of it stays, whatever follows.
+  if (!index_front(contents, *records, *contents.cut_chunk)) contents.messages.resize(num_before);
+  std::erase_if(contents.messages, [&](const MessageRef& message) {
+    return message.chunk == contents.cut_chunk && !contents.channels.contains(message.channel_id);
+  });
 }
 
 Result<> scan_chunk(Contents& contents, std::uint64_t offset, std::string_view content) {
@@ -171,7 +206,10 @@ Result<> scan_data(const ByteSource& source, Contents& contents) {
   for (std::uint64_t offset = kMagic.size();;) {
     throw_if_cancelled();
     const Result<RecordHead> head = read_head(source, offset);
-    if (!head) return tl::unexpected(head.error());
+    if (!head) {
+      scan_cut_chunk(source, contents, offset);
+      return tl::unexpected(head.error());
+    }
     if (head->opcode == Opcode::data_end || head->opcode == Opcode::footer) return {};
     if (is_of_use(head->opcode)) {
       const Result<> scanned = read_content(source, *head).and_then([&](const FileRecord& record) {
@@ -380,7 +418,10 @@ Result<Message> Reader::read(const MessageRef& ref) const {
     });
   }
   const std::uint64_t chunk_start = contents_.chunks[*ref.chunk].chunk_start;
-  const auto records = recent_->get(*ref.chunk, [&] { return read_chunk(source_, chunk_start); });
+  const bool is_cut = ref.chunk == contents_.cut_chunk;
+  const auto records = recent_->get(*ref.chunk, [&] {
+    return is_cut ? read_cut_chunk(source_, chunk_start) : read_chunk(source_, chunk_start);
+  });
   if (!records) return tl::unexpected(records.error());
   const std::string_view bytes = **records;
   RecordCursor cursor(bytes.substr(std::min<std::uint64_t>(ref.offset, bytes.size())));

@@ -33,8 +33,10 @@ struct Contents {
   std::vector<Metadata> metadata;             ///< Whole records, in the order of the file or its index.
   std::vector<ChunkIndex> chunks;             ///< In the order of the file or its index.
   std::vector<MessageRef> messages;  ///< By log time; equal times in the order of the file or its indexes.
-  std::string torn;                  ///< Where the file breaks off and why; "" where it is whole.
-  std::string summary_fault;         ///< Why a summary that is there could not be used; "" where it could.
+  /// Of `chunks`, the one that reaches past the end of the file; the records in front of the cut are read.
+  std::optional<std::size_t> cut_chunk;
+  std::string torn;           ///< Where the file breaks off and why; "" where it is whole.
+  std::string summary_fault;  ///< Why a summary that is there could not be used; "" where it could.
 };
 
 /// A file that is open, with its index in memory.
@@ -42,7 +44,8 @@ class Reader {
  public:
   /// Errors name the byte offset: no MCAP file, damaged records, checksums that differ. A file whose summary
   /// is damaged is gone through from its start. Of a file that ends early (no footer), as after an
-  /// interrupted recording, the whole records in front of the cut are read; none is an error.
+  /// interrupted recording, the whole records in front of the cut are read, in a chunk that is cut, too; none
+  /// is an error.
   static Result<Reader> open(ByteSource source);
 
   /// Found once, by `open`.

@@ -8,7 +8,9 @@
 #include <memory>
 
 #include "adit/core/format.hpp"
+#include "adit/core/rng.hpp"
 #include "adit/io/bag.hpp"
+#include "adit/io/compression.hpp"
 #include "adit/io/crc32.hpp"
 #include "adit/io/tum.hpp"
 #include "support/files.hpp"
@@ -143,6 +145,64 @@ TEST(McapReader, AttachmentsAreSteppedOverUnread) {
   const std::size_t inside = bytes->find("aaa") + 100;
   EXPECT_ERROR(open_mcap_bag(memory_source(bytes->substr(0, inside))),
                "a record of 100000 bytes reaches past the end of the file");
+}
+
+/// A chunk of `num` messages of a kilobyte, packed as `compression` says.
+std::string file_of_one_chunk(std::size_t num, const std::string& compression) {
+  std::string records = kSchema + kChannel;
+  Rng rng(1);
+  for (std::size_t m = 0; m < num; ++m) {
+    const Stamp time{static_cast<std::int64_t>(m)};
+    std::string data = format("message {} ", m);
+    while (data.size() < 1000) data += static_cast<char>(rng.uniform(0.0, 256.0));
+    records += mcap::framed(Opcode::message, mcap::encode(mcap::Message{1, 0, time, time, data}));
+  }
+  const std::string packed = compression == "zstd" ? compress_zstd(records) : records;
+  return test::plain_file({mcap::framed(
+      Opcode::chunk,
+      mcap::encode(mcap::Chunk{
+          {0}, {static_cast<std::int64_t>(num)}, records.size(), crc32(records), compression, packed}))});
+}
+
+TEST(McapReader, OfAChunkThatIsCutWhatLiesInFrontOfTheCutIsRead) {
+  constexpr std::size_t kNum = 600;
+  for (const std::string& compression : {std::string(), std::string("zstd")}) {
+    const std::string whole = file_of_one_chunk(kNum, compression);
+    ASSERT_EQ(open_mcap_bag(memory_source(whole))->messages.size(), kNum);
+    for (const double share : {0.3, 0.5, 0.9}) {
+      const auto size = static_cast<std::size_t>(share * static_cast<double>(whole.size()));
+      const Result<Bag> cut = open_mcap_bag(memory_source(whole.substr(0, size)));
+      ASSERT_TRUE(cut) << cut.error().message;
+      // zstd packs 128 kB at a time.
+      EXPECT_GT(cut->messages.size() + (compression.empty() ? 2U : 130U),
+                static_cast<std::size_t>(share * kNum));
+      for (std::size_t m = 0; m < cut->messages.size(); ++m)
+        ASSERT_TRUE(cut->read(cut->messages[m])->starts_with(format("message {} ", m)));
+      ASSERT_EQ(cut->warnings.size(), 1U);
+      EXPECT_NE(cut->warnings[0].find(format("{} messages", cut->messages.size())), std::string::npos)
+          << cut->warnings[0];
+    }
+  }
+}
+
+TEST(McapReader, WhatACutChunkCannotSayCostsNothingInFrontOfIt) {
+  const std::string message = mcap::framed(Opcode::message, mcap::encode(mcap::Message{1, 0, {5}, {5}, "x"}));
+  const std::string stray = mcap::framed(Opcode::message, mcap::encode(mcap::Message{7, 0, {6}, {6}, "y"}));
+  const std::string damaged = mcap::framed(Opcode::message, "short");
+  for (const auto& [compression, records] : {std::pair<std::string, std::string>{"", stray},
+                                             {"", message + damaged},
+                                             {"zstd", "no frame of zstd"},
+                                             {"lz4", "no frame of LZ4"},
+                                             {"unheard of", stray}}) {
+    const std::string chunk = mcap::framed(
+        Opcode::chunk,
+        mcap::encode(mcap::Chunk{{5}, {6}, 1000, 0, compression, records + std::string(1000, ' ')}));
+    const std::string file = test::plain_file({kSchema, kChannel, message, chunk});
+    const Result<Bag> bag = open_mcap_bag(memory_source(file.substr(0, file.find(records) + records.size())));
+    ASSERT_TRUE(bag) << bag.error().message;
+    ASSERT_EQ(bag->messages.size(), 1U) << compression;
+    EXPECT_EQ(bag->read(bag->messages[0]).value(), "x");
+  }
 }
 
 TEST(McapReader, LogTimesStayWithinWhatDifferencesCanHold) {

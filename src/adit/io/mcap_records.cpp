@@ -182,16 +182,26 @@ std::optional<Message> decode<Message>(std::string_view content) {
   return decoder.ok() ? std::optional(std::move(message)) : std::nullopt;
 }
 
-template <>
-std::optional<Chunk> decode<Chunk>(std::string_view content) {
+namespace {
+
+std::optional<Chunk> chunk_in(std::string_view content, bool may_be_cut) {
   Chunk chunk;
   std::uint64_t size = 0;
   Decoder decoder(content);
   decoder(chunk.start, chunk.end, chunk.uncompressed_size, chunk.uncompressed_crc, chunk.compression, size);
-  if (!decoder.ok() || size > decoder.rest().size()) return std::nullopt;
+  if (!decoder.ok() || (size > decoder.rest().size() && !may_be_cut)) return std::nullopt;
   chunk.records = decoder.rest().substr(0, size);
   return chunk;
 }
+
+}  // namespace
+
+template <>
+std::optional<Chunk> decode<Chunk>(std::string_view content) {
+  return chunk_in(content, false);
+}
+
+std::optional<Chunk> decode_cut_chunk(std::string_view content) { return chunk_in(content, true); }
 
 std::optional<RecordView> RecordCursor::next() {
   const std::string_view rest = bytes_.substr(offset_);

@@ -218,6 +218,8 @@ template <>
 template <>
 [[nodiscard]] std::optional<Chunk> decode<Chunk>(std::string_view content);
 ///@}
+/// As decode<Chunk>, but where the records are cut off, with those bytes of them that are there.
+[[nodiscard]] std::optional<Chunk> decode_cut_chunk(std::string_view content);
 
 /// A record in memory.
 struct RecordView {
