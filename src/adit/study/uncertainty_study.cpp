@@ -48,7 +48,8 @@ Result<Pose> turn_of_mount(const Trajectory& estimate, const Trajectory& truth) 
 
 Result<Placed> placed(const RobotRun& run) {
   Trajectory estimate;
-  for (const Keyframe& keyframe : run.map->keyframes) estimate.push_back({keyframe.stamp, keyframe.T_odom_base});
+  for (const Keyframe& keyframe : run.map->keyframes)
+    estimate.push_back({keyframe.stamp, keyframe.T_odom_base});
   const Result<Pose> turn = turn_of_mount(estimate, run.truth);
   if (!turn) return fail(run.result.name, turn.error());
   Placed out;
