@@ -8,6 +8,7 @@
 
 namespace adit::wire {
 
+/// Appends them.
 void put(Writer& out, const MergeChecks& checks);
 /// Refuses what no check can be: outcomes that are none, numbers that are not finite, more places that passed
 /// than were checked.
