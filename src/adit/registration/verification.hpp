@@ -25,9 +25,11 @@ struct Evidence {
 /// surface's normal twice, as cloud a and as cloud b saw it, and the noise of the two is independent: the
 /// products n_a n_b^T that stand in the Hessian instead of n_a n_a^T have no noise floor. A smooth tube then
 /// has no information along its axis, where the plain Hessian of noisy normals pretends some (with sigma 6
-/// degrees, 1 % of that across). The squares of the residuals count by regions of the cloud, within which
-/// they err alike (cluster-robust covariance, K.-Y. Liang and S. L. Zeger, "Longitudinal data analysis using
-/// generalized linear models", Biometrika 1986).
+/// degrees, 1 % of that across). Along motions by which the points hardly move against the walls (slippable
+/// ones: along a tube, along a bend, about the axis of a round one) it counts no more than that both scans
+/// are of one place (N. Gelfand and L. J. Guibas, SGP 2004). The squares of the residuals count by regions of
+/// the cloud, within which they err alike (cluster-robust covariance, K.-Y. Liang and S. L. Zeger,
+/// "Longitudinal data analysis using generalized linear models", Biometrika 1986).
 [[nodiscard]] Evidence gather_evidence(const Features& a, const PointGrid& grid_a, const Features& b,
                                        const PointGrid& grid_b, const Pose& T_a_b,
                                        const RegistrationConfig& config);
