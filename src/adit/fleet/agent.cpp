@@ -47,7 +47,7 @@ LoopRegistrationConfig registration_of(const AgentConfig& config) {
   if (config.policy == MergePolicy::adaptive) {
     out.one_place_m = config.adaptive.one_place_m;
     out.upright = true;
-    out.more_noise = config.adaptive.loop_noise;
+    out.added_noise = config.adaptive.loop_noise;
   } else {
     out.noise = config.loop_noise;
   }

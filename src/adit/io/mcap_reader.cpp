@@ -85,10 +85,11 @@ Result<std::string> read_chunk(const ByteSource& source, std::uint64_t offset) {
 Result<std::string> read_cut_chunk(const ByteSource& source, std::uint64_t offset) {
   constexpr std::uint64_t kMost = std::uint64_t{1}
                                   << 28U;  // a damaged length is no reason to read all the rest
-  const std::uint64_t start = offset + kRecordHead;
-  const Result<std::string> bytes = source.read(start, std::min(source.size - start, kMost));
+  const Result<std::string> bytes = source.read(offset, std::min(source.size - offset, kMost));
   if (!bytes) return tl::unexpected(bytes.error());
-  const std::optional<Chunk> chunk = decode_cut_chunk(*bytes);
+  if (bytes->size() < kRecordHead || static_cast<Opcode>(bytes->front()) != Opcode::chunk)
+    return fail_at(offset, "no chunk");
+  const std::optional<Chunk> chunk = decode_cut_chunk(std::string_view(*bytes).substr(kRecordHead));
   if (!chunk) return fail_at(offset, "a chunk is cut off in its head");
   return decompress_front(chunk->records, chunk->compression, std::min(chunk->uncompressed_size, kMost));
 }
@@ -132,8 +133,6 @@ Result<> index_records(Contents& contents, std::string_view records, std::size_t
 
 /// What is there of a chunk that reaches past the end of the file, as far as it can be read.
 void scan_cut_chunk(const ByteSource& source, Contents& contents, std::uint64_t offset) {
-  const Result<std::string> opcode = source.read(offset, std::min<std::uint64_t>(source.size - offset, 1));
-  if (!opcode || opcode->empty() || static_cast<Opcode>(opcode->front()) != Opcode::chunk) return;
   const Result<std::string> records = read_cut_chunk(source, offset);
   if (!records) return;
   contents.cut_chunk = contents.chunks.size();

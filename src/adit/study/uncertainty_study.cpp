@@ -9,6 +9,7 @@
 #include "adit/core/format.hpp"
 #include "adit/evaluation/ate.hpp"
 #include "adit/fleet/joint/merge_accuracy.hpp"
+#include "adit/posegraph/chordal.hpp"
 #include "adit/posegraph/gnc.hpp"
 #include "adit/posegraph/marginals.hpp"
 #include "adit/report/reliability_plot.hpp"
@@ -41,9 +42,7 @@ Result<Pose> turn_of_mount(const Trajectory& estimate, const Trajectory& truth) 
       sum += T_world_base->rotation_matrix().transpose() *
              (fit->T_world_estimate * pose.T_world_body).rotation_matrix();
   }
-  const Svd3 parts = svd(sum);
-  const Vector3 signs(1.0, 1.0, (parts.u * parts.v.transpose()).determinant());
-  return Pose(Matrix3(parts.u * signs.asDiagonal() * parts.v.transpose()), Vector3::Zero());
+  return Pose(nearest_rotation(Matrix3(sum / static_cast<double>(estimate.size()))), Vector3::Zero());
 }
 
 Result<Placed> placed(const RobotRun& run) {

@@ -35,7 +35,8 @@ struct UncertaintyStudy {
 /// loops that were registered at the right place (within 2 m and 10 degrees of the truth: what is wrong by
 /// more is a false loop, not an uncertain one); the frame between each two merged robots, as it is stated;
 /// the poses of all merged robots, every ten metres, in the frame of their map. What scans say of the
-/// predicted motion (innovations) needs no truth. Fails on a world that cannot be driven.
+/// predicted motion (innovations) needs no truth. By how much a LiDAR is turned on its mount is no error of a
+/// path and is taken out of each robot's truth first. Fails on a world that cannot be driven.
 [[nodiscard]] Result<std::vector<UncertaintyRow>> measure_world(const UncertaintyStudy& study,
                                                                 const ListedWorld& world);
 

@@ -40,6 +40,17 @@ TEST(UncertaintyStudy, MeasuresOdometryAndLoopsOfAWorld) {
   EXPECT_LT(of(*cautious, "odometry over 1 m").mean(), 0.95 * of(*rows, "odometry over 1 m").mean());
 }
 
+TEST(UncertaintyStudy, TheTurnOfAMountIsNoErrorOfThePath) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "maps");
+  const ListedWorld world = test::put_short_drives(folder.path());
+  UncertaintyStudy study{test::quick_config(), folder.path()};
+  study.config.simulation.lidar_errors.mount_deg = 2.0;
+  const auto rows = measure_world(study, world);
+  ASSERT_TRUE(rows) << rows.error().message;
+  EXPECT_LT(of(*rows, "odometry over 1 m").rms().head<3>().norm(), 0.02) << "by the turn it would be 0.04";
+}
+
 TEST(UncertaintyStudy, ATableAndJsonHoldOneRowPerSource) {
   std::vector<UncertaintyRow> rows(1);
   rows[0].source = "odometry over 1 m";

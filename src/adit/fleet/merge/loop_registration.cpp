@@ -51,7 +51,7 @@ LoopClosure LoopRegistration::registered(const LoopCandidate& candidate, const F
   loop.to = candidate.match;
   loop.T_from_to = registration.T_a_b.value_or(Pose());
   loop.information = config_.noise ? information_of(*config_.noise) : registration.information;
-  if (config_.more_noise) loop.information = with_noise(*config_.more_noise, loop.information);
+  if (config_.added_noise) loop.information = with_noise(*config_.added_noise, loop.information);
   loop.place_distance = candidate.distance;
   loop.num_inliers = registration.num_inliers;
   loop.overlap = registration.overlap;

@@ -23,8 +23,8 @@ struct LoopRegistrationConfig {
   /// Farther apart, in metres, two scans may show the same walls, but it is not one place.
   double one_place_m = std::numeric_limits<double>::infinity();
   bool upright = false;  ///< Both robots stand on floors: no loop tilts one by more than 60 degrees.
-  std::optional<LoopNoise> noise = {};       ///< Instead of what each registration says of itself.
-  std::optional<LoopNoise> more_noise = {};  ///< Besides what it says.
+  std::optional<LoopNoise> noise = {};        ///< Instead of what each registration says of itself.
+  std::optional<LoopNoise> added_noise = {};  ///< Besides what it says.
 };
 
 /// Registers own keyframes with those of peers and with one another.
