@@ -67,6 +67,19 @@ class Rng {
     const double u = 1.0 - uniform();
     return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * uniform());
   }
+  /// Normal within two standard deviations of 0: drawn again where it is farther out.
+  double normal_within_two_sigma() {
+    double draw = normal();
+    while (std::abs(draw) > 2.0) draw = normal();
+    return draw;
+  }
+  /// Number of events that come one by one, `mean` of them on average (Poisson): exponential gaps are summed
+  /// until they exceed it, in time that grows with it.
+  std::uint64_t poisson(double mean) {
+    std::uint64_t num = 0;
+    for (double at = -std::log1p(-uniform()); at < mean; at -= std::log1p(-uniform())) ++num;
+    return num;
+  }
 
  private:
   static constexpr std::uint64_t rotl(std::uint64_t x, unsigned k) { return (x << k) | (x >> (64U - k)); }

@@ -87,5 +87,38 @@ TEST(Rng, HashesOfNeighboursAreUnrelated) {
   EXPECT_NE(mix64(1, 2), mix64(2, 1));
 }
 
+TEST(Rng, PoissonHasItsMomentsAndIsOfEventsThatComeOneByOne) {
+  Rng rng(5);
+  for (const double mean : {0.3, 4.0, 60.0}) {
+    constexpr int kDraws = 20000;
+    double sum = 0.0;
+    double squares = 0.0;
+    int none = 0;
+    for (int i = 0; i < kDraws; ++i) {
+      const auto num = static_cast<double>(rng.poisson(mean));
+      sum += num;
+      squares += num * num;
+      none += num == 0.0 ? 1 : 0;
+    }
+    const double error = 4.0 * std::sqrt(mean / kDraws);
+    EXPECT_NEAR(sum / kDraws, mean, error);
+    EXPECT_NEAR(squares / kDraws - std::pow(sum / kDraws, 2), mean, 0.06 * mean);
+    EXPECT_NEAR(none / static_cast<double>(kDraws), std::exp(-mean), 0.015);
+  }
+  EXPECT_EQ(rng.poisson(0.0), 0U);
+}
+
+TEST(Rng, NormalWithinTwoSigmaIsNeverFartherOut) {
+  Rng rng(6);
+  double squares = 0.0;
+  constexpr int kDraws = 50000;
+  for (int i = 0; i < kDraws; ++i) {
+    const double draw = rng.normal_within_two_sigma();
+    ASSERT_LE(std::abs(draw), 2.0);
+    squares += draw * draw;
+  }
+  EXPECT_NEAR(std::sqrt(squares / kDraws), 0.880, 0.01);
+}
+
 }  // namespace
 }  // namespace adit

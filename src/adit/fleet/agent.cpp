@@ -270,6 +270,7 @@ Agent::Replies Agent::register_clouds(RobotId peer, const Clouds& clouds) {
   session.finish_registration(arrived);
   Replies replies = ledger_.loops_since(map_->id, num_before);
   const bool is_done = session.state() != PeerState::awaiting_clouds;
+  if (is_done) to_check_.insert(peer);
   append(replies, is_adaptive() && is_done ? begin_check(peer) : request_of(session));
   return replies;
 }
@@ -288,7 +289,8 @@ Agent::Replies Agent::check_if_due(RobotId peer) {
   if (checks_.contains(peer)) return go_on_checking(peer);
   // Before all of the path has come, a check would be of a part of the loops.
   const bool has_path = sessions_[peer].is_whole(ledger_.num_nodes_of(peer));
-  const bool is_due = has_path && !known().checks.contains({map_->id, peer}) && !loops_with(peer).empty();
+  const bool has_news = to_check_.contains(peer) || !known().checks.contains({map_->id, peer});
+  const bool is_due = has_path && has_news && !loops_with(peer).empty();
   return is_due ? begin_check(peer) : Replies{};
 }
 
@@ -331,6 +333,7 @@ Agent::Replies Agent::conclude_check(RobotId peer) {
   const std::size_t num_before = ledger_.num_own_checks();
   ledger_.add_own(with_advice(checker.verdict(map_->id, peer), checker));
   checks_.erase(peer);
+  to_check_.erase(peer);
   return ledger_.checks_since(map_->id, num_before);
 }
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
 
+#include "adit/core/angles.hpp"
 #include "adit/core/check.hpp"
 #include "adit/core/decompositions.hpp"
 #include "adit/core/format.hpp"
@@ -264,10 +264,9 @@ bool would_fit_exchanged(ControlPairs pairs, const Points& control) {
 
 tl::unexpected<Error> nothing_agrees(const ControlPairs& pairs, const Points& control, const Search& found) {
   if (!(found.best_rotation <= kWorstControlRotation)) {
-    const std::string known =
-        std::isfinite(found.best_rotation)
-            ? format("known to {:.0f} degrees only", found.best_rotation * 180.0 / std::numbers::pi)
-            : "open";
+    const std::string known = std::isfinite(found.best_rotation)
+                                  ? format("known to {:.0f} degrees only", found.best_rotation / kDegree)
+                                  : "open";
     return fail(format(
         "the control points {} lie on one line or near it, so that the rotation about it is {}; measure "
         "one more well off that line",

@@ -31,9 +31,10 @@ WeightedRotation weighted_rotation(std::span<const Vector3> a, std::span<const V
           s[1] > kMinRelativeSingularValue * s[0] && s[0] > 0.0};
 }
 
-/// Differences along one closed chain through all points. Points come in spatial order, so the next link is
-/// not the next point but one farther down the list, by its golden section: differences of neighbours are
-/// short, and a short lever constrains a rotation little.
+/// Differences along closed chains through all points: one chain where stride and number of points have no
+/// common divisor, else as many as the greatest one. Points come in spatial order, so the next link is not
+/// the next point but one farther down the list, by its golden section: differences of neighbours are short,
+/// and a short lever constrains a rotation little.
 std::vector<Vector3> chained_differences(std::span<const Eigen::Vector3f> points) {
   constexpr std::size_t kGoldenPermille = 382;  // (3 - sqrt(5)) / 2
   const std::size_t stride = std::max<std::size_t>(1, points.size() * kGoldenPermille / 1000);

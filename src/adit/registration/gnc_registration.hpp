@@ -39,10 +39,10 @@ struct GlobalSolution {
   std::vector<std::uint32_t>
       inliers;  ///< Of the correspondences, ascending: those that agree in all three axes.
 };
-/// Registers points_a[k] with points_b[k]. The rotation is found from the differences of consecutive points
-/// (translation cancels), the translation axis by axis from the rotated points. `bound` is the noise of a
-/// point, metres; that of a difference is twice it. None with fewer than 3 correspondences, or where the
-/// rotation is open.
+/// Registers points_a[k] with points_b[k]. The rotation is found from the differences of points that are
+/// apart in the list by its golden section (translation cancels), the translation axis by axis from the
+/// rotated points. `bound` is the noise of a point, metres; that of a difference is twice it. None with fewer
+/// than 3 correspondences, or where the rotation is open.
 [[nodiscard]] std::optional<GlobalSolution> align_robustly(std::span<const Eigen::Vector3f> points_a,
                                                            std::span<const Eigen::Vector3f> points_b,
                                                            double bound, const RegistrationConfig& config);

@@ -29,8 +29,8 @@ struct Registration {
   /// points and planes. Along directions that the geometry leaves open it says no more than that both scans
   /// are of one place: some 3 m, 0.5 rad. Zero as a whole where there is no transform or too few inliers.
   Matrix6 information = Matrix6::Zero();
-  /// Smallest eigenvalue of the translational part of the point-to-plane Hessian per correspondence: 0 when
-  /// the clouds can slide along an axis (smooth tunnel), 1/3 when all directions are held alike.
+  /// Share of the smallest eigenvalue of the translational part of the point-to-plane Hessian in its trace: 0
+  /// when the clouds can slide along an axis (smooth tunnel), 1/3 when all directions are held alike.
   double weak_axis = 0.0;
   Vector3 weak_direction = Vector3::Zero();     ///< That axis in frame a, unit length; zero when unknown.
   LoopVerdict verdict = LoopVerdict::rejected;  ///< Whether T_a_b can be relied on.

@@ -98,9 +98,8 @@ TEST(Registration, FindsHallsUnderAnyRotation) {
   }
 }
 
-/// The mean squared Mahalanobis distance of the errors is six where the reported covariance is right. The
-/// reported one is cautious (points that share a normal's neighbourhood count as one): never over-confident,
-/// and its sigma at most five times too large.
+/// The mean squared Mahalanobis distance of the errors is six where the reported covariance is right. Half
+/// and twice that pass: a sigma that is off by a factor of sqrt(2) either way.
 TEST(Registration, CovarianceIsOfTheSizeOfTheErrors) {
   double squared_mahalanobis = 0.0;
   const int num_runs = 12;

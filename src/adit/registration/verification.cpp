@@ -104,13 +104,14 @@ Matrix6 sliding_along(const Vector6& twist, const Matrix6& information) {
 /// a round one (slippable motions, N. Gelfand and L. J. Guibas, "Shape Segmentation Using Local Slippage
 /// Analysis", SGP 2004, eq. 4). Along such a motion the points hardly move against the walls, and what their
 /// residuals say of it comes from the sampling of the clouds, which is not independent from point to point.
-Matrix6 without_slippable(const PairSums& sums, Matrix6 information) {
-  // Twists by which the points move by one metre in the mean square, of which `values` is against the walls.
+Matrix6 without_slippable(const PairSums& sums, double held, Matrix6 information) {
+  // Twists by which the points move by one metre in the mean square, of which `values` is against the walls:
+  // their share of all directions, as in Evidence::weak_axis.
   const Eigen::LLT<Matrix6> displacement(sums.displacements / sums.num_pairs);
   if (displacement.info() != Eigen::Success) return information;
   const Matrix6 onto_twists = displacement.matrixU().solve(Matrix6::Identity());
   const auto [values, vectors] =
-      symmetric_eigen(Matrix6(onto_twists.transpose() * (sums.cross_hessian / sums.num_pairs) * onto_twists));
+      symmetric_eigen(Matrix6(onto_twists.transpose() * (sums.cross_hessian / held) * onto_twists));
   for (int i = 0; i < 6 && values[i] < kWeakAxis; ++i)
     information = sliding_along(onto_twists * vectors.col(i), information);
   return information;
@@ -142,9 +143,10 @@ Evidence gather_evidence(const Features& a, const PointGrid& grid_a, const Featu
   out.information = information_of(sums, variance) + of_one_place();
   const auto [values, directions] = symmetric_eigen(Matrix3(sums.cross_hessian.topLeftCorner<3, 3>()));
   const double trace = values.cwiseMax(0.0).sum();
-  if (trace > 0.0) out.weak_axis = std::max(values[0], 0.0) / trace;
   out.weak_direction = T_a_b.rotation() * directions.col(0);
-  out.information = without_slippable(sums, out.information);
+  if (!(trace > 0.0)) return out;
+  out.weak_axis = std::max(values[0], 0.0) / trace;
+  out.information = without_slippable(sums, trace, out.information);
   return out;
 }
 

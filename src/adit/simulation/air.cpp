@@ -88,8 +88,8 @@ std::vector<DustCloud> draw_clouds(const Trajectory& truth, const AirConfig& con
   Rng rng(seed);
   const ByLength along(truth);
   std::vector<DustCloud> clouds;
-  const auto num = std::lround(along.length() / 1000.0 * config.clouds_per_km);
-  for (long i = 0; i < num; ++i) {
+  const std::uint64_t num = rng.poisson(along.length() / 1000.0 * config.clouds_per_km);
+  for (std::uint64_t i = 0; i < num; ++i) {
     const StampedPose& met = along.at(rng.uniform());
     const double ahead = rng.uniform(-kOffPath, kOffPath);
     const double left = rng.uniform(-kOffPath, kOffPath);

@@ -108,11 +108,11 @@ TriangleMesh with_changed_walls(TriangleMesh world, const Trajectory& path, cons
                                 std::uint64_t seed) {
   const std::vector<Pose> poses = poses_along(path, kPathStep);
   const double length = kPathStep * static_cast<double>(poses.size());
-  const auto num = std::lround(length / 1000.0 * changes.per_km);
-  if (num == 0) return world;
   Rng rng(seed);
+  const std::uint64_t num = rng.poisson(length / 1000.0 * changes.per_km);
+  if (num == 0) return world;
   const std::vector<Vector3> normals = vertex_normals(world);
-  for (long i = 0; i < num; ++i) move_walls(draw_stretch(poses, changes, rng), normals, world);
+  for (std::uint64_t i = 0; i < num; ++i) move_walls(draw_stretch(poses, changes, rng), normals, world);
   return world;
 }
 

@@ -51,8 +51,8 @@ std::vector<DrivingVehicle> draw_vehicles(const Raycaster& floor, std::span<cons
     Rng rng(mix64(seed, robot));
     const Trajectory& truth = truths[robot];
     const double hours = to_seconds(truth.back().stamp - truth.front().stamp) / 3600.0;
-    const auto num = std::lround(hours * config.vehicles_per_hour);
-    for (long i = 0; i < num; ++i) {
+    const std::uint64_t num = rng.poisson(hours * config.vehicles_per_hour);
+    for (std::uint64_t i = 0; i < num; ++i) {
       const StampedPose& met = ByLength(truth).at(rng.uniform());
       const double side = rng.uniform() < 0.5 ? 1.0 : -1.0;
       const double pace = rng.uniform() < 0.5 ? kPace : -kPace;

@@ -11,26 +11,21 @@
 namespace adit {
 namespace {
 
-constexpr double kMostSigmas = 2.0;
-
-/// Normal, drawn again where it is farther out.
-double within_limits(Rng& rng) {
-  double draw = rng.normal();
-  while (std::abs(draw) > kMostSigmas) draw = rng.normal();
-  return draw;
-}
+/// Of a careless mount, beside a careful one: 1 degree beside 0.3.
+constexpr double kCareless = 10.0 / 3.0;
 
 std::vector<double> by_ring(std::size_t rings, double sigma, Rng& rng) {
   if (sigma == 0.0) return {};
   std::vector<double> draws(rings);
-  for (double& draw : draws) draw = sigma * within_limits(rng);
+  for (double& draw : draws) draw = sigma * rng.normal_within_two_sigma();
   return draws;
 }
 
 Vector3 by_axis(double sigma, Rng& rng) {
-  const double x = within_limits(rng);  // one after the other: compilers evaluate arguments in any order
-  const double y = within_limits(rng);
-  const double z = within_limits(rng);
+  const double x =
+      rng.normal_within_two_sigma();  // one after the other: compilers evaluate arguments in any order
+  const double y = rng.normal_within_two_sigma();
+  const double z = rng.normal_within_two_sigma();
   return sigma * Vector3(x, y, z);
 }
 
@@ -52,6 +47,7 @@ Fields fields_of(LidarErrorConfig& c) {
       {"ring_elevation_deg", &c.ring_elevation_deg, "deg", 0, 5, "a ring looks above what it reports"},
       {"mount", &c.mount, "m", 0, 1, "position of the sensor against the stated mount, per axis"},
       {"mount_deg", &c.mount_deg, "deg", 0, 10, "rotation of the sensor against the stated mount, per axis"},
+      {"careless", &c.careless, "", 0, 1, "share of the robots on which mounts are off by 3.3 times that"},
       {"clock_s", &c.clock_s, "s", 0, 1, "by which the stamps of wheels and IMU are late, each by its own"},
       {"jitter_s", &c.jitter_s, "s", 0, 0.02, "of the stamp of each scan"},
       {"false_returns", &c.false_returns, "", 0, 0.5,
@@ -75,6 +71,7 @@ LidarErrorConfig field_lidar_errors() {
   c.ring_elevation_deg = 0.01;
   c.mount = 0.01;
   c.mount_deg = 0.3;
+  c.careless = 0.1;
   c.clock_s = 0.01;
   c.jitter_s = 0.0005;
   c.false_returns = 1e-4;
@@ -93,7 +90,7 @@ LidarUnit draw_lidar_unit(const LidarErrorConfig& c, std::size_t rings, std::siz
   // Up, down, down, up, ... (Thue and Morse): robots of equal parity differ too.
   const double side = std::popcount(robot) % 2 == 0 ? 1.0 : -1.0;
   const auto one = [&](double sigma) {
-    const double draw = within_limits(rng);
+    const double draw = rng.normal_within_two_sigma();
     return sigma * (c.opposed ? side : draw);
   };
   LidarUnit unit;
@@ -104,10 +101,8 @@ LidarUnit draw_lidar_unit(const LidarErrorConfig& c, std::size_t rings, std::siz
   unit.warm_up_s = c.warm_up_s;
   const Vector3 position = by_axis(c.mount, rng);
   const Vector3 rotation = by_axis(c.mount_deg * kDegree, rng);
-  unit.T_nominal_true = Pose::translation_of(position.x(), position.y(), position.z()) *
-                        Pose::exp((Vector6() << Vector3::Zero(), rotation).finished());
-  unit.wheels_late = from_seconds(c.clock_s * within_limits(rng));
-  unit.imu_late = from_seconds(c.clock_s * within_limits(rng));
+  unit.wheels_late = from_seconds(c.clock_s * rng.normal_within_two_sigma());
+  unit.imu_late = from_seconds(c.clock_s * rng.normal_within_two_sigma());
   unit.jitter_s = c.jitter_s;
   unit.false_returns = c.false_returns;
   unit.ring_range = by_ring(rings, c.ring_bias, rng);
@@ -116,8 +111,10 @@ LidarUnit draw_lidar_unit(const LidarErrorConfig& c, std::size_t rings, std::siz
   unit.intensity_walk =
       one(c.intensity_walk);  // draws that are new come last and leave the others as they were
   unit.on_before_s = c.warm_up_s * rng.uniform();
-  unit.response = 1.0 + c.response * within_limits(rng);
-  unit.fall_off = c.fall_off * within_limits(rng);
+  unit.response = 1.0 + c.response * rng.normal_within_two_sigma();
+  unit.fall_off = c.fall_off * rng.normal_within_two_sigma();
+  const double carelessness = rng.uniform() < c.careless ? kCareless : 1.0;
+  unit.T_nominal_true = {so3::exp(carelessness * rotation), carelessness * position};
   return unit;
 }
 

@@ -33,10 +33,11 @@ struct LidarErrorConfig {
                                    ///< as long before the drive.
   double ring_azimuth_deg = 0.0;   ///< A ring looks elsewhere than it reports.
   double ring_elevation_deg = 0.0;
-  double mount = 0.0;          ///< Per axis: the sensor sits elsewhere than the recording says,
-  double mount_deg = 0.0;      ///< and is turned.
-  double clock_s = 0.0;        ///< By which wheels and IMU are stamped late, each by its own.
-  double jitter_s = 0.0;       ///< Of each scan's stamp.
+  double mount = 0.0;      ///< Per axis: the sensor sits elsewhere than the recording says,
+  double mount_deg = 0.0;  ///< and is turned.
+  double careless = 0.0;   ///< Share of the robots on which it is off by 10/3 of both, 1 degree beside 0.3.
+  double clock_s = 0.0;    ///< By which wheels and IMU are stamped late, each by its own.
+  double jitter_s = 0.0;   ///< Of each scan's stamp.
   double false_returns = 0.0;  ///< Share of rays that report a range between the sensor and the surface.
   double response = 0.0;       ///< Intensities are reported to the power of 1 and this.
   double fall_off = 0.0;       ///< They change with range / 10 m to this power: raw, or overcorrected.

@@ -151,6 +151,24 @@ TEST(LidarUnit, DrawsHaveTheirSpreadAndNoneIsFartherThanTwoOfIt) {
   EXPECT_NEAR(std::sqrt(of_rings), kCutAtTwoSigma * 0.008, 0.0003);
 }
 
+TEST(LidarUnit, OneMountInTenIsCareless) {
+  const LidarErrorConfig config = field_lidar_errors();
+  constexpr int kUnits = 2000;
+  int num_beyond = 0;
+  double most = 0.0;
+  for (int robot = 0; robot < kUnits; ++robot) {
+    const Vector3 turn =
+        draw_lidar_unit(config, 0, 0, static_cast<std::uint64_t>(robot)).T_nominal_true.log().tail<3>() /
+        kDegree;
+    num_beyond += turn.cwiseAbs().maxCoeff() > 2.0 * config.mount_deg ? 1 : 0;
+    most = std::max(most, turn.cwiseAbs().maxCoeff());
+  }
+  constexpr double kBeyondOnSomeAxis = 0.9;  // of normal draws, 0.6 sigma on one axis of three
+  EXPECT_NEAR(num_beyond / static_cast<double>(kUnits), config.careless * kBeyondOnSomeAxis, 0.02);
+  EXPECT_GT(most, 1.5);
+  EXPECT_LT(most, 2.05);
+}
+
 TEST(LidarUnit, OpposedUnitsAreTwoSigmaApart) {
   LidarErrorConfig config = field_lidar_errors();
   config.opposed = true;

@@ -54,8 +54,8 @@ std::vector<Manoeuvre> draw_manoeuvres(const ManoeuvreConfig& config, double pat
         all, [&](const Manoeuvre& other) { return std::abs(other.share - share) * path_length < kApart; });
   };
   const auto add = [&](Manoeuvre::Kind kind, double per_km, double mean) {
-    const auto num = std::lround(path_length / 1000.0 * per_km);
-    for (long i = 0; i < num; ++i) {
+    const std::uint64_t num = rng.poisson(path_length / 1000.0 * per_km);
+    for (std::uint64_t i = 0; i < num; ++i) {
       const double size = mean * rng.uniform(0.5, 1.5);
       const double side = rng.uniform() < 0.5 ? 1.0 : -1.0;
       const double amount = kind == Manoeuvre::Kind::turn ? side * size : size;

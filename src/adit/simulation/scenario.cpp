@@ -19,13 +19,12 @@ constexpr std::uint64_t kDustStream = 0x64757374;
 
 // What drives and drifts around all robots.
 struct Surroundings {
-  VisitConfig visits;
-  AirConfig air;
   bool robots_see_robots = false;
   std::uint64_t seed = 0;
   Surfaces surfaces;
   std::vector<Trajectory> truths;
   std::vector<DrivingVehicle> vehicles;
+  std::vector<DrawnVisit> visits;              // by robot
   std::vector<std::vector<DustCloud>> clouds;  // by robot
 };
 
@@ -56,7 +55,7 @@ struct Robot {
   }
 
   [[nodiscard]] TriangleMesh movers(Stamp stamp) const {
-    TriangleMesh mesh = people_around(truth, stamp, around->visits.people);
+    TriangleMesh mesh = people_around(truth, stamp, around->visits[number].people);
     if (around->robots_see_robots)
       append(mesh, robots_around(number, stamp, lidar.range_max, around->truths));
     append(mesh, vehicles_around(number, stamp, around->truths, around->vehicles));
@@ -77,7 +76,7 @@ struct Robot {
                 end,
                 mix64(seed, i),
                 poses_between(end),
-                around->visits.dust};
+                around->visits[number].dust};
     constexpr int kParts = 5;  // of 20 ms at 10 Hz: a vehicle and a robot near one another by less than 10 cm
     for (int part = 0; part < kParts; ++part) {
       const Stamp middle = end - sweep_time(lidar) + sweep_time(lidar) * (2 * part + 1) / (2 * kParts);
@@ -89,8 +88,8 @@ struct Robot {
       there = *std::move(caster);
     }
     sweep.surfaces = around->surfaces.on_visit(mix64(seed, kDustStream));
-    sweep.air =
-        air_at(end, sweep.T_world_lidar_end.translation(), around->air, around->clouds[number], around->seed);
+    sweep.air = air_at(end, sweep.T_world_lidar_end.translation(), around->visits[number].air,
+                       around->clouds[number], around->seed);
     Scan scan = cast_scan(raycaster, lidar, sweep, unit);
     scan.stamp = scan_stamps[i];
     return scan;
@@ -161,6 +160,7 @@ constexpr std::uint64_t kSurroundingsStream = 0x776f726c64;
 constexpr std::uint64_t kDriveStream = 0x6472697665;
 constexpr std::uint64_t kWallStream = 0x77616c6c;
 constexpr std::uint64_t kAirStream = 0x616972;
+constexpr std::uint64_t kSpreadStream = 0x737072656164;
 
 void add_wheels(Recording& recording, const Robot& robot, WheelConfig wheels) {
   if (!wheels.on) return;
@@ -240,15 +240,16 @@ Result<std::vector<Raycaster>> raycasters_of(const World& world, const Drives& d
                                              const ScenarioConfig& config) {
   const Result<Raycaster> empty = Raycaster::build(world.mesh);
   if (!empty) return fail(world.name, empty.error());
+  const VisitConfig site = drawn_site(config.visits, config.spread, mix64(config.seed, kSpreadStream));
   const std::vector<TriangleMesh> things =
-      parked_things(drives.floor, drives.truths, config.visits, mix64(config.seed, kVisitStream));
+      parked_things(drives.floor, drives.truths, site, mix64(config.seed, kVisitStream));
   std::vector<Raycaster> raycasters;
   for (std::size_t robot = 0; robot < things.size(); ++robot) {
     Result<Raycaster> met = *empty;
-    if (!things[robot].empty() || config.visits.walls_per_km > 0.0) {
-      TriangleMesh mesh = with_changed_walls(world.mesh, drives.truths[robot],
-                                             {config.visits.walls_per_km, config.visits.wall_change},
-                                             mix64(mix64(config.seed, kWallStream), robot));
+    if (!things[robot].empty() || site.walls_per_km > 0.0) {
+      TriangleMesh mesh =
+          with_changed_walls(world.mesh, drives.truths[robot], {site.walls_per_km, site.wall_change},
+                             mix64(mix64(config.seed, kWallStream), robot));
       append(mesh, things[robot]);
       met = Raycaster::build(mesh);
       if (!met) return fail(world.name, met.error());
@@ -260,17 +261,19 @@ Result<std::vector<Raycaster>> raycasters_of(const World& world, const Drives& d
 
 std::shared_ptr<const Surroundings> surroundings_of(const Drives& drives, const ScenarioConfig& config) {
   const std::uint64_t seed = mix64(config.seed, kSurroundingsStream);
-  Surroundings around{config.visits,
-                      config.air,
-                      config.traffic.robots,
+  Surroundings around{config.traffic.robots,
                       seed,
                       Surfaces(config.surfaces, seed),
                       drives.truths,
                       draw_vehicles(drives.floor, drives.truths, config.traffic, seed),
+                      {},
                       {}};
-  for (std::size_t robot = 0; robot < drives.truths.size(); ++robot)
-    around.clouds.push_back(
-        draw_clouds(drives.truths[robot], config.air, mix64(mix64(config.seed, kAirStream), robot)));
+  for (std::size_t robot = 0; robot < drives.truths.size(); ++robot) {
+    const std::uint64_t of_robot = mix64(mix64(config.seed, kAirStream), robot);
+    around.visits.push_back(
+        drawn_visit(config.visits, config.air, config.spread, mix64(of_robot, kSpreadStream)));
+    around.clouds.push_back(draw_clouds(drives.truths[robot], around.visits.back().air, of_robot));
+  }
   return std::make_shared<const Surroundings>(std::move(around));
 }
 
@@ -304,7 +307,9 @@ std::string sensors_text(const ScenarioConfig& simulation) {
 }
 
 void set_conditions(Conditions conditions, ScenarioConfig& config) {
+  constexpr double kSpread = 0.7;  // by a factor of 2 either way, at most 4: chosen
   const bool field = conditions == Conditions::field;
+  config.spread = field ? kSpread : 0.0;
   config.lidar_errors = field ? field_lidar_errors() : LidarErrorConfig();
   config.surfaces = field ? field_surfaces() : SurfaceConfig();
   config.air = field ? field_air() : AirConfig();

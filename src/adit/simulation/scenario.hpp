@@ -11,6 +11,7 @@
 #include "adit/core/config.hpp"
 #include "adit/core/records.hpp"
 #include "adit/simulation/air.hpp"
+#include "adit/simulation/drawn_conditions.hpp"
 #include "adit/simulation/fleet_traffic.hpp"
 #include "adit/simulation/imu_model.hpp"
 #include "adit/simulation/lidar_model.hpp"
@@ -33,6 +34,7 @@ struct ScenarioConfig {
   AirConfig air;
   VisitConfig visits;
   TrafficConfig traffic;
+  double spread = 0.0;  ///< By which sites and visits differ from what is stated; see drawn_conditions.hpp.
   WheelConfig wheels;
   ImuConfig imu;
   DriveConfig drive;
@@ -45,6 +47,9 @@ inline Fields fields_of(ScenarioConfig& c) {
   Fields fields{{"seed", &c.seed, "", 0, 1e15, "seed of all noise of sensors and wheels"}};
   fields.push_back({"lidars", &c.lidars, "", 0, 0,
                     "LiDARs of the robots in turn, as in 'os1-64,vlp-16'; empty: all have the one below"});
+  fields.push_back({"spread", &c.spread, "", 0, 2,
+                    "of rates and shares of what is met, from site to site and visit to visit: standard "
+                    "deviation of the logarithm of rates and of odds"});
   append(fields, "lidar", fields_of(c.lidar));
   append(fields, "lidar_errors", fields_of(c.lidar_errors));
   append(fields, "surfaces", fields_of(c.surfaces));

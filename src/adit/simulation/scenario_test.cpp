@@ -272,6 +272,7 @@ TEST(Scenario, field_conditions_turn_on_every_kind_of_trouble_and_ideal_ones_non
                                  config.air.fog,
                                  config.air.clouds_per_km,
                                  config.air.drips,
+                                 config.spread,
                                  config.visits.doors,
                                  config.visits.blocked_ends,
                                  config.visits.walls_per_km,
@@ -296,6 +297,7 @@ TEST(Scenario, field_conditions_turn_on_every_kind_of_trouble_and_ideal_ones_non
   EXPECT_EQ(config.drive.manoeuvres.turns_per_km, 0.0);
   EXPECT_EQ(config.surfaces.contrast, 0.0);
   EXPECT_FALSE(config.traffic.robots);
+  EXPECT_EQ(config.spread, 0.0);
 }
 
 TEST(Scenario, field_conditions_are_the_same_on_any_number_of_threads) {

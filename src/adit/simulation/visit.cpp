@@ -32,8 +32,8 @@ TriangleMesh parked_along(const Raycaster& floor, const Trajectory& path, std::s
                           Rng& rng) {
   TriangleMesh mesh;
   const ByLength along(path);
-  const auto num = static_cast<int>(std::lround(along.length() / 1000.0 * per_km));
-  for (int i = 0; i < num; ++i) {
+  const std::uint64_t num = rng.poisson(along.length() / 1000.0 * per_km);
+  for (std::uint64_t i = 0; i < num; ++i) {
     for (int attempt = 0; attempt < kTries; ++attempt) {
       const double share = rng.uniform();
       const double side = rng.uniform() < 0.5 ? 1.0 : -1.0;

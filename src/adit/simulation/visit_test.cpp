@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "adit/simulation/scenario.hpp"
 #include "support/meshes.hpp"
@@ -33,19 +34,18 @@ Trajectory path(bool back) {
   return out;
 }
 
-std::vector<TriangleMesh> parked(double width, double changed) {
+std::vector<TriangleMesh> parked(double width, double changed, std::uint64_t seed = 3) {
   VisitConfig config;
   config.vehicles_per_km = 30.0;
   config.pallets_per_km = 20.0;
   config.changed = changed;
-  return parked_things(hall(width), std::vector{path(false), path(true)}, config, 3);
+  return parked_things(hall(width), std::vector{path(false), path(true)}, config, seed);
 }
 
 std::size_t num_things(const TriangleMesh& mesh) { return mesh.vertices.size() / kVerticesOfAThing; }
 
 TEST(Visit, ThingsStandAtTheWallsAndLeaveRoom) {
   for (const TriangleMesh& mesh : parked(9.0, 1.0)) {
-    EXPECT_EQ(num_things(mesh), 20U);  // 12 and 8 in 400 m
     for (const Eigen::Vector3f& p : mesh.vertices) {
       EXPECT_GE(p.z(), -1e-4F);
       EXPECT_LE(p.z(), 2.01F);
@@ -56,16 +56,29 @@ TEST(Visit, ThingsStandAtTheWallsAndLeaveRoom) {
     for (const Eigen::Vector3f& p : mesh.vertices) EXPECT_GE(std::abs(p.y()), 0.5F + 0.84F);
 }
 
+TEST(Visit, ThereAreAsManyAsStatedOnAverage) {
+  constexpr int kSeeds = 40;
+  std::vector<double> of_one_path;
+  for (int seed = 0; seed < kSeeds; ++seed)
+    for (const TriangleMesh& mesh : parked(9.0, 1.0, static_cast<std::uint64_t>(seed)))
+      of_one_path.push_back(static_cast<double>(num_things(mesh)));
+  const double mean = std::accumulate(of_one_path.begin(), of_one_path.end(), 0.0) / (2 * kSeeds);
+  EXPECT_NEAR(mean, 20.0, 1.5);  // 12 and 8 in 400 m
+  double variance = 0.0;
+  for (const double num : of_one_path) variance += (num - mean) * (num - mean) / (2 * kSeeds - 1);
+  EXPECT_NEAR(variance, 20.0, 10.0) << "they come one by one";
+}
+
 TEST(Visit, TheSameThingsStandThereForAllButThoseThatChange) {
   const auto lasting = parked(9.0, 0.0);
   EXPECT_EQ(lasting[0].vertices, lasting[1].vertices);
-  EXPECT_EQ(num_things(lasting[0]), 20U);  // both paths are in one hall, which is furnished once
+  EXPECT_LT(num_things(lasting[0]), 30U) << "both paths are in one hall, which is furnished once";
   const auto half = parked(9.0, 0.5);
-  EXPECT_NE(half[0].vertices, half[1].vertices);
-  const std::size_t num_lasting = 10U;
-  ASSERT_EQ(num_things(half[0]), num_lasting + 10U);
-  EXPECT_TRUE(std::equal(half[0].vertices.begin(), half[0].vertices.begin() + num_lasting * kVerticesOfAThing,
-                         half[1].vertices.begin()));
+  const auto [one, other] = std::ranges::mismatch(half[0].vertices, half[1].vertices);
+  const auto num_same = static_cast<std::size_t>(one - half[0].vertices.begin()) / kVerticesOfAThing;
+  EXPECT_GE(num_same, 4U);
+  EXPECT_GE(num_things(half[0]) - num_same, 4U);
+  EXPECT_GE(num_things(half[1]) - num_same, 4U);
 }
 
 TEST(Visit, NothingStandsWhereThereIsNoRoom) {

@@ -133,7 +133,8 @@ class Fit {
     EqualSignShares shares(model_.walls);
     for (const HypothesisCounts& counts : seen)
       shares.add_other({counts.num_wall_patches, counts.equal_signs, counts.equal_signs_sigma});
-    add("walls.prior_moulded", shares.chance_of_one_mould(), seen);
+    // That chance has the floor `moulded` added to what the look-alikes say.
+    add("walls.prior_moulded", shares.chance_of_one_mould() - model_.walls.moulded, seen);
   }
   /// Median, and standard deviation beyond the error of counting, by the median of deviations: some walls
   /// were lined anew.

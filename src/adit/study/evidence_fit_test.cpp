@@ -60,6 +60,15 @@ TEST(EvidenceFit, FindsWhatHypothesesWereDrawnFrom) {
   EXPECT_EQ(value_of(fitted, "fleet.copied"), 0.0);
 }
 
+TEST(EvidenceFit, TheFloorUnderMouldedWallsIsNoPartOfTheFit) {
+  EvidenceModel high;
+  high.walls.moulded = 0.1;
+  const std::vector<JudgedHypothesis> all = drawn(400);
+  const double fitted = value_of(fitted_values(all, {}), "walls.prior_moulded");
+  EXPECT_GE(fitted, 0.0);
+  EXPECT_NEAR(value_of(fitted_values(all, high), "walls.prior_moulded"), fitted, 1e-12);
+}
+
 TEST(EvidenceFit, SharesHaveAnUpperLimit) {
   std::vector<JudgedHypothesis> all = drawn(400);
   for (std::size_t i = 1; i < 5; i += 2) {  // false ones that agree all along

@@ -144,6 +144,10 @@ template <class P>
 Result<std::vector<IncrementalRun>> run_on(const ListedGraph& listed, const BasicPoseGraph<P>& graph,
                                            const RobustIncrementalConfig& config,
                                            const std::vector<int>& shares) {
+  if (graph.nodes.size() < 2)
+    return fail(
+        listed.path +
+        ": a graph of fewer than two nodes has no step that could be judged; remove it from the list");
   const BasicPoseGraph<P> clean = with_every_nth_loop(graph, listed.keep_every);
   const Solution<P> reference = optimize(clean);
   if (!reference.ok()) return fail(format("{}: {}", listed.path, reference.reason));

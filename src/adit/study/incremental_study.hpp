@@ -38,7 +38,7 @@ struct IncrementalRun {
 
 /// Adds random false loops (false_loops.hpp) of each share, without those that are true by chance, and feeds
 /// the graph in the order of its nodes: each with its odometry and all loops to nodes before it. Fails where
-/// the graph cannot be read, its true edges cannot be solved, or a step cannot.
+/// the graph cannot be read or has fewer than two nodes, its true edges cannot be solved, or a step cannot.
 [[nodiscard]] Result<std::vector<IncrementalRun>> run_incremental(const ListedGraph& listed,
                                                                   const RobustIncrementalConfig& config,
                                                                   const std::vector<int>& shares);

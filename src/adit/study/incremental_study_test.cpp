@@ -60,5 +60,13 @@ TEST(IncrementalStudy, NamesAFileThatIsAbsent) {
   EXPECT_NE(runs.error().message.find("absent.g2o"), std::string::npos);
 }
 
+TEST(IncrementalStudy, RefusesAGraphWithoutASingleStep) {
+  const test::TemporaryFolder folder;
+  test::put_file(folder / "alone.g2o", "VERTEX_SE2 0 0 0 0\n");
+  ListedGraph listed;
+  listed.path = (folder / "alone.g2o").string();
+  EXPECT_ERROR(run_incremental(listed, {}, {10}), "alone.g2o: a graph of fewer than two nodes");
+}
+
 }  // namespace
 }  // namespace adit

@@ -5,8 +5,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "adit/core/angles.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/posegraph/false_loops.hpp"
@@ -147,7 +147,7 @@ Result<> run_injected(const ListedGraph& listed, const BasicPoseGraph<P>& graph,
 }
 
 double tilt_deg(const Pose& T) {
-  return std::acos(std::clamp(T.rotation_matrix()(2, 2), -1.0, 1.0)) * 180.0 / std::numbers::pi;
+  return std::acos(std::clamp(T.rotation_matrix()(2, 2), -1.0, 1.0)) / kDegree;
 }
 
 /// A graph with false loops of its own. Its robots drove on a floor, so a loop that tilts is false.

@@ -47,21 +47,26 @@ std::string variant_of(const MergeEffect& effect, double amplitude) {
   return amplitude == 0.0 ? "without effects" : format("{} {:g}", effect.name, amplitude);
 }
 
-const MergeRun* find_run(const std::vector<MergeRun>& runs, const std::string& world,
-                         const std::string& variant) {
-  const std::string keyframes = format("{} {}", to_string(KeyframeSelection::adaptive), variant);
-  const auto found = std::ranges::find_if(
-      runs, [&](const MergeRun& run) { return run.world == world && run.keyframes == keyframes; });
+/// The run that `run_world` makes of that world under that study; null where there is none yet.
+const MergeRun* find_run(const std::vector<MergeRun>& runs, const MergeStudy& study,
+                         const ListedWorld& world) {
+  const ScenarioConfig scenario = scenario_of(world, study.config.simulation);
+  MergeRun wanted;
+  wanted.world = world.name;
+  wanted.keyframes = format("{} {}", to_string(KeyframeSelection::adaptive), study.variant);
+  wanted.sensors = sensors_text(scenario);
+  wanted.conditions = conditions_text(scenario);
+  const auto found =
+      std::ranges::find_if(runs, [&](const MergeRun& run) { return is_same_run(run, wanted); });
   return found == runs.end() ? nullptr : &*found;
 }
 
 /// Runs one world at one amplitude, unless that was done.
-Result<> run_amplitude(MergeStudy study, ListedWorld world, std::vector<MergeRun>& runs) {
-  if (find_run(runs, world.name, study.variant) != nullptr) return {};
+Result<> run_amplitude(MergeStudy study, const ListedWorld& world, std::vector<MergeRun>& runs) {
+  if (find_run(runs, study, world) != nullptr) return {};
   const bool passes = study.variant != variant_of({}, 0.0);
   const std::filesystem::path results = study.folder;
   if (passes) study.folder = results / "passing";
-  world.conditions.clear();
   if (const Result<> made = make_folder(study.folder / "maps"); !made) return made;
   const Result<> done = run_world(study, world, runs);
   std::error_code ignored;
@@ -141,9 +146,10 @@ Result<std::vector<CurvePoint>> measure_curves(const MergeStudy& study,
       one.policies = {KeyframeSelection::adaptive};
       one.variant = variant_of(effect, amplitude);
       CurvePoint point{effect.name, amplitude, {}};
-      for (const ListedWorld& world : worlds) {
+      for (ListedWorld world : worlds) {
+        world.conditions.clear();
         if (const Result<> done = run_amplitude(one, world, runs); !done) return tl::unexpected(done.error());
-        if (const MergeRun* run = find_run(runs, world.name, one.variant)) point.counts.add(*run);
+        if (const MergeRun* run = find_run(runs, one, world)) point.counts.add(*run);
       }
       points.push_back(std::move(point));
     }

@@ -40,8 +40,9 @@ struct CurvePoint {
 
 /// Runs MergePolicy::adaptive on every world at every amplitude, on maps that are not kept but those without
 /// an effect. `study.policies` is not read. The worlds' own conditions do not count. `runs` are those of
-/// earlier calls: what they hold is not run again, and what is new is added and written to results.json of
-/// the study's folder.
+/// earlier calls: what they hold of the same sensors and conditions is not run again, and what is new is
+/// added and written to results.json of the study's folder. Fails where a world cannot be driven or an effect
+/// cannot be set.
 Result<std::vector<CurvePoint>> measure_curves(const MergeStudy& study,
                                                const std::vector<ListedWorld>& worlds,
                                                const std::vector<MergeEffect>& effects,

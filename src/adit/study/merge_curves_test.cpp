@@ -89,6 +89,11 @@ TEST(MergeCurves, ResultsAreKeptAndMapsAreNot) {
   ASSERT_TRUE(kept) << kept.error().message;
   ASSERT_TRUE(measure_curves(study, {world}, {kBias, dust}, *kept));
   EXPECT_EQ(num_run, 4) << "nothing is run again";
+  ASSERT_EQ(kept->size(), 4U);
+  kept->front().sensors = "another";
+  ASSERT_TRUE(measure_curves(study, {world}, {kBias, dust}, *kept));
+  EXPECT_EQ(num_run, 5) << "a run with other sensors is not taken for one with these";
+  EXPECT_EQ(kept->size(), 5U) << "and is kept beside it";
 }
 
 }  // namespace

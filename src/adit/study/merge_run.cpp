@@ -155,11 +155,13 @@ Result<MergeRun> run_merges(const std::vector<RobotRun>& runs, const MergeTruth&
   return result;
 }
 
+bool is_same_run(const MergeRun& a, const MergeRun& b) {
+  return a.world == b.world && a.keyframes == b.keyframes && a.sensors == b.sensors &&
+         a.conditions == b.conditions;
+}
+
 void put_run(std::vector<MergeRun>& runs, MergeRun run) {
-  const auto old = std::ranges::find_if(runs, [&](const MergeRun& other) {
-    return other.world == run.world && other.keyframes == run.keyframes && other.sensors == run.sensors &&
-           other.conditions == run.conditions;
-  });
+  const auto old = std::ranges::find_if(runs, [&](const MergeRun& other) { return is_same_run(other, run); });
   if (old == runs.end())
     runs.push_back(std::move(run));
   else

@@ -34,7 +34,9 @@ Result<> write_merge_runs(const std::filesystem::path& file, const std::vector<M
 ///@}
 /// One line per pair, for spreadsheets.
 Result<> write_merge_csv(const std::filesystem::path& file, const std::vector<MergeRun>& runs);
-/// Replaces the run of the same world, policy, sensors and conditions, or appends.
+/// Whether both are of one world, policy, sensors and conditions, so that the later one replaces the other.
+[[nodiscard]] bool is_same_run(const MergeRun& a, const MergeRun& b);
+/// Replaces the run that `is_same_run`, or appends.
 void put_run(std::vector<MergeRun>& runs, MergeRun run);
 
 }  // namespace adit

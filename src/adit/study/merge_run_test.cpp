@@ -148,6 +148,8 @@ TEST(PutRun, OtherSensorsAndConditionsStandBesideIt) {
   put_run(runs, other);
   put_run(runs, other);
   EXPECT_EQ(runs.size(), 3U);
+  EXPECT_TRUE(is_same_run(runs[2], other));
+  for (const std::size_t r : {0U, 1U}) EXPECT_FALSE(is_same_run(runs[r], other)) << r;
 }
 
 TEST(PutRun, TakesThePlaceOfTheSameWorldAndPolicy) {

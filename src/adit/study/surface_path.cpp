@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "adit/core/angles.hpp"
 #include "adit/core/parallel.hpp"
 #include "adit/simulation/floor_line.hpp"
 
@@ -26,7 +27,7 @@ std::array<Eigen::Vector3f, kRays> make_directions() {
   std::array<Eigen::Vector3f, kRays> directions;
   for (std::size_t ring = 0; ring < kRings; ++ring)
     for (std::size_t k = 0; k < kRaysPerRing; ++k) {
-      const double ahead = kRingElevations[ring] * std::numbers::pi / 180.0;
+      const double ahead = kRingElevations[ring] * kDegree;
       const double around = 2.0 * std::numbers::pi * static_cast<double>(k) / kRaysPerRing;
       directions[ring * kRaysPerRing + k] =
           Vector3(std::sin(ahead), std::cos(ahead) * std::cos(around), std::cos(ahead) * std::sin(around))

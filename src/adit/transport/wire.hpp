@@ -13,8 +13,9 @@
 namespace adit {
 
 /// The bytes of a message: little-endian, a version byte first, a checksum last. Numbers travel exactly, but
-/// for cloud points (16-bit steps of 5 mm, so at most 163 m away; farther ones are left out) and descriptor
-/// cells (a byte each).
+/// for the points and viewpoints of clouds (16-bit steps of 5 mm, so at most 163 m away along each axis:
+/// farther points are left out, and no viewpoint may be farther), their intensities (a byte each, to 4 %
+/// between 0.0011 and 93,000) and descriptor cells (a byte each).
 [[nodiscard]] std::vector<std::byte> encode(const Message& message);
 
 /// What the last eight bytes of a message hold: a hash of all bytes before them. It finds damage, not malice.

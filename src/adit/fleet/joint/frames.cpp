@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "adit/fleet/joint/frames.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 
-#include "adit/core/decompositions.hpp"
 #include "adit/core/disjoint_sets.hpp"
+#include "adit/posegraph/chordal.hpp"
 
 namespace adit {
 namespace {
@@ -32,10 +31,7 @@ Pose mean_frame(const FleetGraph& fleet, const std::vector<const LoopClosure*>& 
     seen_in_a += T_oa_to.translation();
     seen_in_b += T_ob_to.translation();
   }
-  const auto [u, singular_values, v] = svd(sum);
-  Matrix3 flip = Matrix3::Identity();
-  flip(2, 2) = (u * v.transpose()).determinant();
-  const Matrix3 R = u * flip * v.transpose();
+  const Matrix3 R = nearest_rotation(sum);
   return {R, (seen_in_a - R * seen_in_b) / static_cast<double>(loops.size())};
 }
 

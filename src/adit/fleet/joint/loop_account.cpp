@@ -30,7 +30,7 @@ std::optional<std::size_t> hypothesis_of(const MergeCheck& check, const LoopClos
   return static_cast<std::size_t>(found - check.hypotheses.begin());
 }
 
-/// What the test found of the hypothesis that a loop belongs to. No commas: it is to be a cell of a table.
+/// What the test found of the hypothesis that a loop belongs to.
 std::string finding(const MergeCheck& check, std::size_t index) {
   const MergeHypothesis& h = check.hypotheses[index];
   const std::size_t number = index + 1;

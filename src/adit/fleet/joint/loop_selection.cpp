@@ -203,9 +203,7 @@ LoopSelection select_loops(const FleetGraph& fleet, const BackEndConfig& config)
     }
   }
   keep_revisits(fleet, selection);
-  if (!is_adaptive) return selection;
-  MergeReview review(fleet, chains, config, selection);
-  if (config.cycles_needed) review.take_back();
+  if (is_adaptive && config.cycles_needed) MergeReview(fleet, chains, config, selection).take_back();
   return selection;
 }
 

@@ -43,7 +43,6 @@ Fields fields_of(MergeCheckConfig& c) {
        "places compared per hypothesis before the best ones are compared further"},
       {"max_hypotheses", &c.max_hypotheses, "", 1, 1000,
        "sets of consistent loops that are tested, the largest ones"},
-      {"min_loops", &c.min_loops, "", 1, 1000, "loops that have to agree in a hypothesis that joins maps"},
       {"same_alignment_m", &c.same_alignment_m, "m", 0.0, 1000.0,
        "hypotheses are one if they put the other robot within this distance of one another"},
       {"misplaced_m", &c.misplaced_m, "m", 0.0, 1000.0,
@@ -53,8 +52,6 @@ Fields fields_of(MergeCheckConfig& c) {
       {"misplaced_neighbours", &c.misplaced_neighbours, "", 1, 1e6,
        "a loop is left out if most of this many nearest loops contradict it,"},
       {"misplaced_quorum", &c.misplaced_quorum, "", 1, 1e6, "unless there are fewer nearby loops than this"},
-      {"distinctive_only", &c.distinctive_only, "", 0, 0,
-       "agreement counts only where a displacement along the path would show"},
       {"relief", &c.relief, "", 0, 0,
        "compare the relief of walls, too: walls that stay apart in the same direction in all scans are "
        "others"}};

@@ -39,13 +39,11 @@ struct MergeCheckConfig {
   int max_found_again = 8;
   int first_checks = 8;
   int max_hypotheses = 12;
-  int min_loops = 1;
   double same_alignment_m = 3.0;
   double misplaced_m = 0.75;
   int misplaced_keyframes = 60;
   int misplaced_neighbours = 5;
   int misplaced_quorum = 3;
-  bool distinctive_only = true;
   bool relief = true;
   EvidenceModel evidence;
   DiscernmentConfig discernment;

@@ -112,9 +112,6 @@ TEST(FewLoops, NothingIsLookedForAgainWhereItWouldNotDecide) {
   EXPECT_TRUE(looked_for_again(FoundAgain::there, 5.0).asked.empty()) << "too much is missing";
   EXPECT_TRUE(looked_for_again(FoundAgain::there, -1.0).asked.empty()) << "nothing is missing";
   EXPECT_TRUE(looked_for_again(FoundAgain::there, 1.0, by_places(), kTrueLoops).asked.empty());
-  MergeCheckConfig three_loops = by_places();
-  three_loops.min_loops = 3;
-  EXPECT_TRUE(looked_for_again(FoundAgain::there, 1.0, three_loops).asked.empty());
   MergeCheckConfig none = by_places();
   none.max_found_again = 0;
   EXPECT_TRUE(looked_for_again(FoundAgain::there, 1.0, none).asked.empty());

@@ -180,9 +180,8 @@ std::size_t Hypothesis::num_changes_unless_explained() const {
   return all.num() + unlocated;
 }
 
-std::size_t Hypothesis::num_differing(double by_more_than) const {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      compared, [&](const ComparedPlace& place) { return !(place.difference <= by_more_than); }));
+std::size_t Hypothesis::num_differing() const {
+  return static_cast<std::size_t>(std::ranges::count_if(compared, &ComparedPlace::differs));
 }
 
 std::size_t Hypothesis::num_agreeing() const {
@@ -191,9 +190,8 @@ std::size_t Hypothesis::num_agreeing() const {
 }
 
 std::size_t Hypothesis::num_distinctive() const {
-  return static_cast<std::size_t>(std::ranges::count_if(compared, [&](const ComparedPlace& place) {
-    return outcome(place, true) == PlaceOutcome::distinctive;
-  }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      compared, [&](const ComparedPlace& place) { return outcome(place) == PlaceOutcome::distinctive; }));
 }
 
 bool Hypothesis::shows_beside_changes(const ComparedPlace& place) const {
@@ -204,27 +202,25 @@ bool Hypothesis::shows_beside_changes(const ComparedPlace& place) const {
   return place.signs && !place.signs->empty() && std::ranges::all_of(*place.signs, shows_beside);
 }
 
-PlaceOutcome Hypothesis::outcome(const ComparedPlace& place, bool distinctive_only) const {
+PlaceOutcome Hypothesis::outcome(const ComparedPlace& place) const {
   if (place.differs() && !place.is_explained) return PlaceOutcome::differs;
   const bool is_distinctive = place.differs() ? shows_beside_changes(place) : place.is_distinctive;
-  return is_distinctive || (!distinctive_only && !place.differs()) ? PlaceOutcome::distinctive
-                                                                   : PlaceOutcome::agrees;
+  return is_distinctive ? PlaceOutcome::distinctive : PlaceOutcome::agrees;
 }
 
-std::vector<TestedPlace> Hypothesis::places(bool distinctive_only) const {
+std::vector<TestedPlace> Hypothesis::places() const {
   std::vector<TestedPlace> places;
   for (std::size_t i = 0; i < compared.size(); ++i)
-    places.push_back({plan[i].own, plan[i].theirs, outcome(compared[i], distinctive_only)});
+    places.push_back({plan[i].own, plan[i].theirs, outcome(compared[i])});
   std::ranges::stable_sort(places, {}, &TestedPlace::a);
   return places;
 }
 
-std::vector<TestedPlace> Hypothesis::places_at_best(bool distinctive_only) const {
+std::vector<TestedPlace> Hypothesis::places_at_best() const {
   std::vector<TestedPlace> places;
   for (std::size_t i = 0; i < compared.size(); ++i)
-    places.push_back(
-        {plan[i].own, plan[i].theirs,
-         waits_for_second_look(i) ? PlaceOutcome::distinctive : outcome(compared[i], distinctive_only)});
+    places.push_back({plan[i].own, plan[i].theirs,
+                      waits_for_second_look(i) ? PlaceOutcome::distinctive : outcome(compared[i])});
   std::ranges::stable_sort(places, {}, &TestedPlace::a);
   return places;
 }

@@ -107,8 +107,8 @@ struct Hypothesis {
   void add_second_look(std::size_t which, const ComparedPlace& place);
   /// By what a displacement would show at a place that differs.
   void add_signs(std::size_t which, const ComparedPlace& place);
-  /// Compared places that differ by more than this times the limit.
-  [[nodiscard]] std::size_t num_differing(double by_more_than = 1.0) const;
+  /// Compared places that differ.
+  [[nodiscard]] std::size_t num_differing() const;
   /// Changes of structure, and places that differ as a whole.
   [[nodiscard]] std::size_t num_changes() const { return structures.num() + num_unlocated; }
   /// The same if all second looks that are left confirmed what the first ones saw.
@@ -120,14 +120,14 @@ struct Hypothesis {
   [[nodiscard]] std::size_t num_distinctive() const;
   ///@}
   /// What was found at each place; what differs elsewhere leaves the rest of a place to agree. In the order
-  /// driven by the own robot; where not `distinctive_only` every place that agrees counts as distinctive.
-  [[nodiscard]] std::vector<TestedPlace> places(bool distinctive_only) const;
+  /// driven by the own robot.
+  [[nodiscard]] std::vector<TestedPlace> places() const;
   /// The same if all second looks that are left showed that places agree, and are distinctive.
-  [[nodiscard]] std::vector<TestedPlace> places_at_best(bool distinctive_only) const;
+  [[nodiscard]] std::vector<TestedPlace> places_at_best() const;
 
  private:
   [[nodiscard]] bool waits_for_second_look(std::size_t which) const;
-  [[nodiscard]] PlaceOutcome outcome(const ComparedPlace& place, bool distinctive_only) const;
+  [[nodiscard]] PlaceOutcome outcome(const ComparedPlace& place) const;
   [[nodiscard]] bool shows_beside_changes(const ComparedPlace& place) const;
   /// Counts what differs at a place; true if there is something and all of it had been counted before.
   bool note_changes(const std::vector<Vector3>& differing);

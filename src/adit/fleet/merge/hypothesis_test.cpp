@@ -94,7 +94,7 @@ TEST(Hypothesis, BesideAKnownChangeAPlaceStaysDistinctiveByWhatShowsElsewhere) {
     place.signs = signs;
     h.add_signs(1, place);
     EXPECT_TRUE(h.to_ask_for_signs().empty());
-    return h.places(true).back().outcome;
+    return h.places().back().outcome;
   };
   const Vector3 near = change + Vector3(3.0, 0.0, 0.0);
   const Vector3 far = change + Vector3(30.0, 0.0, 0.0);

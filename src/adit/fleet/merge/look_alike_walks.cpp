@@ -58,7 +58,7 @@ std::optional<LookAlikeWalks::Walk> LookAlikeWalks::start_at(const LoopCandidate
   const std::uint32_t b = candidate.match.index;
   const Registration found = register_features(features_.at(a), features_.at(b), config_.registration);
   if (found.verdict != LoopVerdict::accepted || found.weak_axis < kWeakAxis ||
-      fits_odometry(chain_, {a, b, *found.T_a_b}, config_.search.revisit))
+      fits_odometry(chain_, {a, b, *found.T_a_b, found.information}, config_.search.revisit))
     return {};
   return Walk{a, b, *found.T_a_b};
 }

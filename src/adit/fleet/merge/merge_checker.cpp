@@ -43,7 +43,7 @@ MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first, d
   // Against copies. Scans of one place seldom differ.
   if (differs_too_often(best)) return MergeDecision::scans_differ;
   // What was known before is no reason to do without any comparison.
-  if (best.compared.empty()) return MergeDecision::nothing_distinctive;
+  if (best.compared.empty()) return MergeDecision::nothing_compared;
 
   // Against chance. Only places where a displacement along the tunnel would show are evidence, by how seldom
   // look-alikes of the own map agree for as long (Wald's test).
@@ -52,7 +52,6 @@ MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first, d
     return best.num_distinctive() == 0 ? MergeDecision::nothing_distinctive
                                        : MergeDecision::too_little_evidence;
   }
-  if (std::ssize(best.loops) < config_.min_loops) return MergeDecision::too_few_loops;
 
   // Against every other hypothesis: the nearest one is the second.
   if (best_first.size() > 1 && are_rivals(best, hypotheses_[best_first[1]])) return MergeDecision::rival;
@@ -122,15 +121,14 @@ double MergeChecker::evidence_of_few_loops(const Hypothesis& h) const {
 }
 
 double MergeChecker::evidence_of_scans(const Hypothesis& h) const {
-  return prior_evidence(h) +
-         evidence_of_places(h.places(config_.distinctive_only), share_of_copies_if_true(h));
+  return prior_evidence(h) + evidence_of_places(h.places(), share_of_copies_if_true(h));
 }
 
 /// Places not yet compared are taken to agree, each as if none had agreed before, and other alignments to be
 /// no copies.
 double MergeChecker::most_evidence_of_scans(const Hypothesis& h) const {
   const std::size_t num_left = h.plan.size() - h.compared.size();
-  CountedPlaces places = counted_places(h.places_at_best(config_.distinctive_only), chances());
+  CountedPlaces places = counted_places(h.places_at_best(), chances());
   places.evidence += static_cast<double>(num_left) * evidence_of_agreement(chances(), 0);
   places.num_agreed += num_left;
   const CountedPlaces no_copy = {-std::numeric_limits<double>::infinity()};
@@ -149,8 +147,7 @@ double MergeChecker::evidence_of_places(const CountedPlaces& places, double copi
 double MergeChecker::share_of_copies_if_true(const Hypothesis& h) const {
   std::vector<CountedPlaces> others;
   for (const Hypothesis& other : hypotheses_)
-    if (&other != &h && !other.compared.empty())
-      others.push_back(counted_places(other.places(config_.distinctive_only), chances()));
+    if (&other != &h && !other.compared.empty()) others.push_back(counted_places(other.places(), chances()));
   return share_of_copies(others);
 }
 
@@ -383,7 +380,7 @@ MergeHypothesis MergeChecker::described(std::size_t which, std::size_t best) con
     out.loops.emplace_back(static_cast<std::uint32_t>(loops_[l].a), static_cast<std::uint32_t>(loops_[l].b));
   if (differs_too_often(h)) return out;
   out.evidence = evidence(h);
-  out.places = h.places(config_.distinctive_only);
+  out.places = h.places();
   out.walls = evidence_of_walls(h);
   out.outcome = which == best                      ? HypothesisOutcome::unsure
                 : are_rivals(hypotheses_[best], h) ? HypothesisOutcome::rival

@@ -40,11 +40,11 @@ struct OwnMeasurements {
 /// Why maps are joined or not.
 enum class MergeDecision : std::uint8_t {
   no_loops,             ///< No loop aligns the maps.
+  nothing_compared,     ///< No keyframes of both stand side by side along the stretch that loops align.
   scans_differ,         ///< At more places than a true alignment leaves.
   nothing_distinctive,  ///< All places that agree would agree if displaced along the tunnel, too.
   other_walls,          ///< The evidence would do if the relief of the walls did not speak against it.
   too_little_evidence,  ///< Less than needed, although some places are distinctive.
-  too_few_loops,        ///< Evidence enough, by fewer loops than MergeCheckConfig::min_loops.
   rival,                ///< Another hypothesis has nearly as much evidence.
   unfinished,           ///< Not all places were compared.
   accepted,             ///< Every test was passed.
@@ -65,8 +65,8 @@ class MergeChecker {
   /// What has been found, about the robots `a` (own) and `b`. The reason of a refusal ends with `remedy`,
   /// half a sentence, or where that is empty with what would help anywhere.
   [[nodiscard]] MergeCheck verdict(RobotId a, RobotId b, const std::string& remedy = {}) const;
-  /// What more evidence would decide; none where maps are joined, nothing aligns them, or another tunnel or a
-  /// sensor is taken to be the reason. Valid as long as the checker.
+  /// What more evidence would decide; none where maps are joined, nothing aligns them or could be compared,
+  /// or another tunnel or a sensor is taken to be the reason. Valid as long as the checker.
   [[nodiscard]] std::optional<UndecidedStretch> undecided() const;
 
  private:

@@ -48,20 +48,6 @@ TEST(MergeChecker, ALoopThatItsNeighboursContradictIsLeftOut) {
   EXPECT_EQ(loops_of({loops[1], loops[2]}).size(), 2U) << "nobody knows which of the two is right";
 }
 
-TEST(MergeChecker, SoManyLoopsHaveToAgreeWhateverThePlacesSay) {
-  MergeCheckConfig three = by_places();
-  three.min_loops = 3;
-  const auto check = [](const MergeCheckConfig& config) {
-    MergeChecker checker = a_check({loop_at(80), loop_at(100)}, 0.5, config);
-    return run(checker, [](const PlannedComparison&) { return kAgrees; });
-  };
-  EXPECT_TRUE(check(by_places()).accepted);
-  const MergeCheck too_few = check(three);
-  EXPECT_FALSE(too_few.accepted);
-  EXPECT_GT(too_few.evidence, too_few.needed);
-  EXPECT_NE(too_few.reason.find("2 loops agree, 3 are needed"), std::string::npos) << too_few.reason;
-}
-
 // A thing in every so many places, 9 m apart from the next one at least.
 MergeCheck check_with_things(std::uint32_t every) {
   MergeChecker checker = a_check(kTrueLoops);
@@ -338,10 +324,6 @@ TEST(MergeChecker, PlacesWithoutAnAlongAxisConstraintSayNothing) {
   EXPECT_FALSE(check.accepted);
   EXPECT_NE(check.reason.find("no along-axis constraint"), std::string::npos) << check.reason;
   EXPECT_NE(check.reason.find("drive on until both pass a junction"), std::string::npos) << check.reason;
-  MergeCheckConfig all_count = by_places();
-  all_count.distinctive_only = false;
-  MergeChecker other = a_check(kTrueLoops, 0.5, all_count);
-  EXPECT_TRUE(run(other, [](const PlannedComparison&) { return kSilent; }).accepted);
 }
 
 TEST(MergeChecker, WhereLookAlikesGoOnForLongALongerStretchIsNeeded) {

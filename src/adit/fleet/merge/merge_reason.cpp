@@ -51,7 +51,7 @@ std::string MergeChecker::what_is_missing(const Hypothesis& h) const {
   constexpr double kFarthestDrive = 1000.0;  // metres that it makes sense to ask for
   constexpr double kRounding = 10.0;         // metres
   const double share = static_cast<double>(h.num_distinctive()) / static_cast<double>(h.compared.size());
-  std::vector<TestedPlace> places = h.places(config_.distinctive_only);
+  std::vector<TestedPlace> places = h.places();
   const double copies = share_of_copies_if_true(h);
   const double wanted = evidence_of_places(places, copies) + needed() - evidence(h);
   double drive_m = 0.0;
@@ -85,8 +85,11 @@ std::string MergeChecker::why(MergeDecision decision, const std::vector<std::siz
       return format("evidence {:.1f} of {:.1f}: {} of {} places agree, {} of them distinctive{}", evidence(h),
                     needed(), num_agreeing, h.compared.size(), h.num_distinctive(),
                     what_else(h, refused_kind(decision, best_first)));
-    case MergeDecision::too_few_loops:
-      return format("{} loops agree, {} are needed", h.loops.size(), config_.min_loops);
+    case MergeDecision::nothing_compared:
+      return format(
+          "nothing was compared: along the stretch that {} loops align no keyframes of both stand "
+          "side by side",
+          h.loops.size());
     case MergeDecision::rival:
       return format(
           "two hypotheses {:.0f} m apart along the tunnel have similar support, evidence {:.1f} and {:.1f}",
@@ -124,8 +127,8 @@ std::string MergeChecker::remedy(MergeDecision decision, const std::vector<std::
                  : what_is_missing(hypotheses_[best_first.front()]);
     case MergeDecision::rival:
       return "drive on until both pass something that only one of them explains";
-    case MergeDecision::too_few_loops:
-      return "drive on along the same stretch";
+    case MergeDecision::nothing_compared:
+      return "drive where the other robot has driven, not beside it";
     case MergeDecision::unfinished:
     case MergeDecision::accepted:
       break;

@@ -42,7 +42,7 @@ RefusalKind MergeChecker::refused_kind(MergeDecision decision,
     case MergeDecision::rival:
       return RefusalKind::rival;
     case MergeDecision::nothing_distinctive:
-    case MergeDecision::too_few_loops:
+    case MergeDecision::nothing_compared:
     case MergeDecision::unfinished:
       return RefusalKind::too_little;
     case MergeDecision::accepted:
@@ -55,7 +55,7 @@ RefusalKind MergeChecker::refused_kind(MergeDecision decision,
 /// needed. Where places differ and look-alikes are likelier than one tunnel, it is not just too little.
 RefusalKind MergeChecker::kind_where_evidence_is_missing(const Hypothesis& h) const {
   if (evidence(h) - evidence_of_things(h) >= needed() ||
-      evidence_of_changes(h.places(config_.distinctive_only), chances()) >= needed())
+      evidence_of_changes(h.places(), chances()) >= needed())
     return RefusalKind::changed_place;
   if (h.num_differing() == 0 || evidence(h) >= 0.0) return RefusalKind::too_little;
   return 2 * h.num_differing() > h.compared.size() ? RefusalKind::other_tunnel
@@ -69,7 +69,7 @@ RefusalKind MergeChecker::kind_where_evidence_is_missing(const Hypothesis& h) co
 RefusalKind MergeChecker::kind_where_scans_differ(const Hypothesis& h) const {
   if (2 * h.num_differing() > h.compared.size()) return RefusalKind::other_tunnel;
   const LookAlikes before(config_.evidence);
-  const std::vector<TestedPlace> places = h.places(config_.distinctive_only);
+  const std::vector<TestedPlace> places = h.places();
   return evidence_of_changes(places, before.chances()) >= needed() &&
                  evidence_of_changes(places, chances()) >= needed()
              ? RefusalKind::changed_place
@@ -96,11 +96,11 @@ std::optional<UndecidedStretch> MergeChecker::undecided() const {
   const std::vector<std::size_t> order = best_first();
   const MergeDecision decision = decide(order);
   const RefusalKind kind = refused_kind(decision, order);
+  const bool is_merged = decision == MergeDecision::accepted;
   const bool is_other = kind == RefusalKind::other_tunnel || kind == RefusalKind::sensor;
-  const bool lacks_evidence = decision == MergeDecision::too_little_evidence ||
-                              decision == MergeDecision::nothing_distinctive ||
-                              decision == MergeDecision::rival;
-  if (is_other || !(lacks_evidence || kind == RefusalKind::changed_place)) return {};
+  const bool has_no_places =
+      decision == MergeDecision::no_loops || decision == MergeDecision::nothing_compared;
+  if (is_merged || is_other || has_no_places || decision == MergeDecision::unfinished) return {};
   const Hypothesis& best = hypotheses_[order.front()];
   const auto loops_of = [&](const Hypothesis& h) {
     std::vector<PcmLoop> loops;
@@ -109,7 +109,7 @@ std::optional<UndecidedStretch> MergeChecker::undecided() const {
   };
   UndecidedStretch out;
   for (const PlannedComparison& place : best.plan) out.shared.push_back(place.own);
-  out.places = best.places(config_.distinctive_only);
+  out.places = best.places();
   out.chances = chances();
   out.evidence = [this, &best, num = static_cast<double>(out.places.size()),
                   copies = share_of_copies_if_true(best)](const auto& places) {

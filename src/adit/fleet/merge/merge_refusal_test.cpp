@@ -148,7 +148,9 @@ Told told_of_walls(double range_error_m) {
 }
 
 TEST(MergeRefusal, WallsThatSensorsMayMoveAreNotSaidToBeOfAnotherTunnel) {
-  EXPECT_EQ(told_of_walls(0.0).check.refused_kind, RefusalKind::changed_or_other);
+  const Told other = told_of_walls(0.0);
+  EXPECT_EQ(other.check.refused_kind, RefusalKind::changed_or_other);
+  EXPECT_TRUE(other.is_undecided) << "more of the same stretch would tell";
   const MergeCheck off = told_of_walls(0.03).check;
   EXPECT_EQ(off.refused_kind, RefusalKind::sensor);
   EXPECT_NE(off.reason.find("it may be the sensors"), std::string::npos) << off.reason;

@@ -5,17 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
+#include "adit/core/angles.hpp"
 #include "adit/core/parallel.hpp"
 
 namespace adit {
 namespace {
-
-double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
 struct Match {
   const LoopCandidate* candidate;
@@ -52,8 +50,8 @@ class Agreeing {
   Agreeing(std::vector<Match> matches, const SegmentConfig& config)
       : matches_(std::move(matches)),
         config_(config),
-        off_per_metre_(radians(config.off_deg_per_m)),
-        turned_(radians(config.turned_deg)) {
+        off_per_metre_(config.off_deg_per_m * kDegree),
+        turned_(config.turned_deg * kDegree) {
     for (const Match& match : matches_)
       num_bins_ = std::max({num_bins_, bin_of(match.own_path_m) + 1, bin_of(match.their_path_m) + 1});
   }

@@ -38,6 +38,8 @@ TEST(UnfoundedMerge, WhatWasKnownBeforeAcceptsNothingWithoutAComparison) {
   EXPECT_GT(check.evidence, check.needed);
   EXPECT_FALSE(check.accepted);
   EXPECT_EQ(check.refused_kind, RefusalKind::too_little);
+  EXPECT_NE(check.reason.find("no keyframes of both stand side by side"), std::string::npos) << check.reason;
+  EXPECT_NE(check.reason.find("; drive where the other robot has driven"), std::string::npos);
 }
 
 TEST(UnfoundedMerge, EvidenceThatCannotBeComputedRefuses) {

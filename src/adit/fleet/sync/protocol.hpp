@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// The messages of the fleet. Every message is bounded in size, can be encoded (transport/wire), may arrive
-/// twice and may be lost: robots say how much they have of each other's results, and are sent the rest.
+/// The messages of the fleet. Every message can be encoded (transport/wire), may arrive twice and may be
+/// lost: robots say how much they have of each other's results, and are sent the rest. Lists are bounded by
+/// the constants below where a message is read; texts and the items of a MergeCheck where it is taken
+/// (FleetLedger). Not bounded are Hello::known, the points of a cloud and the cells of a descriptor: what
+/// receives bytes has to limit how many it takes as one message.
 #pragma once
 
 #include <array>
