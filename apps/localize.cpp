@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -36,6 +37,10 @@ std::vector<std::string> refusals(const Session& session, RobotId robot) {
   return out;
 }
 
+std::string trajectory_in(const std::string& session, const std::string& robot) {
+  return (std::filesystem::path(session) / robot / "trajectory.tum").string();
+}
+
 Result<> localize_command(const LocalizeOptions& options, const Common& common) {
   const RecordingConfig reading = reading_of_new(common, options.recording);
   Result<SavedSessions> saved = open_sessions({options.session});
@@ -47,6 +52,10 @@ Result<> localize_command(const LocalizeOptions& options, const Common& common) 
   const Result<SlamRun> run =
       slam_on(std::move(saved->fleets), {std::move(*recording)}, saved->job.config.slam);
   if (!run) return tl::unexpected(run.error());
+  const auto known = std::ranges::find(run->repeated, false, &RepeatedRobot::was_saved);
+  if (known != run->repeated.end())
+    return fail(format("{} is the recording of {} in {}; where that robot was says {}", path, known->same_as,
+                       options.session, trajectory_in(options.session, known->same_as)));
   print_notes("localize", run->notes);
   const Session& session = run->session;
   const RobotMap& robot = *session.maps.back();  // new robots come last

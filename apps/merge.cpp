@@ -52,7 +52,7 @@ void add_merge(Program& program) {
   add_control_options(command, options->control);
   command.footer(
       "Robots of one session do not meet again. Of robots that are called alike the later ones get a "
-      "number.");
+      "number. A robot that both sessions hold, with the same map, counts once, with a note.");
 }
 
 }  // namespace adit::app

@@ -136,15 +136,17 @@ RecordingConfig reading_of_new(const Common& common, const RecordingConfig& opti
   return recording_config(config.recording, options);
 }
 
-void add_ruling_options(const Command& command, RulingOptions& options) {
+void add_ruling_options(const Command& command, RulingOptions& options, const std::string& needs) {
+  const std::string repeatable = format("(repeatable{}{})", needs.empty() ? "" : "; needs ", needs);
   command.add_option(
       "--veto", options.vetoes,
-      "Robots A,B whose loops join nothing, or the loop A:12,B:40 of two keyframes, whatever the test "
-      "says (repeatable)");
+      "Robots A,B whose loops join nothing, or the loop A:12,B:40 of two keyframes, whatever the test says " +
+          repeatable);
   command.add_option(
       "--confirm", options.confirmed,
       "Robots A,B whose maps are joined by the best alignment that was found, or by that of the loop "
-      "A:12,B:40, whatever the test says (repeatable)");
+      "A:12,B:40, whatever the test says " +
+          repeatable);
 }
 
 std::vector<Ruling> rulings_of(const RulingOptions& options) {

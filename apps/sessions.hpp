@@ -25,8 +25,8 @@ struct RulingOptions {
   std::vector<std::string> vetoes;
   std::vector<std::string> confirmed;
 };
-/// --veto and --confirm.
-void add_ruling_options(const Command& command, RulingOptions& options);
+/// --veto and --confirm. `needs`: the option that they are given with; "" where they stand alone.
+void add_ruling_options(const Command& command, RulingOptions& options, const std::string& needs = "");
 /// Wrong usage where a pair is not two names.
 [[nodiscard]] std::vector<Ruling> rulings_of(const RulingOptions& options);
 

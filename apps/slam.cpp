@@ -172,7 +172,7 @@ void add_slam(Program& program) {
       .one_of(policy_names());
   command.add_option("--rerun", options->rerun,
                      "session.toml of a session to reproduce byte for byte from the same inputs");
-  add_ruling_options(command, options->rulings);
+  add_ruling_options(command, options->rulings, "--session");
   add_control_options(command, options->control);
   add_recording_options(command, options->recording);
   add_truth_topic(command, options->recording);

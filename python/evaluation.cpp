@@ -62,12 +62,15 @@ void add_evaluation(py::module_& m) {
         "ATE of robots that share a frame, after one alignment of all together.");
   m.def(
       "rpe",
-      [](const Path& estimate, const Path& truth, double segment) {
+      [](const Path& estimate, const Path& truth, double segment, double tolerance) {
         if (!(segment > 0.0)) throw py::value_error("segment: a length above 0 m is needed");
-        return value_of(rpe(estimate.poses, truth.poses, segment));
+        if (!(tolerance >= 0.0)) throw py::value_error("tolerance: a share of the segment, 0 or more");
+        return value_of(rpe(estimate.poses, truth.poses, segment, tolerance));
       },
-      py::arg("estimate"), py::arg("truth"), py::arg("segment") = 10.0,
-      "Relative pose error over segments of the true path, metres.");
+      py::arg("estimate"), py::arg("truth"), py::arg("segment") = 10.0, py::arg("tolerance") = 0.1,
+      "Relative pose error over segments of the true path, metres. Each ends at the pose nearest to its length, "
+      "and is left out where that is off by more than this share, as evo_rpe --all_pairs "
+      "--pairs_from_reference has it.");
 }
 
 }  // namespace adit::python

@@ -113,6 +113,13 @@ TEST_F(BadInput, Recordings) {
                  "groundtruth.tum: line 2");
   std::filesystem::create_directories(path("none"));
   expect_refused("slam " + path("none") + " --out " + out(), 1, "none: neither clouds");
+  std::filesystem::create_directories(path("session"));
+  put_file(path("session/session.toml"), "");
+  put_file(path("session/map.ply"), write_ply(wall()));
+  for (const std::string& command : {"slam " + path("session") + " --out " + out(), "doctor " + path("session"),
+                                    "odometry " + path("session") + " --out " + existing()})
+    expect_refused(command, 1, "is a session, not a recording");
+  expect_refused("doctor " + path("one") + " --points /typo", 1, "there is no topic '/typo'");
   put_file(path("bad.mcap"), "\x89MCAP0\r\n");
   expect_refused("slam " + path("bad.mcap") + " --out " + out(), 1, "bad.mcap");
 }

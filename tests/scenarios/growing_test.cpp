@@ -88,6 +88,15 @@ TEST_F(Growing, InStepsGivesWhatAllAtOnceGives) {
         << joined;
   expect_refused("merge " + in("a") + " " + in("b") + " --set bus.loss=0.1 --out " + in("c"), 2,
                  "it began with");
+
+  // Two teams, who both hold one of the robots.
+  const test::ProgramRun shared = run_adit("merge " + in("a") + " " + in("at_once") + " --out " + in("d"));
+  EXPECT_EQ(shared.exit_code, 0) << shared.err;
+  EXPECT_EQ(shared.err, "adit merge: note: ahead of " + in("at_once") + " and robot of " + in("a") +
+                            " have the same map, to the bit: it is one recording, which counts once; what was "
+                            "found or ruled about the former is left out, and its pairs are tested anew\n");
+  EXPECT_EQ(read_session(in("d"))->robots, (std::vector<std::string>{"robot", "behind", "later"}));
+  EXPECT_EQ(read_session(in("d"))->components.size(), 1U);
 }
 
 TEST_F(Growing, ARobotIsFoundInASavedMapOrItIsSaidWhyNot) {
@@ -108,6 +117,9 @@ TEST_F(Growing, ARobotIsFoundInASavedMapOrItIsSaidWhyNot) {
   ASSERT_TRUE(errors) << errors.error().message;
   for (const AteResult& error : *errors) EXPECT_LT(error.max_m, 0.3);
   expect_refused("localize " + in("map") + " " + drive("far"), 1, "far was not found");
+  expect_refused("localize " + in("map") + " " + drive("ahead"), 1,
+                 "is the recording of ahead in " + in("map") + "; where that robot was says " +
+                     in("map/ahead/trajectory.tum"));
   EXPECT_EQ(text_of("map/session.toml"), before);
 }
 
@@ -116,6 +128,11 @@ TEST_F(Growing, APersonOverrulesTheTest) {
   expect_done("slam --session " + in("s") + " --veto behind,ahead --out " + in("vetoed"));
   EXPECT_EQ(read_session(in("vetoed"))->components.size(), 2U);
   EXPECT_NE(text_of("vetoed/session.toml").find("a person keeps these maps apart"), std::string::npos);
+  const test::ProgramRun explained = run_adit("explain " + in("vetoed") + " ahead behind");
+  EXPECT_NE(explained.out.find("ahead and behind: not merged (vetoed)"), std::string::npos) << explained.out;
+  EXPECT_EQ(explained.out.find("unsure"), std::string::npos) << explained.out;
+  for (const char* file : {"vetoed/session.toml", "vetoed/metrics.json", "vetoed/report.html"})
+    EXPECT_NE(text_of(file).find("vetoed"), std::string::npos) << file;
   // It holds for what comes later, until it is taken back.
   expect_done("slam --session " + in("vetoed") + " " + drive("far"));
   EXPECT_EQ(read_session(in("vetoed"))->components.size(), 3U);

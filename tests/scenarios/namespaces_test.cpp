@@ -10,10 +10,10 @@
 namespace adit {
 namespace {
 
-/// Scans of a drive through a furnished room, as messages.
-std::vector<std::pair<Stamp, std::string>> drive_of(const std::string& frame) {
+/// Scans of a drive through a furnished room from x on, as messages.
+std::vector<std::pair<Stamp, std::string>> drive_of(const std::string& frame, double x) {
   const test::Lidar lidar{32, 256, 0.35, 120.0, 0.0};
-  const test::Drive drive{Pose::planar(-6, 0, 0.1), (Vector6() << 1.5, 0, 0, 0, 0, 0.1).finished()};
+  const test::Drive drive{Pose::planar(x, 0, 0.1), (Vector6() << 1.5, 0, 0, 0, 0, 0.1).finished()};
   std::vector<std::pair<Stamp, std::string>> messages;
   for (int i = 0; i < 30; ++i) {
     Scan scan = test::scan_of(test::furnished_room(), lidar, test::T_base_ouster, drive, i);
@@ -27,7 +27,7 @@ TEST(Namespaces, ARobotWithoutAMountStopsNoOther) {
   const test::TemporaryFolder folder;
   test::ForeignFile file;
   for (const std::string robot : {"husky1", "husky2"})
-    file.cloud_messages("/" + robot + "/points", drive_of(robot + "/lidar"), std::chrono::milliseconds(5));
+    file.cloud_messages("/" + robot + "/points", drive_of(robot + "/lidar", robot == "husky1" ? -6.0 : -5.5), std::chrono::milliseconds(5));
   file.clouds("/camera/depth/points", "depth_optical_frame")
       .links({test::link("husky1/base_link", "husky1/lidar", test::T_base_ouster),
               test::link("husky2/base_link", "husky2/lidar", test::T_base_ouster)});

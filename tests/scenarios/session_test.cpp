@@ -216,23 +216,32 @@ TEST(Session, ExplainsWhyItDidNotMergeAndWhereToDrive) {
 TEST(Session, RobotsOfOneNameGetDifferentNames) {
   const test::TemporaryFolder folder;
   put_two_drives(folder.path());
-  const std::string recordings = (folder / "recordings").string();
-  expect_done("simulate --routes " + (folder / "routes.yaml").string() +
-              " --robot ahead --lidar os2-32 --set simulation.lidar.columns=256 --out " + recordings);
-  const std::string file = recordings + "/ahead.mcap";
+  const auto recorded = [&](const std::string& seed) {
+    const std::string recordings = (folder / ("recordings_" + seed)).string();
+    expect_done("simulate --routes " + (folder / "routes.yaml").string() +
+                " --robot ahead --lidar os2-32 --set simulation.lidar.columns=256 --seed " + seed + " --out " +
+                recordings);
+    return recordings + "/ahead.mcap";
+  };
+  const std::string file = recorded("1");
+  const std::string other = recorded("2");
   const std::string slam = "slam --keyframes all --out " + (folder / "session").string();
-  const test::ProgramRun twice = run_adit(slam + " " + file + " " + file);
+  const test::ProgramRun twice = run_adit(slam + " " + file + " " + other);
   EXPECT_EQ(twice.exit_code, 0) << twice.err;
   EXPECT_NE(twice.err.find("'ahead'; here it is ahead_2"), std::string::npos) << twice.err;
   EXPECT_TRUE(fs::exists(folder / "session/ahead_2/trajectory.tum"));
 
-  const std::string two_names = " ada=" + file + " bo=" + file;
+  const std::string two_names = " ada=" + file + " bo=" + other;
   expect_refused(slam + two_names, 1, "the maps of ahead, ahead_2");
   const test::ProgramRun named = run_adit(slam + "_of_two" + two_names);
   EXPECT_EQ(named.exit_code, 0) << named.err;
   EXPECT_EQ(named.err, "");
   EXPECT_TRUE(fs::exists(folder / "session_of_two/ada/trajectory.tum"));
   EXPECT_TRUE(fs::exists(folder / "session_of_two/bo/trajectory.tum"));
+  const test::ProgramRun again = run_adit(slam + "_of_one ada=" + file + " bo=" + file);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_NE(again.err.find("bo is left out: it has the same map as ada"), std::string::npos) << again.err;
+  EXPECT_FALSE(fs::exists(folder / "session_of_one/bo"));
 }
 
 TEST(Study, RunsThePapersExperimentAndSaysWhatRan) {

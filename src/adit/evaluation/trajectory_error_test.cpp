@@ -11,6 +11,7 @@
 #include "adit/evaluation/associate.hpp"
 #include "adit/evaluation/ate.hpp"
 #include "adit/evaluation/rpe.hpp"
+#include "support/files.hpp"
 
 namespace adit {
 namespace {
@@ -149,11 +150,34 @@ TEST(Rpe, IsZeroInAnyFrameAndSeesAConstantDrift) {
     straight.push_back({at(i), Pose::planar(i, 0.0, 0.0)});
     drifting.push_back({at(i), Pose::planar(1.01 * i, 0.0, 0.001 * i)});
   }
-  const RpeResult drift = rpe(drifting, straight).value();
+  const RpeResult drift = rpe(drifting, straight, 10.0, 0.05).value();
   EXPECT_EQ(drift.rotation_errors_rad.size(), 91U);  // segments start at 0 to 90 m
   EXPECT_NEAR(drift.rotation_rmse_rad, 0.01, 1e-9);
   EXPECT_NEAR(drift.rotation_median_rad, 0.01, 1e-9);
   EXPECT_NEAR(drift.translation_errors_m.front(), 0.1, 1e-9);
+}
+
+TEST(Rpe, ASegmentEndsAtThePoseNearestToItsLength) {
+  // Stands at 4 m, and then goes on by more than the tolerance at a time.
+  const std::vector<double> way = {0.0, 4.0, 4.0, 4.0, 9.4, 10.7, 14.5, 30.0};
+  Trajectory truth;
+  Trajectory drifting;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    const double t = static_cast<double>(i);
+    truth.push_back({at(t), Pose::planar(way[i], 0.0, 0.0)});
+    drifting.push_back({at(t), Pose::planar(way[i] + 0.001 * std::pow(2.0, t), 0.0, 0.0)});
+  }
+  // From 0 to 9.4, which is nearer than 10.7; from each of those at 4 to 14.5, off by 0.5; no other ends well.
+  const auto errors = [&](double tolerance) { return rpe(drifting, truth, 10.0, tolerance)->translation_errors_m; };
+  const std::vector<double> found = errors(0.1);
+  const std::vector<double> expected = {0.016 - 0.001, 0.064 - 0.002, 0.064 - 0.004, 0.064 - 0.008};
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-12) << i;
+  EXPECT_EQ(errors(0.055).size(), 3U);
+  EXPECT_NEAR(rpe(drifting, truth, 4.0, 0.0)->translation_errors_m.front(), 0.002 - 0.001, 1e-12)
+      << "the first of several";
+  EXPECT_ERROR(rpe(drifting, truth, 10.0, 0.0), "no two of 8 poses lie 10.0 m apart");
+  EXPECT_THROW((void)rpe(drifting, truth, 10.0, -0.1), ContractViolation);
 }
 
 TEST(Rpe, RefusesAPathShorterThanASegment) {

@@ -95,7 +95,7 @@ class TopicIndex {
 /// Whether the name is that of a file of a bag.
 [[nodiscard]] bool is_bag_file(const std::filesystem::path& path);
 
-/// Fails, with the remedy, on a file that was compressed as a whole (.db3.zstd).
+/// Fails, with the remedy, on a file that was compressed as a whole (.db3.zstd, .bag.gz).
 [[nodiscard]] Result<> check_not_packed(const std::filesystem::path& path);
 
 /// Whether `folder` is a bag folder: it has the metadata.yaml of rosbag2, or no files of clouds but of bags.

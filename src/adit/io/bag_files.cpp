@@ -3,10 +3,12 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "adit/core/format.hpp"
@@ -41,11 +43,65 @@ std::vector<fs::path> files_in(const fs::path& folder, bool (*wanted)(const fs::
   return files;
 }
 
-bool is_packed(const fs::path& path) { return extension_of(path) == ".zstd" || extension_of(path) == ".zst"; }
+/// The command that unpacks files of that ending; "" where they are not compressed as a whole.
+std::string_view unpacker_of(const fs::path& path) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kUnpackers = {
+      {{".zstd", "zstd -d"},
+       {".zst", "zstd -d"},
+       {".gz", "gzip -d"},
+       {".bz2", "bzip2 -d"},
+       {".xz", "xz -d"},
+       {".lz4", "lz4 -d"},
+       {".zip", "unzip"}}};
+  const std::string extension = extension_of(path);
+  for (const auto& [ending, unpacker] : kUnpackers)
+    if (extension == ending) return unpacker;
+  return "";
+}
+
+bool is_packed(const fs::path& path) { return !unpacker_of(path).empty(); }
 
 std::string unpack_remedy(const std::string& name, const fs::path& path) {
-  return format("'{}' is compressed as a whole, which cannot be read in parts; unpack it: zstd -d {}", name,
-                shell_quoted(path.string()));
+  return format("'{}' is compressed as a whole, which cannot be read in parts; unpack it: {} {}", name,
+                unpacker_of(path), shell_quoted(path.string()));
+}
+
+/// What the first bytes of a file say.
+struct FileKind {
+  std::string_view magic;     ///< Those bytes.
+  std::string_view name;      ///< For people.
+  std::string_view ending;    ///< That such a file of a bag has; "" of what is compressed as a whole.
+  std::string_view unpacker;  ///< Of the latter: what writes the file that is in it to stdout.
+};
+
+/// Fails where a file of a bag is of another kind than its ending says. Passes what cannot be read or told:
+/// opening it says what is wrong.
+Result<> check_kind(const fs::path& path) {
+  using namespace std::string_view_literals;
+  constexpr std::array kKinds = {FileKind{"\x89MCAP0\r\n"sv, "an MCAP file"sv, ".mcap"sv, ""sv},
+                                 FileKind{"#ROSBAG V"sv, "a bag of ROS 1"sv, ".bag"sv, ""sv},
+                                 FileKind{"SQLite format 3\0"sv, "an SQLite file"sv, ".db3"sv, ""sv},
+                                 FileKind{"\x28\xB5\x2F\xFD"sv, "zstd"sv, ""sv, "zstd -dc"sv},
+                                 FileKind{"\x1F\x8B"sv, "gzip"sv, ""sv, "gzip -dc"sv},
+                                 FileKind{"BZh"sv, "bzip2"sv, ""sv, "bzip2 -dc"sv},
+                                 FileKind{"\xFD\x37zXZ\0"sv, "xz"sv, ""sv, "xz -dc"sv},
+                                 FileKind{"\x04\x22\x4D\x18"sv, "LZ4"sv, ""sv, "lz4 -dc"sv},
+                                 FileKind{"PK\x03\x04"sv, "zip"sv, ""sv, "unzip -p"sv}};
+  constexpr std::uint64_t kLongestMagic = 16;
+  const Result<ByteSource> source = open_source(path);
+  if (!source) return {};
+  const Result<std::string> start = source->read(0, std::min(source->size, kLongestMagic));
+  if (!start) return {};
+  const auto kind = std::ranges::find_if(
+      kKinds, [&](const FileKind& one) { return std::string_view(*start).starts_with(one.magic); });
+  if (kind == kKinds.end() || kind->ending == extension_of(path)) return {};
+  const std::string name = shell_quoted(path.string());
+  if (kind->ending.empty())
+    return fail(format("{}: its content is compressed by {} as a whole, which cannot be read in parts; unpack it: "
+                       "{} {} > UNPACKED{}",
+                       path.string(), kind->name, kind->unpacker, name, extension_of(path)));
+  return fail(format("{}: its content is that of {}; give it the ending of one: mv {} {}", path.string(), kind->name,
+                     name, shell_quoted(fs::path(path).replace_extension(kind->ending).string())));
 }
 
 /// Where the file that metadata.yaml names lies, if it is there. Bags of early versions name it with the
@@ -98,7 +154,10 @@ Result<FolderFiles> files_of_metadata(const fs::path& folder) {
       if (fs::exists(*found))
         named.files.push_back(std::move(*found));
       else
-        named.faults.push_back({format("{}: names '{}', which is not there", file.string(), name.Scalar())});
+        named.faults.push_back(
+            {format("{}: names '{}', which is not there; copy it beside that file, or let 'ros2 bag reindex' write "
+                    "metadata.yaml anew",
+                    file.string(), name.Scalar())});
     }
     if (known.empty()) return fail(format("{}: names no files (relative_file_paths)", file.string()));
     return named;
@@ -108,10 +167,11 @@ Result<FolderFiles> files_of_metadata(const fs::path& folder) {
 }
 
 Result<Bag> open_file(const fs::path& path) {
-  if (extension_of(path) == ".db3") return open_sqlite_bag(path);
   if (!is_bag_file(path))
     return fail(
         format("{}: not a file of a bag that adit knows; .mcap, .db3 and .bag are known", path.string()));
+  if (const Result<> kind = check_kind(path); !kind) return tl::unexpected(kind.error());
+  if (extension_of(path) == ".db3") return open_sqlite_bag(path);
   const Result<ByteSource> source = open_source(path);
   if (!source) return tl::unexpected(source.error());
   Result<Bag> bag = extension_of(path) == ".bag" ? open_ros1_bag(*source) : open_mcap_bag(*source);

@@ -171,13 +171,22 @@ std::function<Result<Scan>(std::size_t)> scan_reader(ScanReading reading, std::v
   };
 }
 
-/// What was found about the times of points.
-void note_point_times(Recording& recording, const ros::CloudMessage& first) {
-  if (!first.scan.cloud.has_times())
+/// What is to be said of the times of points; of adit's own files only what the user stated.
+void note_point_times(Recording& recording, const ros::CloudMessage& first, const Bag& bag,
+                      const RecordingConfig& config) {
+  const PointCloud& cloud = first.scan.cloud;
+  // Messages of Livox have their own unit, whatever is stated.
+  const bool is_stated = first.time_unit && to_string(*first.time_unit) == config.point_times;
+  const UnitSource source = is_stated ? UnitSource::stated : UnitSource::found;
+  if (is_stated)
+    if (auto warning = stated_unit_warning(*first.time_unit, cloud))
+      recording.warnings.push_back(std::move(*warning));
+  if (bag.own && source == UnitSource::found) return;
+  if (!cloud.has_times())
     recording.assumptions.push_back(
         "point times: none, so that scans are not corrected for the motion during a sweep");
   else if (!first.has_usual_time_unit)
-    recording.assumptions.push_back(point_times_note(*first.time_unit));
+    recording.assumptions.push_back(point_times_note(*first.time_unit, source));
 }
 
 /// The latest time of a point, seconds after the stamp; none where times do not count from the stamp.
@@ -363,7 +372,7 @@ Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, RecordingC
   Result<Tracks> tracks = read_tracks(*bag, *topics, config, names);
   if (!tracks) return tl::unexpected(tracks.error());
   Recording recording = recording_of(*tracks, *bag, *topics, config);
-  if (!bag->own) note_point_times(recording, *first);
+  note_point_times(recording, *first, *bag, config);
   const Result<std::optional<MovingPose>> moving = take_lidar_mount(recording, tracks->frames, names, config);
   if (!moving) return tl::unexpected(moving.error());
   if (*moving) {

@@ -27,8 +27,13 @@ enum class TimeUnit : std::uint8_t { seconds, milliseconds, microseconds, nanose
 /// None for "", as RecordingConfig::point_times has it.
 Result<std::optional<TimeUnit>> parse_time_unit(std::string_view text);
 
+/// Whether somebody stated the unit of the times of points, or it was found (packed_cloud.hpp).
+enum class UnitSource : std::uint8_t { stated, found };
 /// What to say of times that are not in seconds as floats or nanoseconds as integers.
-[[nodiscard]] std::string point_times_note(TimeUnit unit);
+[[nodiscard]] std::string point_times_note(TimeUnit unit, UnitSource source);
+/// A warning where the sweep that these times make, in a unit that was stated, is shorter than 1 ms or longer
+/// than 1 s. Without times none.
+[[nodiscard]] std::optional<std::string> stated_unit_warning(TimeUnit unit, const PointCloud& sweep);
 
 /// What a cloud reader found. Points with a NaN or infinite coordinate are left out and counted.
 struct CloudFile {

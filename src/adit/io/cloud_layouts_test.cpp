@@ -290,6 +290,28 @@ TEST(CloudLayouts, AStampOfTheEndIsFoundByWhenTheScanWasRecorded) {
   EXPECT_ERROR(recorded_after(Duration(0), {.stamp_at = "middle"}), "'middle' is not start, end or auto");
 }
 
+TEST(CloudLayouts, AUnitThatIsStatedIsSaidToBe) {
+  std::vector<std::pair<Stamp, std::string>> clouds;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Scan scan = test::make_scan(k, 200);
+    for (std::size_t i = 0; i < scan.cloud.size(); ++i)
+      scan.cloud.time_offsets_ns[i] = static_cast<std::int32_t>(500 * i);  // microseconds: 0.1 s
+    clouds.emplace_back(scan.stamp, ros::encode_cloud(scan, "lidar"));
+  }
+  test::ForeignFile file;
+  file.cloud_messages("/points", clouds, std::chrono::milliseconds(110))
+      .links({test::link("base_link", "lidar", Pose())});
+  const Recording right = file.read({.point_times = "us"}).value();
+  EXPECT_EQ(right.assumptions, std::vector<std::string>{"point times: in us, as stated by --point-times"});
+  EXPECT_TRUE(right.warnings.empty());
+  const Recording wrong = file.read({.point_times = "ns"}).value();
+  EXPECT_TRUE(wrong.assumptions.empty()) << "that is their usual unit";
+  ASSERT_EQ(wrong.warnings.size(), 1U);
+  EXPECT_NE(wrong.warnings[0].find("the first sweep lasts 9.95e-05 s, where LiDARs take 0.05 to 0.2 s"),
+            std::string::npos)
+      << wrong.warnings[0];
+}
+
 TEST(CloudLayouts, MissingTimesAreSaidOnce) {
   test::ForeignFile file;
   std::vector<std::pair<Stamp, std::string>> clouds;

@@ -17,7 +17,8 @@ namespace adit {
 namespace {
 
 constexpr std::size_t kLargest = std::size_t{1} << 30U;
-constexpr std::size_t kUsualOfZstd = 64;  // larger ones, as maps of long drives, stand for no more a byte
+constexpr std::size_t kUsualOfZstd = 64;  // bytes that one stands for: of chunks, and of maps of long drives
+constexpr std::size_t kFirst = std::size_t{1} << 20U;  // bytes of memory, before data show that they need more
 // Bytes that one compressed byte can stand for: a zstd block of 128 KiB that repeats one byte takes four, LZ4
 // counts runs in 255s, and a block of 900 kB of bzip2, in which five bytes stand for 259, takes some 32.
 constexpr std::size_t kMostOfZstd = 32768;
@@ -30,6 +31,32 @@ Result<> check_claim(std::string_view bytes, std::size_t size, std::size_t most_
   return fail(format("{} compressed bytes cannot hold {} bytes; the size is damaged", bytes.size(), size));
 }
 
+/// Some kilobytes can stand for so much that `check_claim` passes a damaged size: memory is taken only as data
+/// come. Through a buffer of zstd's own, which takes longer than all at once.
+Result<std::string> decompress_zstd_by_steps(std::string_view bytes, std::size_t size) {
+  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), &ZSTD_freeDCtx);
+  ADIT_CHECK(context != nullptr, "out of memory");
+  ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
+  const std::size_t most = size + 1;  // a byte more tells whether the data end there
+  std::string out(std::min(most, kFirst), '\0');
+  for (std::size_t done = 0;;) {
+    ZSTD_outBuffer to{out.data(), out.size(), done};
+    const std::size_t state = ZSTD_decompressStream(context.get(), &to, &in);  // 0: a frame has ended
+    if (ZSTD_isError(state) != 0) return fail(format("damaged zstd data: {}", ZSTD_getErrorName(state)));
+    done = to.pos;
+    if (done == most) return fail(format("zstd data expand to more than {} bytes", size));
+    if (in.pos == in.size && state == 0) {
+      if (done != size) return fail(format("zstd data expand to {} bytes, not {}", done, size));
+      out.resize(size);
+      return out;
+    }
+    if (done == out.size())
+      out.resize(std::min(most, 2 * out.size()));
+    else if (in.pos == in.size)
+      return fail(format("zstd data end early, after {} of {} bytes", done, size));
+  }
+}
+
 Result<std::string> decompress_zstd(std::string_view bytes, std::size_t size) {
   // A frame states its size as well. Where it is the only one, a claim that differs is damage, found before
   // memory is taken.
@@ -40,6 +67,7 @@ Result<std::string> decompress_zstd(std::string_view bytes, std::size_t size) {
     return fail(format("holds {} bytes, not {}", stated, size));
   if (const Result<> possible = check_claim(bytes, size, kMostOfZstd); !possible)
     return tl::unexpected(possible.error());
+  if (size > kFirst && size / kUsualOfZstd > bytes.size()) return decompress_zstd_by_steps(bytes, size);
   std::string out(size, '\0');
   const std::size_t got = ZSTD_decompress(out.data(), out.size(), bytes.data(), bytes.size());
   if (ZSTD_isError(got) != 0) return fail(format("damaged zstd data: {}", ZSTD_getErrorName(got)));
@@ -73,7 +101,6 @@ Result<std::string> decompress_lz4(std::string_view bytes, std::size_t size) {
 /// A few bytes of bzip2 can stand for so much that `check_claim` passes a damaged size: memory is taken only
 /// as data come.
 Result<std::string> decompress_bz2(std::string_view bytes, std::size_t size) {
-  constexpr std::size_t kFirst = std::size_t{1} << 20U;
   if (const Result<> possible = check_claim(bytes, size, kMostOfBz2); !possible)
     return tl::unexpected(possible.error());
   bz_stream stream = {};
@@ -106,7 +133,6 @@ Result<std::string> decompress_bz2(std::string_view bytes, std::size_t size) {
 /// have come. Memory is taken as they come.
 template <class Give>
 std::string collected(std::size_t size, const Give& give) {
-  constexpr std::size_t kFirst = std::size_t{1} << 20U;
   std::string out;
   for (std::size_t done = 0;;) {
     if (done == out.size()) out.resize(std::min(size, std::max(kFirst, 2 * done)));

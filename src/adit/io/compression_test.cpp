@@ -4,6 +4,7 @@
 
 #include <bzlib.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "adit/core/rng.hpp"
 #include "adit/io/crc32.hpp"
@@ -39,6 +40,35 @@ TEST(Compression, AClaimThatSoFewBytesCannotHoldTakesNoMemory) {
   EXPECT_ERROR(decompress(few, "zstd", 1U << 30U), "holds 3 bytes");
   EXPECT_ERROR(decompress(few + few, "zstd", 1U << 30U), "cannot hold");
   EXPECT_EQ(decompress(few + few, "zstd", 6U), "fewfew");
+}
+
+/// The most memory that the process has had, bytes.
+std::size_t most_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024U;
+}
+
+TEST(Compression, ZstdTakesMemoryAsDataCome) {
+  // More than the usual a byte, in frames that fit: not at once, but all of it.
+  const std::string zeros(3'000'000, '\0');
+  const std::string packed = compress_zstd(zeros);
+  ASSERT_LT(packed.size(), zeros.size() / 64);
+  EXPECT_EQ(decompress(packed + packed, "zstd", 2 * zeros.size()).value(), zeros + zeros);
+  EXPECT_ERROR(decompress(packed + packed, "zstd", 2 * zeros.size() - 1), "expand to more than");
+  EXPECT_ERROR(decompress(packed + packed, "zstd", 2 * zeros.size() + 1), "expand to 6000000 bytes");
+  EXPECT_ERROR(decompress(packed + packed.substr(0, packed.size() - 10), "zstd", 2 * zeros.size()),
+               "end early");
+  // Where the memory is full when the data end.
+  const std::string mebibyte(std::size_t{1} << 20U, '\0');
+  EXPECT_EQ(decompress(compress_zstd(mebibyte) + compress_zstd(mebibyte), "zstd", 2 * mebibyte.size()).value(),
+            mebibyte + mebibyte);
+  // So many bytes that they could be a gibibyte, and are a few hundred kilobytes.
+  std::string claims;
+  while (claims.size() < 33'000) claims += compress_zstd("few");
+  const std::size_t before = most_memory();
+  EXPECT_ERROR(decompress(claims, "zstd", std::size_t{1} << 30U), "expand to");
+  EXPECT_LT(most_memory(), before + 100'000'000U);
 }
 
 // As the map of some kilometres is.

@@ -24,6 +24,7 @@
 #include "adit/io/session_dir.hpp"
 #include "adit/io/text.hpp"
 #include "adit/io/topic_info.hpp"
+#include "adit/io/trajectory_files.hpp"
 #include "adit/io/tum.hpp"
 #include "adit/robot/sensor_checks.hpp"
 
@@ -73,7 +74,7 @@ Result<Json> mesh_info(const fs::path& path) {
 Result<Json> ply_info(const fs::path& path) { return is_ply_mesh(path) ? mesh_info(path) : cloud_info(path); }
 
 Result<Json> trajectory_info(const fs::path& path) {
-  return read_tum(path).map([](const Trajectory& poses) {
+  return read_trajectory(path).map([](const Trajectory& poses) {
     Json info{{"kind", "trajectory"}};
     info.update(trajectory_json(poses));
     return info;
@@ -380,7 +381,8 @@ Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
   if (extension == ".ply") return ply_info(path);
   if (extension == ".obj" || extension == ".stl" || extension == ".dae" || extension == ".glb")
     return mesh_info(path);
-  if (extension == ".tum" || extension == ".txt") return trajectory_info(path);
+  if (extension == ".tum" || extension == ".txt" || extension == ".csv" || extension == ".kitti")
+    return trajectory_info(path);
   if (extension == ".g2o") return graph_info(path);
   if (extension == ".adit") return adit_info(path);
   if (extension == ".jrl" || extension == ".cbor") return jrl_info(path);
@@ -390,8 +392,8 @@ Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
     return fail(
         path.string() +
         ": not a kind of file that adit knows; it knows bags (.mcap .db3 .bag), clouds and meshes (.pcd .ply "
-        ".bin .obj .stl .dae .glb), .tum, .g2o, .jrl, maps of robots (.adit), routes (.yaml) and folders of "
-        "scans, of a bag or of a session");
+        ".bin .obj .stl .dae .glb), trajectories (.tum .txt .csv), graphs (.g2o .jrl .cbor), maps of robots "
+        "(.adit), routes (.yaml) and folders of scans, of a bag or of a session");
   }
   return scans_info(path, config);
 }

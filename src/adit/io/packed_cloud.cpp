@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "adit/core/format.hpp"
+#include "adit/core/robot_name.hpp"
 #include "adit/io/text.hpp"
 
 namespace adit {
@@ -152,8 +153,20 @@ std::optional<TimeUnit> unit_of_times(const PackedCloud& packed, const std::vect
   return {};
 }
 
+/// "are x, y, ring", in one line whatever the file says; "is none" where there are none.
+std::string names_text(std::vector<std::string> names) {
+  constexpr std::size_t kMost = 20;
+  if (names.empty()) return "is none";
+  const bool are_more = names.size() > kMost;
+  if (are_more) names.resize(kMost);
+  for (std::string& name : names) name = printable(name);
+  return format("are {}{}", fmt::join(names, ", "), are_more ? ", ..." : "");
+}
+
 Result<> check_field(const PackedCloud& cloud, const std::optional<PackedField>& field, const char* name) {
-  if (!field) return fail(format("no field '{}'", name));
+  if (!field)
+    return fail(format("no field '{}'; there {}, and points need x, y and z, in metres", name,
+                       names_text(cloud.names)));
   const std::size_t size = size_of(field->type);
   const std::size_t available = cloud.bytes.size();
   const bool fits =
@@ -235,6 +248,7 @@ void assign_field(PackedCloud& cloud, std::string_view name, PackedField field) 
   const auto take = [&](std::optional<PackedField>& place, std::initializer_list<std::string_view> names) {
     if (!place && std::ranges::find(names, name) != names.end()) place = field;
   };
+  cloud.names.emplace_back(name);
   take(cloud.x, {"x"});
   take(cloud.y, {"y"});
   take(cloud.z, {"z"});

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "adit/core/recording_config.hpp"
 #include "adit/core/records.hpp"
@@ -57,9 +58,11 @@ struct PackedCloud {
   std::optional<PackedField> reflectivity;  ///< The intensity where there is none.
   std::optional<PackedField> time;          ///< Of each point: from the stamp, or absolute.
   std::optional<TimeUnit> time_unit = {};   ///< Of point times; none: as `unpack` finds it.
+  std::vector<std::string> names = {};      ///< Of all fields that assign_field was shown, for errors.
 };
 
-/// Takes the field when its name is one that clouds use (see pcd.hpp) and its place is still free.
+/// Takes the field when its name is one that clouds use (see pcd.hpp) and its place is still free; keeps its
+/// name in any case.
 void assign_field(PackedCloud& cloud, std::string_view name, PackedField field);
 
 /// Where the unit of point times is not given, it is the one that makes the sweep last 2 ms to 2 s; where

@@ -3,6 +3,7 @@
 #include "adit/io/recording_files.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <optional>
 
@@ -43,6 +44,40 @@ Recording without_left_out(Recording recording, const RecordingConfig& config) {
   return recording;
 }
 
+/// What `adit slam` writes is no recording, although it has clouds in it.
+Result<> check_no_session(const std::string& input) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(std::filesystem::path(input) / "session.toml", ignored)) return {};
+  const std::string name = shell_quoted(input);
+  return fail(
+      format("{}: is a session, not a recording; adit slam --session {} RECORDING goes on from it, adit localize "
+             "{} RECORDING finds a robot in it, adit merge joins it with others, and adit info {} shows what it "
+             "holds",
+             input, name, name, name));
+}
+
+/// A topic that is asked for and that no folder of clouds can have is not to be passed over.
+Result<> check_no_topics(const std::string& input, const RecordingConfig& config) {
+  struct Asked {
+    const std::string& topic;
+    const char* option;
+    std::string_view none;  ///< What asks for no topic; "" where nothing does.
+    const char* instead;
+  };
+  const std::array asked = {
+      Asked{config.points, "--points", "", "its clouds are the files in it"},
+      Asked{config.wheel, "--wheel", kNoWheel, "its wheels are odometry.tum beside the clouds"},
+      Asked{config.imu, "--imu", kNoImu, "it holds no IMU"},
+      Asked{config.truth, "--truth", kNoTruth, "its ground truth is groundtruth.tum beside the clouds"},
+      Asked{config.tf, "--tf", "", "its mount is in recording.toml, or given by --mount"},
+      Asked{config.topics_under, "--set recording.topics_under", "", "it is of one robot"}};
+  for (const Asked& one : asked)
+    if (!one.topic.empty() && one.topic != one.none)
+      return fail(format("{}: there is no topic '{}', as this is a folder of clouds: {}; leave {} out", input,
+                         one.topic, one.instead, one.option));
+  return {};
+}
+
 Result<Recording> open_part(const std::filesystem::path& folder, const std::string& part,
                             const FolderReading& reading) {
   const std::optional<ScanSelection> selection = parse_selection(part);
@@ -63,10 +98,16 @@ Result<Recording> open_folder(const std::string& input, const RecordingConfig& c
   if (!time_unit) return tl::unexpected(time_unit.error());
   const FolderReading reading{*mount, *time_unit};
   std::error_code ignored;
-  if (std::filesystem::is_directory(input, ignored)) return read_scan_folder(input, {}, reading);
   const std::size_t at = input.rfind('@');
-  if (at != std::string::npos && std::filesystem::is_directory(input.substr(0, at), ignored))
-    return open_part(input.substr(0, at), input.substr(at + 1), reading);
+  const bool is_whole = std::filesystem::is_directory(input, ignored);
+  if (const Result<> recording = check_no_session(input); !recording)
+    return tl::unexpected(recording.error());
+  const bool is_part =
+      !is_whole && at != std::string::npos && std::filesystem::is_directory(input.substr(0, at), ignored);
+  if (is_whole || is_part)
+    if (const Result<> none = check_no_topics(input, config); !none) return tl::unexpected(none.error());
+  if (is_whole) return read_scan_folder(input, {}, reading);
+  if (is_part) return open_part(input.substr(0, at), input.substr(at + 1), reading);
   if (const Result<> plain = check_not_packed(input); !plain) return tl::unexpected(plain.error());
   if (std::filesystem::exists(input, ignored))
     return fail(input + ": is not a recording; a bag (.mcap, .db3, .bag or folder) or a folder of clouds is");

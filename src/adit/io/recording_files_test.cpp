@@ -32,6 +32,32 @@ TEST(OpenRecording, SelectsPartsOfAFolder) {
   EXPECT_ERROR(open_recording(path + "/a.txt"), "is not a recording");
 }
 
+TEST(OpenRecording, AFolderOfCloudsHasNoTopics) {
+  const TemporaryFolder folder;
+  PointCloud cloud;
+  cloud.points = {{1, 2, 3}};
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(write_cloud(folder / (std::to_string(i) + ".bin"), cloud));
+  const std::string path = folder.path().string();
+  EXPECT_ERROR(open_recording(path, {.points = "/ouster/points"}),
+               "there is no topic '/ouster/points', as this is a folder of clouds: its clouds are the files");
+  EXPECT_ERROR(open_recording(path, {.wheel = "/odom"}), "odometry.tum beside the clouds; leave --wheel out");
+  EXPECT_ERROR(open_recording(path, {.imu = "/imu"}), "it holds no IMU; leave --imu out");
+  EXPECT_ERROR(open_recording(path, {.truth = "/gt"}), "groundtruth.tum beside the clouds; leave --truth out");
+  EXPECT_ERROR(open_recording(path + "@even", {.tf = "/tf"}), "given by --mount; leave --tf out");
+  EXPECT_ERROR(open_recording(path, {.topics_under = "/husky1"}), "leave --set recording.topics_under out");
+  EXPECT_TRUE(open_recording(path, {.wheel = "none", .imu = "none", .truth = "none"}));
+  EXPECT_ERROR(open_recording(path + "/absent", {.points = "/points"}), "no such file or folder");
+}
+
+TEST(OpenRecording, OfASessionItIsSaidWhichCommandsTakeIt) {
+  const TemporaryFolder folder;
+  PointCloud cloud;
+  cloud.points = {{1, 2, 3}};
+  ASSERT_TRUE(write_cloud(folder / "map.ply", cloud));
+  put_file(folder / "session.toml", "");
+  EXPECT_ERROR(open_recording(folder.path().string()), "is a session, not a recording; adit slam --session ");
+}
+
 TEST(OpenRecording, StampsOfTheEndOfTheSweep) {
   const TemporaryFolder folder;
   PointCloud cloud;
@@ -45,6 +71,27 @@ TEST(OpenRecording, StampsOfTheEndOfTheSweep) {
   EXPECT_ERROR(open_recording(path, {.point_times = "us"}), "span 100.000 s");
   EXPECT_ERROR(open_recording(path, {.stamp_at = "middle"}), "'middle' is not start, end or auto");
   EXPECT_ERROR(open_recording(path, {.point_times = "min"}), "'min' is not a unit of point times");
+}
+
+TEST(OpenRecording, TheUnitOfPointTimesIsTheOneThatIsStated) {
+  const TemporaryFolder folder;
+  PointCloud cloud;
+  cloud.points = {{1, 2, 3}, {2, 2, 3}, {3, 2, 3}};
+  cloud.time_offsets_ns = {0, 50, 100};  // milliseconds
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(write_cloud(folder / (std::to_string(i) + ".pcd"), cloud));
+  const std::string path = folder.path().string();
+  const auto says = [](const std::vector<std::string>& all, std::string_view text) {
+    return std::ranges::count_if(
+        all, [&](const std::string& one) { return one.find(text) != std::string::npos; });
+  };
+  const Recording right = open_recording(path, {.point_times = "ms"}).value();
+  EXPECT_EQ(right.read_scan(1)->cloud.time_offsets_ns.back(), 100'000'000);
+  EXPECT_EQ(says(right.assumptions, "point times: in ms, as stated by --point-times"), 1);
+  EXPECT_TRUE(right.warnings.empty());
+  const Recording wrong = open_recording(path, {.point_times = "us"}).value();
+  EXPECT_EQ(says(wrong.assumptions, "as sweeps do"), 0);
+  EXPECT_EQ(says(wrong.warnings, "the first sweep lasts 0.0001 s"), 1);
+  EXPECT_TRUE(open_recording(path)->warnings.empty());
 }
 
 TEST(OpenRecording, RealFolderAsTwoRobots) {

@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "adit/io/ros_messages.hpp"
 
+#include <algorithm>
+#include <cstdlib>
 #include <limits>
 
 #include "adit/core/format.hpp"
 #include "adit/io/cdr.hpp"
 #include "adit/io/packed_cloud.hpp"
 #include "adit/io/stated_pose.hpp"
+#include "adit/io/tum.hpp"
 
 namespace adit::ros {
 namespace {
@@ -78,6 +81,20 @@ Result<CloudMessage> unpacked(const PackedCloud& packed, CloudMessage out) {
     out.has_usual_time_unit = file.has_usual_time_unit;
     return std::move(out);
   });
+}
+
+/// For times that count from `time_base`, nanoseconds: from the scan's stamp. Where the two are further apart
+/// than two sweeps they are of different clocks, and times are taken to count from the stamp already.
+void count_from_stamp(Scan& scan, std::uint64_t time_base) {
+  constexpr std::int64_t kRounding = 1'000;  // nanoseconds: drivers keep stamps as floating-point seconds
+  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+  std::vector<std::int32_t>& offsets = scan.cloud.time_offsets_ns;
+  if (offsets.empty() || time_base > static_cast<std::uint64_t>(kLargestStamp.ns)) return;
+  const auto [first, last] = std::ranges::minmax(offsets);
+  const std::int64_t late = static_cast<std::int64_t>(time_base) - scan.stamp.ns;
+  if (std::abs(late) < kRounding || std::abs(late) > 2 * std::int64_t{last}) return;
+  if (first + late < -kMost || last + late > kMost) return;
+  for (std::int32_t& offset : offsets) offset = static_cast<std::int32_t>(offset + late);
 }
 
 struct CloudField {
@@ -203,7 +220,7 @@ Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding enco
   CloudMessage out;
   out.scan.stamp = read_stamp(reader);
   out.frame = reader.text();
-  static_cast<void>(reader.number<std::uint64_t>());  // the time base, which the stamp repeats
+  const auto time_base = reader.number<std::uint64_t>();  // of the first point, nanoseconds
   static_cast<void>(reader.number<std::uint32_t>());  // the number of points, which their sequence repeats
   for (int i = 0; i < 4; ++i) static_cast<void>(reader.number<std::uint8_t>());  // which LiDAR; reserved
   PackedCloud packed;
@@ -220,7 +237,10 @@ Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding enco
   packed.time_unit = TimeUnit::nanoseconds;
   packed.stamp = out.scan.stamp;
   if (!reader.ok()) return fail(format("byte {}: the CustomMsg message ends early", reader.offset()));
-  return unpacked(packed, std::move(out));
+  return unpacked(packed, std::move(out)).map([&](CloudMessage cloud) {
+    count_from_stamp(cloud.scan, time_base);
+    return cloud;
+  });
 }
 
 std::string encode_odometry(const OdometryMessage& odometry) {

@@ -75,6 +75,43 @@ TEST(RosMessages, LivoxCustomMessagesAreClouds) {
   }
 }
 
+/// A CustomMsg of ROS 1 with a point a hundredth of a second, ten of them.
+std::string livox_sweep(Stamp stamp, std::uint64_t time_base) {
+  std::string bytes;
+  append_little_endian(bytes, std::uint32_t{7});
+  append_little_endian(bytes, static_cast<std::uint32_t>(stamp.ns / 1'000'000'000));
+  append_little_endian(bytes, static_cast<std::uint32_t>(stamp.ns % 1'000'000'000));
+  append_little_endian(bytes, std::uint32_t{1});
+  bytes += "l";
+  append_little_endian(bytes, time_base);
+  for (const std::uint32_t number : {10U, 0U, 10U}) append_little_endian(bytes, number);
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    append_little_endian(bytes, 10'000'000 * i);
+    for (const float value : {1.0F, 2.0F, 3.0F}) append_little_endian(bytes, value);
+    bytes.append(3, '\0');
+  }
+  return bytes;
+}
+
+TEST(RosMessages, TimesOfLivoxCountFromTheTimeBase) {
+  constexpr std::int64_t kStamp = 1'700'000'000'500'000'000;
+  const auto first_time = [](std::int64_t time_base) {
+    const Result<ros::CloudMessage> cloud = ros::decode_livox(
+        livox_sweep({kStamp}, static_cast<std::uint64_t>(time_base)), MessageEncoding::ros1);
+    EXPECT_TRUE(cloud) << cloud.error().message;
+    const std::vector<std::int32_t> times = cloud->scan.cloud.time_offsets_ns;
+    EXPECT_EQ(times.back() - times.front(), 90'000'000);
+    return times.front();
+  };
+  EXPECT_EQ(first_time(kStamp), 0);
+  EXPECT_EQ(first_time(kStamp - 120), 0) << "the rounding of seconds";
+  EXPECT_EQ(first_time(kStamp - 100'000'000), -100'000'000) << "a stamp of the end of the sweep";
+  EXPECT_EQ(first_time(kStamp + 20'000'000), 20'000'000);
+  EXPECT_EQ(first_time(kStamp - 1'000'000'000), 0) << "another clock";
+  EXPECT_EQ(first_time(7'200'000'000'000), 0) << "since the sensor was switched on";
+  EXPECT_EQ(first_time(-1), 0) << "nonsense";
+}
+
 /// The bytes of the message, laid out by hand from the definition of nav_msgs/msg/Odometry.
 TEST(RosMessages, OdometryHasTheLayoutOfItsDefinition) {
   ros::OdometryMessage odometry;

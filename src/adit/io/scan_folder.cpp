@@ -336,6 +336,17 @@ Result<CloudFile> first_readable(const std::vector<fs::path>& clouds, std::optio
   return first;
 }
 
+/// What is to be said of the unit of the times of points.
+void note_point_times(Recording& recording, const CloudFile& first, const FolderReading& reading) {
+  if (!first.time_unit) return;
+  const UnitSource source = reading.time_unit ? UnitSource::stated : UnitSource::found;
+  if (!first.has_usual_time_unit)
+    recording.assumptions.push_back(point_times_note(*first.time_unit, source));
+  if (source == UnitSource::found) return;
+  if (auto warning = stated_unit_warning(*first.time_unit, first.cloud))
+    recording.warnings.push_back(std::move(*warning));
+}
+
 /// Reads scan i in the LiDAR's frame. Clouds that are in it already keep every bit.
 std::function<Result<Scan>(std::size_t)> scan_reader(std::vector<fs::path> files, std::vector<Stamp> stamps,
                                                      const Pose& T_lidar_cloud,
@@ -408,7 +419,7 @@ Result<Recording> read_scan_folder(const fs::path& given, ScanSelection selectio
   // What the first cloud shows of the times holds for all.
   const Result<CloudFile> first = first_readable(clouds, reading.time_unit);
   if (!first) return tl::unexpected(first.error());
-  if (!first->has_usual_time_unit) recording->assumptions.push_back(point_times_note(*first->time_unit));
+  note_point_times(*recording, *first, reading);
   recording->read_scan =
       scan_reader(std::move(clouds), recording->scan_stamps, mount->T_lidar_cloud, first->time_unit);
   return recording;

@@ -246,7 +246,8 @@ Result<Bag> open_sqlite_bag(const std::filesystem::path& path) {
   const auto messages = std::make_shared<Messages>(std::move(*database), std::move(*by_id));
   const std::string fault = drop_unreadable(bag, *messages, pages, *listed);
   if (!fault.empty() && bag.messages.empty())
-    return fail(format("{}: no message can be read: {}", path.string(), fault));
+    return fail(format("{}: no message can be read: {}; 'sqlite3 {} .recover' may save some", path.string(),
+                       fault, path.filename().string()));
   if (!fault.empty())
     bag.warnings.push_back(
         format("{}: only the first {} messages can be read ({}); 'sqlite3 {} .recover' may save more",

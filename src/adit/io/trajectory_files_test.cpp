@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "adit/io/file_info.hpp"
 #include "adit/io/tum.hpp"
 #include "support/files.hpp"
 
@@ -27,6 +28,22 @@ TEST(TrajectoryFiles, CsvNeedsNoHeading) {
   const test::TemporaryFolder folder;
   test::put_file(folder / "bare.csv", "1.5,1,2,3,0,0,0,1\n2.5,2,2,3,0,0,0,1\n");
   EXPECT_EQ(read_trajectory(folder / "bare.csv").value().at(1).T_world_body.translation().x(), 2.0);
+}
+
+TEST(TrajectoryFiles, InfoKnowsAllThatAreRead) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.csv", "a.tum", "a.txt"}) {
+    ASSERT_TRUE(write_trajectory(folder / name, kTwoPoses));
+    const Result<std::string> info = file_info((folder / name).string(), {});
+    ASSERT_TRUE(info) << info.error().message;
+    EXPECT_NE(info->find("\"kind\": \"trajectory\""), std::string::npos) << *info;
+    EXPECT_NE(info->find("\"poses\": 2"), std::string::npos) << *info;
+  }
+  ASSERT_TRUE(write_trajectory(folder / "a.kitti", kTwoPoses));
+  EXPECT_ERROR(file_info((folder / "a.kitti").string(), {}), "KITTI poses have no stamps");
+  test::put_file(folder / "a.doc", "");
+  EXPECT_ERROR(file_info((folder / "a.doc").string(), {}),
+               "trajectories (.tum .txt .csv), graphs (.g2o .jrl .cbor)");
 }
 
 TEST(TrajectoryFiles, KittiIsWrittenAndNotRead) {

@@ -20,7 +20,28 @@
 namespace adit {
 namespace {
 
-/// From one scan to the next, how wheels and scans have the robot move on the floor.
+std::vector<MotionStep> steps_of(const Recording& recording, std::span<const std::size_t> scans) {
+  constexpr double kUnknown = 10.0;  // metres and radians, along directions that the scan leaves open
+  const ScanMotion motion = motion_of_scans(recording, scans);
+  std::vector<MotionStep> out;
+  for (std::size_t k = kSettlingScans; k < motion.steps.size(); ++k) {
+    const OdometryStep& before = motion.steps[k - 1];
+    const OdometryStep& after = motion.steps[k];
+    const Result<Pose> begin = pose_at(recording.wheel, before.stamp);
+    const Result<Pose> end = pose_at(recording.wheel, after.stamp);
+    if (!begin || !end) continue;
+    const Pose by_wheels = begin->inverse() * *end;
+    out.push_back({by_wheels.translation().head<2>(), by_wheels.yaw(),
+                   before.T_odom_base.inverse() * after.T_odom_base,
+                   inverse(Matrix6(after.information + Matrix6::Identity() / (kUnknown * kUnknown))),
+                   after.status == StepStatus::ok || after.status == StepStatus::degenerate});
+  }
+  return out;
+}
+
+constexpr double kOpenSigma = 0.05;  // metres: a quarter of the way between usual scans
+
+/// A MotionStep on the floor.
 struct Step {
   Eigen::Vector2d by_wheels;
   Eigen::Vector2d by_scans;    ///< In the axes that the mount in use gives the base.
@@ -29,28 +50,12 @@ struct Step {
   bool is_seen = false;        ///< Scans state that they know it, along the tunnel, too.
 };
 
-std::vector<Step> steps_of(const Recording& recording, std::span<const std::size_t> scans) {
-  constexpr double kUnknown = 10.0;      // metres and radians, along directions that the scan leaves open
-  constexpr double kOpenSigma = 0.05;    // metres: a quarter of the way between usual scans
+Step on_the_floor(const MotionStep& step) {
   constexpr double kTurnSigma = 0.0005;  // radians
-  const ScanMotion motion = motion_of_scans(recording, scans);
-  std::vector<Step> out;
-  for (std::size_t k = kSettlingScans; k < motion.steps.size(); ++k) {
-    const OdometryStep& before = motion.steps[k - 1];
-    const OdometryStep& after = motion.steps[k];
-    const Result<Pose> begin = pose_at(recording.wheel, before.stamp);
-    const Result<Pose> end = pose_at(recording.wheel, after.stamp);
-    if (!begin || !end) continue;
-    const Matrix6 covariance =
-        inverse(Matrix6(after.information + Matrix6::Identity() / (kUnknown * kUnknown)));
-    const Pose by_scans = before.T_odom_base.inverse() * after.T_odom_base;
-    Step step{(begin->inverse() * *end).translation().head<2>(), by_scans.translation().head<2>(),
-              covariance.topLeftCorner<2, 2>(), by_scans.yaw()};
-    const bool is_registered = after.status == StepStatus::ok || after.status == StepStatus::degenerate;
-    step.is_seen = is_registered && step.covariance.trace() < kOpenSigma * kOpenSigma &&
-                   std::sqrt(covariance(5, 5)) < kTurnSigma;
-    out.push_back(step);
-  }
+  Step out{step.by_wheels, step.by_scans.translation().head<2>(), step.covariance.topLeftCorner<2, 2>(),
+           step.by_scans.yaw()};
+  out.is_seen = step.is_registered && out.covariance.trace() < kOpenSigma * kOpenSigma &&
+                std::sqrt(step.covariance(5, 5)) < kTurnSigma;
   return out;
 }
 
@@ -59,10 +64,12 @@ constexpr double kFarthest = 1.0;  // metres: a lever arm that is possible
 /// Along a smooth tunnel the rings of a scan fit best where those before lay, so that it says with confidence
 /// that the robot stood still: it has not seen the motion. How far the robot went does not depend on the yaw
 /// of the mount, and only little on its lever arm.
-bool goes_as_far_as_the_wheels(const Step& step) {
+bool goes_as_far(double by_scans, double by_wheels, double turned) {
   constexpr double kAgree = 0.25;  // share of the way: some 5 cm, where scans of a mine err by 2 to 3
-  const double way = step.by_wheels.norm();
-  return std::abs(step.by_scans.norm() - way) < kAgree * way + kFarthest * std::abs(step.turned);
+  return std::abs(by_scans - by_wheels) < kAgree * by_wheels + kFarthest * std::abs(turned);
+}
+bool goes_as_far_as_the_wheels(const Step& step) {
+  return goes_as_far(step.by_scans.norm(), step.by_wheels.norm(), step.turned);
 }
 
 /// By how much all of these have to be turned to go where the wheels went, radians.
@@ -101,7 +108,9 @@ std::vector<StepBeyondWheels> beyond_wheels(const std::vector<Step>& steps, doub
   return out;
 }
 
-constexpr double kLeastMotion = 1.0;  // m^2, of all steps: 25 of 0.2 m
+constexpr double kLeastMotion = 1.0;    // m^2, of all steps: 25 of 0.2 m
+constexpr double kEnoughTurns = 0.01;   // rad^2, of all steps: some 10 of 2 degrees
+constexpr std::size_t kFewSteps = 40;
 
 /// A shift by its share of turns, and what goes with the way instead, with their standard deviations.
 struct ShiftByTurns {
@@ -111,8 +120,7 @@ struct ShiftByTurns {
 
 /// Least squares of beyond = J [by_way, shift, ...], the standard deviations from the residuals.
 std::optional<ShiftByTurns> shift_by_turns(const Eigen::MatrixXd& J, const Eigen::VectorXd& beyond) {
-  constexpr Eigen::Index kFew = 40;
-  if (J.rows() < kFew) return {};
+  if (J.rows() < static_cast<Eigen::Index>(kFewSteps)) return {};
   Eigen::MatrixXd H = J.transpose() * J;
   const double squared_turns = H(1, 1);
   if (H(0, 0) < kLeastMotion) return {};
@@ -121,7 +129,6 @@ std::optional<ShiftByTurns> shift_by_turns(const Eigen::MatrixXd& J, const Eigen
   const Eigen::MatrixXd inverse_H = H.inverse();
   const Eigen::VectorXd x = inverse_H * (J.transpose() * beyond);
   const double variance = (beyond - J * x).squaredNorm() / static_cast<double>(J.rows() - J.cols());
-  constexpr double kEnoughTurns = 0.01;  // rad^2: some 10 steps of 2 degrees
   return ShiftByTurns{x[0], std::sqrt(variance * inverse_H(0, 0)), x[1],
                       squared_turns > kEnoughTurns ? std::sqrt(variance * inverse_H(1, 1))
                                                    : std::numeric_limits<double>::infinity()};
@@ -152,7 +159,6 @@ std::optional<ShiftByTurns> shift_to_the_left(std::vector<StepBeyondWheels> step
 }
 
 Result<MountByMotion> mount_from(const std::vector<Step>& all) {
-  if (all.empty()) return fail("too few scans follow one another while the wheels measure");
   double moved = 0.0;
   for (const Step& step : all) moved += step.by_wheels.squaredNorm();
   if (moved < kLeastMotion)
@@ -201,9 +207,52 @@ std::vector<std::size_t> where_it_turns(const Recording& recording, const std::v
   return out;
 }
 
+/// Whether scans know this motion in all directions, and as far as the wheels went.
+bool is_known_in_space(const MotionStep& step) {
+  const Matrix3 covariance = step.covariance.topLeftCorner<3, 3>();
+  return step.is_registered && covariance.trace() < kOpenSigma * kOpenSigma &&
+         goes_as_far(step.by_scans.translation().norm(), step.by_wheels.norm(), step.by_scans.angle());
+}
+
+/// Where the robot drives ahead, in the axes of the mount; none where steps do not agree.
+std::optional<Vector3> direction_ahead(const std::vector<MotionStep>& known) {
+  constexpr double kLeast = 0.02;    // metres a step
+  constexpr double kAgreeing = 0.9;  // of the length of all steps, laid end to end: within some 25 degrees
+  Vector3 sum = Vector3::Zero();
+  double length = 0.0;
+  std::size_t num = 0;
+  for (const MotionStep& step : known) {
+    if (std::abs(step.by_wheels.x()) < kLeast) continue;
+    // The sensor's own way in turns is not along x.
+    if (std::abs(step.turned_by_wheels) > 0.1 * std::abs(step.by_wheels.x())) continue;
+    sum += step.by_wheels.x() > 0.0 ? step.by_scans.translation() : -step.by_scans.translation();
+    length += step.by_scans.translation().norm();
+    ++num;
+  }
+  if (num < kFewSteps || sum.norm() < kAgreeing * length) return {};
+  return sum.normalized();
+}
+
+/// The axis about which the robot turns anticlockwise; none where it turns too little, or scans and wheels do
+/// not turn together.
+std::optional<Vector3> axis_of_turns(const std::vector<MotionStep>& known) {
+  constexpr double kCorrelation = 0.8;
+  Vector3 sum = Vector3::Zero();
+  double by_wheels = 0.0;
+  double by_scans = 0.0;
+  for (const MotionStep& step : known) {
+    const Vector3 turned = so3::log(step.by_scans.rotation());
+    sum += step.turned_by_wheels * turned;
+    by_wheels += step.turned_by_wheels * step.turned_by_wheels;
+    by_scans += turned.squaredNorm();
+  }
+  if (by_wheels < kEnoughTurns || sum.norm() < kCorrelation * std::sqrt(by_wheels * by_scans)) return {};
+  return sum.normalized();
+}
+
 }  // namespace
 
-Result<MountByMotion> mount_by_motion(const Recording& recording) {
+Result<std::vector<MotionStep>> motion_steps(const Recording& recording) {
   constexpr std::size_t kStretches =
       6;                               // over the whole drive, and as many where it turns: for the lever arm
   constexpr std::size_t kLength = 25;  // scans
@@ -213,13 +262,48 @@ Result<MountByMotion> mount_by_motion(const Recording& recording) {
       spread_over(scans.size() > kLength ? scans.size() - kLength : 0, kStretches);
   for (const std::size_t start : where_it_turns(recording, scans, kLength, kStretches))
     if (std::ranges::find(starts, start) == starts.end()) starts.push_back(start);
-  std::vector<std::vector<Step>> of_stretches(starts.size());
+  std::vector<std::vector<MotionStep>> of_stretches(starts.size());
   parallel_for_each(starts.size(), [&](std::size_t i) {
     of_stretches[i] = steps_of(recording, std::span(scans).subspan(starts[i], kLength));
   });
-  std::vector<Step> all;
-  for (const std::vector<Step>& one : of_stretches) all.insert(all.end(), one.begin(), one.end());
-  return mount_from(all);
+  std::vector<MotionStep> all;
+  for (const std::vector<MotionStep>& one : of_stretches) all.insert(all.end(), one.begin(), one.end());
+  if (all.empty()) return fail("too few scans follow one another while the wheels measure");
+  return all;
+}
+
+std::optional<TiltByMotion> tilt_by_motion(const std::vector<MotionStep>& steps) {
+  constexpr double kLeastDeg = 30.0;
+  constexpr double kUpright = 0.3;  // of the direction ahead in the plane of the base: else it points up or down
+  std::vector<MotionStep> known;
+  std::ranges::copy_if(steps, std::back_inserter(known), is_known_in_space);
+  const std::optional<Vector3> ahead = direction_ahead(known);
+  if (!ahead) return {};
+  const Vector3 level(ahead->x(), ahead->y(), 0.0);
+  const Vector3 along = level.norm() < kUpright ? Vector3(Vector3::UnitX()) : Vector3(level.normalized());
+  Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(*ahead, along);
+  if (const std::optional<Vector3> axis = axis_of_turns(known)) {
+    // About the direction ahead, and as wheels may be wired left for right, no further than it lies down.
+    const Vector3 across = turn * *axis;
+    const Vector3 up = (across - across.dot(along) * along).normalized();
+    const double roll = std::atan2(up.cross(Vector3::UnitZ()).dot(along), up.z());
+    if (std::abs(roll) > kLeastDeg * kDegree && std::abs(roll) < std::numbers::pi - kLeastDeg * kDegree)
+      turn = Eigen::Quaterniond(Eigen::AngleAxisd(roll, along)) * turn;
+  }
+  TiltByMotion tilt{turn.toRotationMatrix(), 0.0, known.size()};
+  tilt.tilt_deg = std::acos(std::clamp(tilt.R_level_base(2, 2), -1.0, 1.0)) / kDegree;
+  return tilt.tilt_deg < kLeastDeg ? std::nullopt : std::optional(tilt);
+}
+
+Result<MountByMotion> mount_by_motion(const std::vector<MotionStep>& steps) {
+  std::vector<Step> on_floor;
+  std::ranges::transform(steps, std::back_inserter(on_floor), on_the_floor);
+  return mount_from(on_floor);
+}
+
+Result<MountByMotion> mount_by_motion(const Recording& recording) {
+  return motion_steps(recording).and_then(
+      [](const std::vector<MotionStep>& steps) { return mount_by_motion(steps); });
 }
 
 }  // namespace adit

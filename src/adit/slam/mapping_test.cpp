@@ -29,15 +29,15 @@ Scan seen_from(double x, Stamp stamp) {
                      [x](Duration) { return Pose::translation_of(x, 0, 0); });
 }
 
-/// A robot without wheels that drives along the hall in steps of half a metre.
-Recording drive(const std::string& name) {
+/// A robot without wheels that drives along the hall in steps of half a metre, from `start` metres on.
+Recording drive(const std::string& name, double start = 0.0) {
   Recording recording;
   recording.name = name;
   recording.T_base_lidar = Pose::translation_of(0, 0, 1);
   for (std::size_t i = 0; i < kNumScans; ++i)
     recording.scan_stamps.push_back(Stamp{static_cast<std::int64_t>(i + 1) * 100'000'000});
-  recording.read_scan = [stamps = recording.scan_stamps](std::size_t i) -> Result<Scan> {
-    return seen_from(0.5 * static_cast<double>(i), stamps.at(i));
+  recording.read_scan = [start, stamps = recording.scan_stamps](std::size_t i) -> Result<Scan> {
+    return seen_from(start + 0.5 * static_cast<double>(i), stamps.at(i));
   };
   return recording;
 }
@@ -140,7 +140,7 @@ TEST(Naming, NamesBecomeFoldersOfTheirOwn) {
 }
 
 TEST(Slam, ASessionStaysInItsFolderWhateverRobotsAreCalled) {
-  const Result<SlamRun> run = slam({drive(".."), broken("a,\"b\"\n"), drive("..")});
+  const Result<SlamRun> run = slam({drive(".."), broken("a,\"b\"\n"), drive("..", 0.1)});
   ASSERT_TRUE(run.has_value()) << run.error().message;
   const test::TemporaryFolder folder;
   std::filesystem::create_directories(folder / "out");
@@ -166,7 +166,7 @@ TEST(Slam, ASessionStaysInItsFolderWhateverRobotsAreCalled) {
 TEST(Slam, WhatMessagesCouldNotBringStopsNoRun) {
   SlamConfig config;
   config.bus.loss = 0.95;
-  const Result<SlamRun> run = slam({drive("ada"), drive("bo")}, config);
+  const Result<SlamRun> run = slam({drive("ada"), drive("bo", 0.1)}, config);
   ASSERT_TRUE(run) << run.error().message;
   EXPECT_EQ(std::ranges::count_if(run->notes,
                                   [](const std::string& note) {
@@ -199,15 +199,61 @@ TEST(Slam, EveryRobotHasItsOwnOdometryHoweverOthersOfItsNameEnded) {
   const test::TemporaryFolder folder;
   ASSERT_TRUE(write_slam(folder.path(), *first));
   SavedFleet saved = read_fleet(folder.path()).value();
-  const Result<SlamRun> grown = slam_on({saved}, {drive("cy")}, {});
+  const Result<SlamRun> grown = slam_on({saved}, {drive("cy", 0.1)}, {});
   ASSERT_TRUE(grown) << grown.error().message;
   EXPECT_EQ(odometries_in(*grown), both);
   ASSERT_EQ(grown->session.provenance.robots.size(), 3U) << "that it failed is not forgotten";
 
   saved.provenance.robots.back() = {"cy", "another", "", 3, ""};  // a robot without keyframes
-  EXPECT_EQ(odometries_in(slam_on({saved}, {drive("cy")}, {}).value()), both);
+  EXPECT_EQ(odometries_in(slam_on({saved}, {drive("cy", 0.1)}, {}).value()), both);
   saved.provenance.robots.clear();  // as where an earlier version saved it
   EXPECT_EQ(odometries_in(slam_on({saved}, {}, {}).value()).at("ada"), "");
+}
+
+/// A session of these recordings, saved and read again.
+SavedFleet saved_session(const std::filesystem::path& folder, const std::vector<Recording>& recordings) {
+  std::filesystem::create_directories(folder);
+  const Result<SlamRun> run = slam(recordings);
+  EXPECT_TRUE(run && write_slam(folder, *run));
+  return read_fleet(folder).value();
+}
+
+std::vector<std::string> names_in(const SlamRun& run) {
+  std::vector<std::string> names;
+  for (const auto& map : run.session.maps) names.push_back(map->name);
+  return names;
+}
+
+std::ptrdiff_t num_with(const std::vector<std::string>& notes, std::string_view text) {
+  return std::ranges::count_if(
+      notes, [&](const std::string& note) { return note.find(text) != std::string::npos; });
+}
+
+TEST(Slam, ARobotThatIsThereTwiceCountsOnce) {
+  const test::TemporaryFolder folder;
+  const auto team_a = [&] { return saved_session(folder / "a", {drive("ada"), drive("bo", 0.1)}); };
+  const SavedFleet team_b = saved_session(folder / "b", {drive("ada"), drive("cy", 0.2)});
+  const Result<SlamRun> joined = slam_on({team_a(), team_b}, {}, {});
+  ASSERT_TRUE(joined) << joined.error().message;
+  EXPECT_EQ(names_in(*joined), (std::vector<std::string>{"ada", "bo", "cy"}));
+  EXPECT_EQ(num_with(joined->notes, (folder / "b").string() + " and ada of "), 1);
+  EXPECT_EQ(num_with(joined->notes, "is called"), 0);
+  EXPECT_EQ(joined->session.solution.pairs.size(), 3U);
+  ASSERT_EQ(joined->session.provenance.robots.size(), 4U);
+  EXPECT_NE(joined->session.provenance.robots[2].failure.find("have the same map"), std::string::npos);
+  EXPECT_EQ(odometries_in(*joined).at("ada"), "kiss-icp");
+
+  const Result<SlamRun> again = slam_on({team_a()}, {drive("ada")}, {});
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(names_in(*again), (std::vector<std::string>{"ada", "bo"}));
+  EXPECT_EQ(num_with(again->notes, "ada_2 is left out: it has the same map as ada"), 1);
+  EXPECT_EQ(num_with(again->notes, "is called"), 0) << "its name is of no interest";
+  EXPECT_TRUE(again->failed.empty());
+
+  const Result<SlamRun> twice = slam({drive("ada"), drive("bo")});
+  ASSERT_TRUE(twice) << twice.error().message;
+  EXPECT_EQ(names_in(*twice), std::vector<std::string>{"ada"});
+  EXPECT_EQ(num_with(twice->notes, "bo is left out: it has the same map as ada"), 1);
 }
 
 TEST(MarkSlips, MarksThePathFromTheKeyframeBeforeToTheOneAfter) {

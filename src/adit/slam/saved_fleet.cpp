@@ -157,6 +157,39 @@ struct WithNewIds {
   void operator()(auto& /*no finding*/) const {}
 };
 
+/// Loops and checks without those of one robot; an author's others are numbered anew.
+class WithoutRobot {
+ public:
+  explicit WithoutRobot(RobotId robot) : robot_(robot) {}
+
+  /// Whether anything is left of the finding.
+  bool operator()(Loops& part) {
+    std::erase_if(part.loops, [&](const LoopClosure& loop) {
+      return loop.from.robot == robot_ || loop.to.robot == robot_;
+    });
+    return number(part, part.loops.size(), num_loops_);
+  }
+  bool operator()(MergeChecks& part) {
+    std::erase_if(part.checks,
+                  [&](const MergeCheck& check) { return check.a == robot_ || check.b == robot_; });
+    return number(part, part.checks.size(), num_checks_);
+  }
+  bool operator()(auto& /*no finding*/) const { return true; }
+
+ private:
+  template <class Part>
+  bool number(Part& part, std::size_t size, std::map<RobotId, std::uint32_t>& numbers) const {
+    std::uint32_t& next = numbers[part.author];
+    part.first = next;
+    next += static_cast<std::uint32_t>(size);
+    return part.author != robot_ && size > 0;
+  }
+
+  RobotId robot_;
+  std::map<RobotId, std::uint32_t> num_loops_;  ///< By author.
+  std::map<RobotId, std::uint32_t> num_checks_;
+};
+
 /// Whether a finding is about keyframes of these maps alone.
 struct IsAbout {
   const std::map<RobotId, std::uint64_t>& num_keyframes;
@@ -234,6 +267,7 @@ Result<SavedFleet> read_fleet(const std::filesystem::path& dir) {
   Result<SavedSession> session = read_session(dir);
   if (!session) return tl::unexpected(session.error());
   SavedFleet fleet;
+  fleet.read_from = dir;
   fleet.provenance = std::move(session->provenance);
   fleet.georeferences = std::move(session->georeferences);
   const Result<SavedFindings> saved = read_bytes(dir / kFindingsFile).and_then([](const std::string& bytes) {
@@ -279,6 +313,15 @@ void renumber(SavedFleet& fleet, const std::map<RobotId, RobotId>& ids) {
     for (Keyframe& keyframe : map->keyframes) keyframe.id.robot = map->id;
   }
   for (MessageBody& finding : fleet.findings) std::visit(WithNewIds{ids}, finding);
+}
+
+void take_out(SavedFleet& fleet, RobotId robot) {
+  std::erase_if(fleet.maps, [&](const auto& map) { return map->id == robot; });
+  std::vector<MessageBody> left;
+  WithoutRobot without(robot);
+  for (MessageBody& finding : fleet.findings)
+    if (std::visit(without, finding)) left.push_back(std::move(finding));
+  fleet.findings = std::move(left);
 }
 
 }  // namespace adit

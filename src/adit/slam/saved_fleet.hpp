@@ -24,6 +24,7 @@ struct SavedFleet {
   std::vector<MessageBody> findings;            ///< Loops and merge checks of these robots (Agent::findings).
   std::vector<Georeference> georeferences;      ///< Of the maps that have one.
   std::vector<std::string> notes;               ///< What could not be taken over, one line each.
+  std::filesystem::path read_from = {};         ///< The session directory, as given; "" of a fleet in memory.
 };
 
 /// Writes both kinds of files into the session directory `dir`. A robot without keyframes has no folder and
@@ -40,5 +41,9 @@ Result<> write_fleet(const std::filesystem::path& dir,
 /// Gives the robots new ids. `ids` has all of them, in the same order as before: of two robots the one with
 /// the smaller id has searched.
 void renumber(SavedFleet& fleet, const std::map<RobotId, RobotId>& ids);
+
+/// Takes a robot out, with what was found about it. The other robots stay, with their ids and what was found
+/// about them alone.
+void take_out(SavedFleet& fleet, RobotId robot);
 
 }  // namespace adit

@@ -10,6 +10,7 @@
 #include "adit/core/version.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/loops_csv.hpp"
+#include "adit/io/session_toml.hpp"
 #include "adit/report/palette.hpp"
 #include "adit/slam/session_evaluation.hpp"
 #include "adit/slam/session_mcap.hpp"
@@ -63,7 +64,7 @@ Json pairs_json(const Session& session) {
                      {"second_clique", pair.second_clique},
                      {"merged", pair.merged},
                      {"sigma", accuracy_json(pair.accuracy)},
-                     {"refused_kind", pair.merged ? "" : to_string(pair.refused_kind)},
+                     {"refused_kind", pair.merged ? "" : refusal_text(pair.refused_kind, pair.refused_reason)},
                      {"refused_reason", pair.refused_reason}});
   return pairs;
 }

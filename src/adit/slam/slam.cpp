@@ -21,6 +21,7 @@
 #include "adit/io/config_toml.hpp"
 #include "adit/slam/meeting.hpp"
 #include "adit/slam/naming.hpp"
+#include "adit/slam/repeated_robots.hpp"
 #include "adit/slam/session_pages.hpp"
 
 namespace adit {
@@ -28,7 +29,8 @@ namespace {
 
 const std::string& name_of(const std::shared_ptr<RobotMap>& map) { return map->name; }
 
-Provenance provenance_of(const std::vector<SavedFleet>& saved, const Mapping& mapping, SlamConfig config) {
+Provenance provenance_of(const std::vector<SavedFleet>& saved, const Mapping& mapping,
+                         const std::vector<RepeatedRobot>& repeated, SlamConfig config) {
   Provenance provenance;
   provenance.command = "adit::slam";
   provenance.configuration = to_toml(fields_of(config));
@@ -45,6 +47,8 @@ Provenance provenance_of(const std::vector<SavedFleet>& saved, const Mapping& ma
         {robot.map->name, robot.odometry, robot.lidar, robot.map->odometry.size(), ""});
   for (const FailedRobot& robot : mapping.failed)
     provenance.robots.push_back({robot.name, "", "", 0, robot.reason});
+  for (const RepeatedRobot& robot : repeated)  // saved ones have theirs
+    if (!robot.was_saved) provenance.robots.push_back({robot.name, "", "", 0, robot.sentence});
   return provenance;
 }
 
@@ -87,14 +91,25 @@ void rename_in(std::vector<Georeference>& maps, const std::map<std::string, std:
   }
 }
 
-/// Distinct names for all, those of the sessions first.
-std::vector<std::string> name_all(std::vector<SavedFleet>& saved, std::vector<Recording>& recordings) {
-  std::vector<std::string> notes;
+/// What to say of a robot that got another name.
+struct Renamed {
+  std::string name;  ///< The new one; "" where it does not matter.
+  std::string note;
+};
+
+/// Distinct names for all, those of the sessions first. What the sessions say of robots that were taken out is
+/// said of those that have their maps.
+std::vector<Renamed> name_all(std::vector<SavedFleet>& saved, std::vector<Recording>& recordings,
+                              const std::vector<TakenOut>& taken_out) {
+  std::vector<Renamed> notes;
   std::vector<std::string> names;
   for (const SavedFleet& fleet : saved)
     for (const auto& map : fleet.maps) names.push_back(map->name);
   const std::size_t num_saved = names.size();
-  if (num_saved == 0) return name_robots(recordings);
+  if (num_saved == 0) {
+    for (std::string& note : name_robots(recordings)) notes.push_back({"", std::move(note)});
+    return notes;
+  }
   for (const Recording& recording : recordings) names.push_back(robot_name(recording.name));
   names = distinct_names(names);
   std::size_t next = 0;
@@ -102,12 +117,13 @@ std::vector<std::string> name_all(std::vector<SavedFleet>& saved, std::vector<Re
     const std::string& distinct = names[next++];
     if (distinct != name)
       notes.push_back(
-          format("the robot '{}' is called {} here, as that name is taken or can be no folder "
-                 "(NAME=FILE chooses another name)",
-                 printable(name), distinct));
+          {distinct, format("the robot '{}' is called {} here, as that name is taken or can be no folder "
+                            "(NAME=FILE chooses another name)",
+                            printable(name), distinct)});
     return std::exchange(name, distinct);
   };
-  for (SavedFleet& fleet : saved) {
+  for (std::size_t s = 0; s < saved.size(); ++s) {
+    SavedFleet& fleet = saved[s];
     std::map<std::string, std::string> new_names;
     for (const auto& map : fleet.maps) {
       const std::string was = rename(map->name);
@@ -117,6 +133,8 @@ std::vector<std::string> name_all(std::vector<SavedFleet>& saved, std::vector<Re
           fleet.provenance.robots, [&](const RobotProvenance& robot) { return robot.is_of_map(was); });
       if (of_map != fleet.provenance.robots.end()) of_map->name = map->name;
     }
+    for (const TakenOut& robot : taken_out)
+      if (robot.session == s) new_names[robot.name] = robot.same->name;
     rename_in(fleet.findings, new_names);
     rename_in(fleet.georeferences, new_names);
   }
@@ -162,6 +180,7 @@ Result<RobotId> robot_called(const FleetGraph& fleet, const std::string& name) {
 }
 
 constexpr std::string_view kQuoting = "; the test had said: ";
+// All that a person says begins with kPerson (io/session_toml.hpp).
 constexpr std::string_view kLeftOut = "a person left out the loop of ";
 
 /// What the test had said, to be quoted; a ruling that went before is taken back, not quoted.
@@ -314,6 +333,17 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& more) 
   to.insert(to.end(), more.begin(), more.end());
 }
 
+/// Says first which robots are called otherwise or are there twice. The new name of one that is left out is of
+/// no interest.
+void note_robots(const std::vector<Renamed>& renamed, SlamRun& run) {
+  std::vector<std::string> notes;
+  for (const auto& [name, note] : renamed)
+    if (name.empty() || std::ranges::find(run.repeated, name, &RepeatedRobot::name) == run.repeated.end())
+      notes.push_back(note);
+  for (const RepeatedRobot& robot : run.repeated) notes.push_back(robot.sentence);
+  run.notes.insert(run.notes.begin(), notes.begin(), notes.end());
+}
+
 }  // namespace
 
 Result<SlamRun> slam(std::vector<Recording> recordings, const SlamConfig& config) {
@@ -323,7 +353,10 @@ Result<SlamRun> slam(std::vector<Recording> recordings, const SlamConfig& config
 Result<SlamRun> slam_on(std::vector<SavedFleet> saved, std::vector<Recording> recordings,
                         const SlamConfig& config, const std::vector<Ruling>& rulings) {
   SlamRun run;
-  append(run.notes, name_all(saved, recordings));
+  const std::vector<TakenOut> taken_out = take_out_repeated(saved);
+  const std::vector<Renamed> renamed = name_all(saved, recordings, taken_out);
+  for (const TakenOut& robot : taken_out)
+    run.repeated.push_back({robot.name, robot.same->name, true, robot.sentence});
   if (const Result<> done = number_all(saved); !done) return tl::unexpected(done.error());
   std::vector<std::shared_ptr<const RobotMap>> maps;
   std::vector<MetBefore> met_before;
@@ -341,14 +374,16 @@ Result<SlamRun> slam_on(std::vector<SavedFleet> saved, std::vector<Recording> re
     if (!mapped) return tl::unexpected(mapped.error());
     mapping = std::move(*mapped);
   }
-  for (const MappedRobot& robot : mapping.robots) maps.push_back(robot.map);
   run.num_mapped = mapping.robots.size();
+  std::ranges::move(leave_out_repeated(maps, mapping.robots), std::back_inserter(run.repeated));
+  note_robots(renamed, run);
+  for (const MappedRobot& robot : mapping.robots) maps.push_back(robot.map);
   if (const Result<> done = check_comparable(maps); !done) return tl::unexpected(done.error());
   Result<Meeting> meeting = hold_meeting(std::move(maps), config, met_before);
   if (!meeting) return tl::unexpected(meeting.error());
   Agent& first = meeting->agents.front();
   if (const Result<> done = rule(first, rulings); !done) return tl::unexpected(done.error());
-  run.session.provenance = provenance_of(saved, mapping, config);
+  run.session.provenance = provenance_of(saved, mapping, run.repeated, config);
   run.session.fleet = with_all_maps(first.known(), meeting->maps, run.notes);
   {
     const Phase phase("solving");

@@ -18,6 +18,7 @@
 
 #include "adit/io/session_dir.hpp"
 #include "adit/slam/mapping.hpp"
+#include "adit/slam/repeated_robots.hpp"
 #include "adit/slam/saved_fleet.hpp"
 
 namespace adit {
@@ -29,6 +30,8 @@ struct SlamRun {
   EstimateDifference online;              ///< Of the first robot's estimate, kept from meeting to meeting.
   std::size_t num_mapped = 0;       ///< Recordings that were mapped; robots of earlier sessions come on top.
   std::vector<FailedRobot> failed;  ///< Recordings that could not be mapped; the others went on.
+  /// Robots that are no part of the session, as another one has the same drive; a note says each.
+  std::vector<RepeatedRobot> repeated;
   std::vector<std::string>
       notes;  ///< Fallbacks, changed names, what messages could not bring, one line each.
   std::vector<MessageBody> findings;  ///< All loops and merge checks, for a later session.
@@ -68,7 +71,7 @@ struct Ruling {
 /// The same from where sessions were left (read_fleet): robots of one session are neither mapped nor searched
 /// again, and meet those of the others and the new ones. With the configuration that a session was made with,
 /// it gives what `slam` of all recordings at once would (docs/decisions/0055). Names that occur twice get a
-/// number, with a note. `rulings` come last and are kept as the reason of the pair. Fails, too, where there
+/// number, with a note; of robots with the same drive the first one counts, with a note. `rulings` come last and are kept as the reason of the pair. Fails, too, where there
 /// are more than 256 robots, where sessions described places in different ways, on a ruling about a robot
 /// that does not exist, under a policy without merge checks, and where no alignment was found that could be
 /// confirmed, or a loop is in none or not in use.
