@@ -107,8 +107,9 @@ TEST(InterruptedAgent, AComparisonOfKeyframesThatThePeerHasNoLongerIsPlannedAnew
   for (const auto& [own, theirs] : known.checks.at({{0}, {1}}).loops) EXPECT_LT(theirs, truth.size());
 }
 
-/// Robot 1 drives on and comes back; whether the views of the second check are lost, and a third meeting.
-MergeCheck checked_once_grown(bool is_broken_off) {
+// The peer drives on, and is repaired in the middle of the second check: the verdict of the first is none on
+// the loops that were found since.
+TEST(InterruptedAgent, ACheckOfAMapThatHasGrownIsMadeUpForToo) {
   TwoRobots fleet(3, adaptive());
   const auto peer_after = [&](std::size_t num_poses) {
     const std::vector<Pose> truth(fleet.truth_1.begin(),
@@ -116,25 +117,21 @@ MergeCheck checked_once_grown(bool is_broken_off) {
     return Agent(std::make_shared<const RobotMap>(test::drive(test::BoxWorld(3), {1}, truth, -0.002)),
                  adaptive());
   };
+  const auto verdict = [&] { return fleet.agents[0].known().checks.at({{0}, {1}}); };
   const std::size_t num_poses = fleet.truth_1.size();
   CancelAfter never;
   fleet.agents[1] = peer_after(num_poses - 6);
   meet(fleet, never);
+  const MergeCheck first = verdict();
   fleet.agents[1] = peer_after(num_poses);
-  meet(fleet, never, [&](const Message& message) {
+  meet(fleet, never, [](const Message& message) {
     const auto* clouds = std::get_if<Clouds>(&message.body);
-    return is_broken_off && clouds != nullptr && clouds->kind == CloudKind::view;
+    return clouds != nullptr && clouds->kind == CloudKind::view;
   });
+  EXPECT_EQ(verdict().loops, first.loops);
+  fleet.agents[1] = peer_after(num_poses - 3);
   meet(fleet, never);
-  return fleet.agents[0].known().checks.at({{0}, {1}});
-}
-
-TEST(InterruptedAgent, ACheckOfAMapThatHasGrownIsMadeUpForToo) {
-  const MergeCheck expected = checked_once_grown(false);
-  const MergeCheck made_up_for = checked_once_grown(true);
-  ASSERT_FALSE(expected.loops.empty());
-  EXPECT_EQ(made_up_for.loops, expected.loops);
-  EXPECT_EQ(made_up_for.evidence, expected.evidence);
+  EXPECT_GT(verdict().loops.size(), first.loops.size());
 }
 
 }  // namespace

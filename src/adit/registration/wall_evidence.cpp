@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -201,14 +202,27 @@ double EqualSignShares::chance_of_one_mould() const {
   return std::min(1.0, model_.moulded + num_same / (1.0 + static_cast<double>(chances.size())));
 }
 
-double EqualSignShares::evidence(const EqualSignShare& found, double times) const {
-  constexpr std::size_t kKept = 8;
+double EqualSignShares::evidence(const EqualSignShare& found, double times,
+                                 const std::vector<EqualSignShare>& elsewhere) const {
+  constexpr std::size_t kKept = 16;
   if (times * static_cast<double>(found.num_patches) < model_.min_patches) return 0.0;
-  const auto known = std::ranges::find_if(
-      answers_, [&](const Answer& one) { return one.times == times && one.found == found; });
+  const auto known = std::ranges::find_if(answers_, [&](const Answer& one) {
+    return one.times == times && one.found == found && one.elsewhere == elsewhere;
+  });
   if (known != answers_.end()) return known->evidence;
   if (answers_.size() == kKept) answers_.erase(answers_.begin());
-  return answers_.emplace_back(Answer{found, times, weighed(found, times)}).evidence;
+  const double weight = elsewhere.empty() ? weighed(found, times) : beside(elsewhere).weighed(found, times);
+  return answers_.emplace_back(Answer{found, elsewhere, times, weight}).evidence;
+}
+
+EqualSignShares EqualSignShares::beside(const std::vector<EqualSignShare>& elsewhere) const {
+  EqualSignShares all(model_);
+  all.same_ = same_;
+  all.others_ = others_;
+  std::ranges::copy_if(elsewhere, std::back_inserter(all.others_), [&](const EqualSignShare& share) {
+    return share.num_patches >= static_cast<std::size_t>(model_.min_patches);
+  });
+  return all;
 }
 
 double EqualSignShares::weighed(const EqualSignShare& found, double times) const {
@@ -224,7 +238,9 @@ double EqualSignShares::weighed(const EqualSignShare& found, double times) const
   return mixed(model_.changed) - mixed(1.0 - chance_of_one_mould());
 }
 
-double EqualSignShares::most_evidence() const { return std::log(1.0 / chance_of_one_mould()); }
+double EqualSignShares::most_evidence(const std::vector<EqualSignShare>& elsewhere) const {
+  return std::log(1.0 / beside(elsewhere).chance_of_one_mould());
+}
 
 OtherWalls EqualSignShares::believed(double noise_m) const {
   return {std::log(under_noise(model_.prior_other_share, same_.noise_m, noise_m) - kChance),

@@ -75,11 +75,14 @@ class EqualSignShares {
   /// `min_patches` patches were seen. Walls may have been moved between the visits, along some of the
   /// stretches. Walls of one tunnel may seem to be others, at the rate `changed`, and those of another may
   /// be cast in one mould: between log(changed) and log(1 / chance_of_one_mould), nearly. Where the share of
-  /// other walls was not measured, the one believed before counts. `times`: as if there were so many
-  /// times as many stretches, with the same shares.
-  [[nodiscard]] double evidence(const EqualSignShare& found, double times = 1.0) const;
+  /// other walls was not measured, the one believed before counts. `elsewhere`: what other alignments of the
+  /// two maps have shown, which are false if this one is true, so that their walls are others or of one
+  /// mould, as those of the own look-alikes; what less than `min_patches` patches show is left out. `times`:
+  /// as if there were so many times as many stretches, with the same shares.
+  [[nodiscard]] double evidence(const EqualSignShare& found, double times = 1.0,
+                                const std::vector<EqualSignShare>& elsewhere = {}) const;
   /// The most that `evidence` can be.
-  [[nodiscard]] double most_evidence() const;
+  [[nodiscard]] double most_evidence(const std::vector<EqualSignShare>& elsewhere = {}) const;
   /// As it was given; its defaults where none was.
   [[nodiscard]] const ReliefModel& model() const { return model_; }
 
@@ -92,11 +95,14 @@ class EqualSignShares {
   /// The same, estimated once.
   [[nodiscard]] const std::vector<double>& chances_to_be_the_same() const;
   [[nodiscard]] double weighed(const EqualSignShare& found, double times) const;
+  /// With the shares of look-alikes between two maps beside the own ones.
+  [[nodiscard]] EqualSignShares beside(const std::vector<EqualSignShare>& elsewhere) const;
   void forget_what_follows();
 
   /// An answer of `evidence`.
   struct Answer {
     EqualSignShare found;
+    std::vector<EqualSignShare> elsewhere;
     double times = 1.0;
     double evidence = 0.0;
   };

@@ -54,6 +54,20 @@ TEST(WallEvidence, WithoutMovedWallsInTheModelTwoStretchesAreAnotherTunnel) {
   EXPECT_LT(evidence(with_moved(2), shares), 0.0);
 }
 
+// Decision 0088: tiles-2501, whose blocks are equal.
+TEST(WallEvidence, OtherAlignmentsOfTheTwoMapsTellWhetherWallsAreOfOneMould) {
+  const EqualSignShares shares = where_others_agree(0.65);
+  const double alone = shares.evidence(found(0.5));
+  const double beside_the_same = shares.evidence(found(0.5), 1.0, {found(0.5, 300)});
+  EXPECT_LT(beside_the_same, alone - 2.0);
+  EXPECT_LT(shares.evidence(found(0.5), 1.0, {found(0.5, 300), found(0.51, 300)}), beside_the_same);
+  EXPECT_GE(shares.evidence(found(0.5), 1.0, {found(0.65, 300)}), alone - 0.1)
+      << "other walls, as on the own map";
+  EXPECT_EQ(shares.evidence(found(0.5), 1.0, {found(0.5, 20)}), alone) << "of which too little was seen";
+  EXPECT_LE(beside_the_same, shares.most_evidence({found(0.5, 300)}));
+  EXPECT_EQ(shares.evidence(found(0.5)), alone) << "and for another check they count no more";
+}
+
 TEST(WallEvidence, CountsAsIfSeenSoManyTimes) {
   const EqualSignShares shares = where_others_agree(0.56);
   const EqualSignShare few = found(0.5, 200);

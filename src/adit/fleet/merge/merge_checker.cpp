@@ -152,7 +152,20 @@ double MergeChecker::share_of_copies_if_true(const Hypothesis& h) const {
 }
 
 double MergeChecker::evidence_of_walls(const Hypothesis& h, double times) const {
-  return config_.relief ? own_.measured().walls.evidence(h.offsets.counted(), times) : 0.0;
+  return config_.relief ? own_.measured().walls.evidence(h.offsets.counted(), times, walls_elsewhere(h))
+                        : 0.0;
+}
+
+std::vector<EqualSignShare> MergeChecker::walls_elsewhere(const Hypothesis& h) const {
+  std::vector<EqualSignShare> shares;
+  for (const Hypothesis& other : hypotheses_)
+    if (&other != &h && !other.compared.empty()) shares.push_back(other.offsets.counted());
+  return shares;
+}
+
+bool MergeChecker::lacks_walls(const Hypothesis& h, int num_patches) const {
+  return h.num_walls_compared < h.wall_plan.size() &&
+         h.offsets.counted().num_patches < static_cast<std::size_t>(num_patches);
 }
 
 double MergeChecker::evidence_of_things(const Hypothesis& h) const {
@@ -195,17 +208,24 @@ bool MergeChecker::is_left_unfinished(const Hypothesis& best) const {
 std::optional<std::size_t> MergeChecker::whose_walls_to_compare(const std::vector<std::size_t>& order) const {
   if (!config_.relief) return {};
   const Hypothesis& best = hypotheses_[order.front()];
-  if (best.num_walls_compared == best.wall_plan.size()) return {};
   const MergeDecision decision = decide(order);
-  // Copies agree at all places: none is accepted whose walls were hardly seen, if more can be.
-  const bool are_seen =
-      static_cast<double>(best.offsets.counted().num_patches) >= config_.evidence.walls.min_patches;
-  if (decision == MergeDecision::accepted && !are_seen) return order.front();
+  if (decision == MergeDecision::accepted) {
+    // Copies agree at all places: none is accepted whose walls were hardly seen, if more can be, nor before
+    // those of the other alignments have been, whose walls tell whether all here are of one mould.
+    if (lacks_walls(best, config_.evidence.walls.min_patches)) return order.front();
+    for (const std::size_t other : order)
+      if (other != order.front() && !differs_too_often(hypotheses_[other]) &&
+          lacks_walls(hypotheses_[other], config_.evidence.walls.few_patches))
+        return other;
+    return {};
+  }
+  if (best.num_walls_compared == best.wall_plan.size()) return {};
   const double forgivable = has_places_to_find_again(best) ? -evidence_of_few_loops(best) : 0.0;
   // Walls that speak against it are looked at more closely, too, before anything is forgiven.
   const bool may_decide = decision == MergeDecision::too_little_evidence ||
                           (decision == MergeDecision::other_walls && forgivable > 0.0);
-  const double possible = own_.measured().walls.most_evidence() - evidence_of_walls(best) + forgivable;
+  const double possible =
+      own_.measured().walls.most_evidence(walls_elsewhere(best)) - evidence_of_walls(best) + forgivable;
   return may_decide && evidence(best) + possible >= needed() ? std::optional(order.front()) : std::nullopt;
 }
 

@@ -101,6 +101,10 @@ class MergeChecker {
   [[nodiscard]] double share_of_copies_if_true(const Hypothesis& hypothesis) const;
   /// As if so many times the walls had been seen.
   [[nodiscard]] double evidence_of_walls(const Hypothesis& hypothesis, double times = 1.0) const;
+  /// What the other alignments show of the walls: false ones, if this one is true.
+  [[nodiscard]] std::vector<EqualSignShare> walls_elsewhere(const Hypothesis& hypothesis) const;
+  /// Whether more pairs of its walls have to be compared before they can be called seen.
+  [[nodiscard]] bool lacks_walls(const Hypothesis& hypothesis, int num_patches) const;
   /// Poisson's log likelihood ratio of what may come and go; never positive.
   [[nodiscard]] double evidence_of_things(const Hypothesis& hypothesis) const;
   /// What a hypothesis can reach when all that is left to compare speaks for it.
@@ -111,7 +115,8 @@ class MergeChecker {
   /// By its scans alone the best hypothesis was far behind, and the walls or things of those ahead put it in
   /// front.
   [[nodiscard]] bool is_left_unfinished(const Hypothesis& best) const;
-  /// The best hypothesis, where all have been compared and more pairs of its walls could decide.
+  /// Where all have been compared, the best hypothesis if more pairs of its walls could decide, and where it
+  /// would be accepted another one that is not refuted and whose walls were hardly seen.
   [[nodiscard]] std::optional<std::size_t> whose_walls_to_compare(
       const std::vector<std::size_t>& best_first) const;
   /// The best hypothesis, where it lacks only what having few loops takes away.

@@ -112,6 +112,42 @@ TEST(MergeChecker, NoneIsAcceptedBeforeItsWallsWereSeen) {
   }
 }
 
+/// A place that agrees and whose walls are off by that relief (standard deviation, metres), beside noise.
+ComparedPlace with_relief(std::uint32_t theirs, double relief_m) {
+  ComparedPlace place = kAgrees;
+  Rng rng(theirs);
+  for (int i = 0; i < 100; ++i) {
+    const double relief = relief_m * rng.normal();
+    for (int scan = 0; scan < 2; ++scan)
+      place.offsets.push_back({{static_cast<int>(theirs), i, 0, 0}, relief + 0.01 * rng.normal()});
+  }
+  return place;
+}
+
+// Another alignment, 20 m off, differs at every third place, so that it is neither refuted nor a rival. If
+// its walls are the same as well, those of the best one say less.
+TEST(MergeChecker, WallsThatAreTheSameAtAnotherAlignmentTooSayLittle) {
+  std::vector<PcmLoop> loops = kTrueLoops;
+  for (const std::size_t a : {70U, 120U}) loops.push_back(loop_at(a, 20.0));
+  EqualSignShares own;
+  for (int i = 0; i < 5; ++i) own.add_other({1000, 0.65, 0.015});
+  const auto check = [&](double relief_elsewhere_m) {
+    MergeChecker checker = checker_of(loops, measured(look_alikes(0.7), own), {});
+    return run(checker, [&](const PlannedComparison& asked) {
+      const bool is_elsewhere = asked.own + asked.theirs > kNum + 20;
+      if (!is_elsewhere) return with_relief(asked.theirs, 0.0);
+      if (asked.question != PlaceQuestion::walls && asked.theirs / 6 % 3 == 0) return kDiffers;
+      return with_relief(asked.theirs, relief_elsewhere_m);
+    });
+  };
+  const MergeCheck others = check(0.01);
+  const MergeCheck one_mould = check(0.0);
+  ASSERT_EQ(others.hypotheses.size(), 2U);
+  EXPECT_GT(one_mould.hypotheses.back().counts.num_wall_patches, 100U);
+  EXPECT_LT(one_mould.hypotheses.front().walls, others.hypotheses.front().walls - 1.0);
+  EXPECT_EQ(one_mould.hypotheses.front().loops, others.hypotheses.front().loops);
+}
+
 TEST(MergeChecker, WallsCountWhereOwnLookAlikesHaveOthers) {
   const auto check = [&](int num_equal, double share_of_others) {
     EqualSignShares shares;
