@@ -34,9 +34,8 @@ std::string title_of(const SavedMerge& merge) {
   const std::string robots = format("{} and {}", merge.a, merge.b);
   if (merge.merged) return robots + ": merged" + (merge.accuracy ? ", " + to_string(*merge.accuracy) : "");
   const std::string_view words = refusal_text(merge.check.refused_kind, merge.check.reason);
-  const std::string kind = merge.check.accepted || words == to_string(RefusalKind::unknown)
-                               ? ""
-                               : format(" ({})", words);
+  const std::string kind =
+      merge.check.accepted || words == to_string(RefusalKind::unknown) ? "" : format(" ({})", words);
   return robots + ": not merged" + kind + (merge.share_a_map ? ", but share a map through other robots" : "");
 }
 

@@ -181,7 +181,7 @@ void add_slam(Program& program) {
       "A bag has several robots: one in every namespace with clouds (/husky1/points, /husky2/points)");
   command.footer(
       "A recording that cannot be mapped is reported with the reason; the others go on, and the exit code is "
-      "1.");
+      "1. One that is there twice, or in the session already, counts once, with a note.");
 }
 
 }  // namespace adit::app

@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: MIT
 """Writes one small recording in three storages, from the descriptions of the formats and without adit's own code:
     make_bags.py [FOLDER]    tube.mcap (ROS 2, CDR), tube_lz4.mcap and tube_zstd.mcap (in a chunk, compressed by the programs lz4
-                             and zstd), tube.db3 (ROS 2, SQLite), tube.bag (ROS 1)
+                             and zstd), tube_split (a folder of two such files, as rosbag2 splits a recording), tube.db3 (ROS 2,
+                             SQLite), tube.bag (ROS 1)
 Three scans of a tube, the robot driving 0.5 m between them; wheel odometry at 20 Hz; the LiDAR 0.9 m above the base. Points
 carry their times as Velodyne's driver (seconds, float32, with padding behind each point) in ROS 2, as Ouster's (nanoseconds,
 uint32, fields in another order) in ROS 1."""
@@ -137,8 +138,11 @@ def write_db3(path):
     db.close()
 
 
-def write_mcap(path, compression=None):
-    """`compression`: None for messages without chunks, else the program that compresses the only chunk, lz4 or zstd."""
+def write_mcap(path, compression=None, part=slice(None)):
+    """`compression`: None for messages without chunks, else the program that compresses the only chunk, lz4 or zstd. `part`:
+    which of the messages."""
+    chosen = messages(Cdr, False)[part]
+
     def text(value):
         return struct.pack("<I", len(value)) + value.encode()
 
@@ -155,13 +159,30 @@ def write_mcap(path, compression=None):
     for i, (name, package, kind) in enumerate(TOPICS):
         out += record(3, struct.pack("<H", i + 1) + text(f"{package}/msg/{kind}") + text("ros2msg") + struct.pack("<I", 0))
         out += record(4, struct.pack("<HH", i, i + 1) + text(name) + text("cdr") + struct.pack("<I", 0))
-    for n, (stamp, topic, data) in enumerate(messages(Cdr, False)):
+    for n, (stamp, topic, data) in enumerate(chosen):
         out += record(5, struct.pack("<HIQQ", topic, n, stamp, stamp) + data)
     if compression:
-        out = chunk(out, [stamp for stamp, _, _ in messages(Cdr, False)])
+        out = chunk(out, [stamp for stamp, _, _ in chosen])
     head = magic + record(1, text("ros2") + text("conformance"))
     end = record(15, struct.pack("<I", 0)) + record(2, struct.pack("<QQI", 0, 0, 0)) + magic
     path.write_bytes(head + out + end)
+
+
+def write_split(folder):
+    """Cut between the second scan and the third."""
+    folder.mkdir(exist_ok=True)
+    names = [f"tube_split_{i}.mcap" for i in range(2)]
+    for name, part in zip(names, (slice(0, 7), slice(7, None))):
+        write_mcap(folder / name, "zstd", part)
+    counts = [sum(topic == i for _, topic, _ in messages(Cdr, False)) for i in range(len(TOPICS))]
+    lines = ["rosbag2_bagfile_information:", "  version: 5", "  storage_identifier: mcap", "  duration:", "    nanoseconds: 300000000",
+             "  starting_time:", f"    nanoseconds_since_epoch: {BEGIN_NS}", f"  message_count: {sum(counts)}",
+             "  topics_with_message_count:"]
+    for (name, package, kind), count in zip(TOPICS, counts):
+        lines += ["    - topic_metadata:", f"        name: {name}", f"        type: {package}/msg/{kind}",
+                  "        serialization_format: cdr", "        offered_qos_profiles: ''", f"      message_count: {count}"]
+    lines += ["  compression_format: ''", "  compression_mode: ''", "  relative_file_paths:"] + [f"    - {name}" for name in names]
+    (folder / "metadata.yaml").write_text("\n".join(lines) + "\n")
 
 
 def write_bag(path):
@@ -213,5 +234,6 @@ if __name__ == "__main__":
     write_mcap(folder / "tube.mcap")
     for program in ("lz4", "zstd"):
         write_mcap(folder / f"tube_{program}.mcap", program)
+    write_split(folder / "tube_split")
     write_db3(folder / "tube.db3")
     write_bag(folder / "tube.bag")

@@ -116,8 +116,9 @@ TEST_F(BadInput, Recordings) {
   std::filesystem::create_directories(path("session"));
   put_file(path("session/session.toml"), "");
   put_file(path("session/map.ply"), write_ply(wall()));
-  for (const std::string& command : {"slam " + path("session") + " --out " + out(), "doctor " + path("session"),
-                                    "odometry " + path("session") + " --out " + existing()})
+  for (const std::string& command :
+       {"slam " + path("session") + " --out " + out(), "doctor " + path("session"),
+        "odometry " + path("session") + " --out " + existing()})
     expect_refused(command, 1, "is a session, not a recording");
   expect_refused("doctor " + path("one") + " --points /typo", 1, "there is no topic '/typo'");
   put_file(path("bad.mcap"), "\x89MCAP0\r\n");

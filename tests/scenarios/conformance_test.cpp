@@ -39,13 +39,14 @@ TEST(Conformance, EveryFileIsUnderstoodAsItsCaseSays) {
     EXPECT_EQ(nlohmann::json::parse(said), nlohmann::json::parse(test::get_file(entry.path()))) << file;
     ++num_cases;
   }
-  EXPECT_EQ(num_cases, 12);
+  EXPECT_EQ(num_cases, 14);
 }
 
 // The formula of make_bags.py.
 TEST(Conformance, ThePointsOfOneTubeComeOutOfEveryStorage) {
   constexpr std::size_t kNumPoints = 48;
-  for (const char* file : {"tube.mcap", "tube_lz4.mcap", "tube_zstd.mcap", "tube.db3", "tube.bag"}) {
+  for (const char* file :
+       {"tube.mcap", "tube_lz4.mcap", "tube_zstd.mcap", "tube_split", "tube.db3", "tube.bag"}) {
     const Result<Recording> recording = open_recording((kCases / file).string());
     ASSERT_TRUE(recording) << recording.error().message;
     ASSERT_EQ(recording->num_scans(), 3U);

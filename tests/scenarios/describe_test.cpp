@@ -77,7 +77,9 @@ TEST(Describe, RulingsSayThatSlamTakesThemWithASession) {
   const std::size_t slam = text.find("\n    slam) _arguments");
   const std::size_t merge = text.find("\n    merge) _arguments");
   ASSERT_TRUE(slam != std::string::npos && merge != std::string::npos);
-  const auto of_command = [&](std::size_t begin) { return text.substr(begin, text.find(";;\n", begin) - begin); };
+  const auto of_command = [&](std::size_t begin) {
+    return text.substr(begin, text.find(";;\n", begin) - begin);
+  };
   for (const std::string option : {"--veto", "--confirm"})
     EXPECT_TRUE(std::regex_search(of_command(slam),
                                   std::regex(option + R"(\[[^\n]*\(repeatable; needs --session\)\])")))

@@ -23,11 +23,12 @@ Diagnosis of(const std::vector<Diagnosis>& all, std::string_view check) {
   return found == all.end() ? all.front() : *found;
 }
 
-/// The mount that a remedy names, commas for blanks.
+/// The mount that a remedy names.
 Pose mount_in(const std::string& remedy) {
   const std::size_t begin = remedy.find("--mount ") + 8;
-  return parse_mount(remedy.substr(begin, remedy.find_first_of(" ,", remedy.rfind(',')) - begin))
-      .value_or(Pose());
+  std::string mount = remedy.substr(begin, remedy.find(' ', begin) - begin);
+  if (mount.ends_with(',')) mount.pop_back();
+  return parse_mount(mount).value_or(Pose());
 }
 
 /// One drive around a corner, by a robot whose sensors err as real ones do.
@@ -89,6 +90,19 @@ TEST_F(Doctor, NamesTheMountThatTheFloorAndTheMotionShow) {
   const Pose error = good_.T_base_lidar.inverse() * mount_in(turn.remedy);
   EXPECT_LT(error.log().tail<3>().norm(), 1.5 * kDegree) << turn.remedy;
   EXPECT_LT(std::abs(error.translation().z()), 0.1) << turn.remedy;
+}
+
+TEST_F(Doctor, NamesAMountThatLiesDown) {
+  EXPECT_EQ(test::run_adit("doctor " + file() + " --mount 0,0,1,0,45,0").exit_code, 1);
+  for (const char* wrong : {"0,0,1,0,-60,0", "0,0,1,0,90,0"}) {
+    Recording recording = good_;
+    recording.T_base_lidar = parse_mount(wrong).value();
+    const Diagnosis tilt = of(found_in(recording), "mount: tilt and height");
+    EXPECT_EQ(tilt.health, Health::spoils) << wrong;
+    const Pose error = good_.T_base_lidar.inverse() * mount_in(tilt.remedy);
+    EXPECT_LT(error.log().tail<3>().norm(), 4.0 * kDegree) << wrong << ": " << tilt.remedy;
+    EXPECT_LT(std::abs(error.translation().z()), 0.2) << wrong << ": " << tilt.remedy;
+  }
 }
 
 // A drive with corners to both sides, as it takes turning to see it.

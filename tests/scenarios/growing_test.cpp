@@ -92,9 +92,10 @@ TEST_F(Growing, InStepsGivesWhatAllAtOnceGives) {
   // Two teams, who both hold one of the robots.
   const test::ProgramRun shared = run_adit("merge " + in("a") + " " + in("at_once") + " --out " + in("d"));
   EXPECT_EQ(shared.exit_code, 0) << shared.err;
-  EXPECT_EQ(shared.err, "adit merge: note: ahead of " + in("at_once") + " and robot of " + in("a") +
-                            " have the same map, to the bit: it is one recording, which counts once; what was "
-                            "found or ruled about the former is left out, and its pairs are tested anew\n");
+  EXPECT_EQ(shared.err,
+            "adit merge: note: ahead of " + in("at_once") + " and robot of " + in("a") +
+                " have the same map, to the bit: it is one recording, which counts once; what was "
+                "found or ruled about the former is left out, and its pairs are tested anew\n");
   EXPECT_EQ(read_session(in("d"))->robots, (std::vector<std::string>{"robot", "behind", "later"}));
   EXPECT_EQ(read_session(in("d"))->components.size(), 1U);
 }

@@ -27,7 +27,8 @@ TEST(Namespaces, ARobotWithoutAMountStopsNoOther) {
   const test::TemporaryFolder folder;
   test::ForeignFile file;
   for (const std::string robot : {"husky1", "husky2"})
-    file.cloud_messages("/" + robot + "/points", drive_of(robot + "/lidar", robot == "husky1" ? -6.0 : -5.5), std::chrono::milliseconds(5));
+    file.cloud_messages("/" + robot + "/points", drive_of(robot + "/lidar", robot == "husky1" ? -6.0 : -5.5),
+                        std::chrono::milliseconds(5));
   file.clouds("/camera/depth/points", "depth_optical_frame")
       .links({test::link("husky1/base_link", "husky1/lidar", test::T_base_ouster),
               test::link("husky2/base_link", "husky2/lidar", test::T_base_ouster)});

@@ -219,8 +219,8 @@ TEST(Session, RobotsOfOneNameGetDifferentNames) {
   const auto recorded = [&](const std::string& seed) {
     const std::string recordings = (folder / ("recordings_" + seed)).string();
     expect_done("simulate --routes " + (folder / "routes.yaml").string() +
-                " --robot ahead --lidar os2-32 --set simulation.lidar.columns=256 --seed " + seed + " --out " +
-                recordings);
+                " --robot ahead --lidar os2-32 --set simulation.lidar.columns=256 --seed " + seed +
+                " --out " + recordings);
     return recordings + "/ahead.mcap";
   };
   const std::string file = recorded("1");

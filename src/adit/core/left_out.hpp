@@ -22,6 +22,8 @@ class LeftOut {
   void take() { ++num_all_; }
   /// One that cannot be used, for that reason.
   void leave(const Error& reason);
+  /// How many cannot be used.
+  [[nodiscard]] std::size_t num() const { return num_; }
   /// "3 of 100 messages are left out; the first, 4: REASON"; none where nothing is.
   [[nodiscard]] std::optional<std::string> sentence() const;
   /// The sentence as an error, where nothing at all could be used though there was something.

@@ -96,8 +96,11 @@ struct Recording {
   std::string lidar;         ///< The sensor's name, "" when unknown.
   Pose T_base_lidar;         ///< The mount: where the LiDAR sits on the robot.
   std::string mount_source;  ///< How the mount is known, for people: "/tf_static: base_link -> os_lidar".
-  std::vector<std::string> assumptions;                ///< By the reader, a sentence each with its remedy.
-  std::vector<std::string> warnings;                   ///< What could not be read, a sentence each.
+  std::vector<std::string> assumptions;  ///< By the reader, a sentence each with its remedy.
+  std::vector<std::string> warnings;     ///< What could not be read, a sentence each.
+  /// Scans that were recorded and cannot be used, as their stamps do not ascend with the others' or cannot be
+  /// read, or nobody knows where the LiDAR was; `warnings` says why. One that was sent twice is none.
+  std::size_t num_scans_left_out = 0;
   std::vector<Stamp> scan_stamps;                      ///< Strictly ascending.
   std::function<Result<Scan>(std::size_t)> read_scan;  ///< Thread-safe; scan i has stamp scan_stamps[i].
   Trajectory wheel;                                    ///< T_wheelodom_base; empty when there are no wheels.

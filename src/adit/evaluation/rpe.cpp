@@ -22,8 +22,8 @@ std::vector<double> distances_driven(const std::vector<Pose>& poses) {
   return driven;
 }
 
-/// Of the poses after i the one whose distance from i is nearest to `segment_m`, the first of several. `beyond`:
-/// the first one that lies as far as that, or their number.
+/// Of the poses after i the one whose distance from i is nearest to `segment_m`, the first of several.
+/// `beyond`: the first one that lies as far as that, or their number.
 std::size_t end_of_segment(const std::vector<double>& driven, std::size_t i, std::size_t beyond,
                            double segment_m) {
   const auto off = [&](std::size_t j) { return std::abs(driven[j] - driven[i] - segment_m); };
@@ -57,9 +57,9 @@ Result<RpeResult> rpe(const Trajectory& estimate, const Trajectory& truth, doubl
                        segment_m));
   }
   if (result.translation_errors_m.empty()) {
-    return fail(
-        format("no two of {} poses lie {:.1f} m apart along the true path, to {:.1f} m; give a longer segment",
-               pairs->size(), segment_m, tolerance * segment_m));
+    return fail(format(
+        "no two of {} poses lie {:.1f} m apart along the true path, to {:.1f} m; give a longer segment",
+        pairs->size(), segment_m, tolerance * segment_m));
   }
   result.translation_rmse_m = root_mean_square(result.translation_errors_m);
   result.translation_median_m = median(result.translation_errors_m);

@@ -45,14 +45,13 @@ std::vector<fs::path> files_in(const fs::path& folder, bool (*wanted)(const fs::
 
 /// The command that unpacks files of that ending; "" where they are not compressed as a whole.
 std::string_view unpacker_of(const fs::path& path) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kUnpackers = {
-      {{".zstd", "zstd -d"},
-       {".zst", "zstd -d"},
-       {".gz", "gzip -d"},
-       {".bz2", "bzip2 -d"},
-       {".xz", "xz -d"},
-       {".lz4", "lz4 -d"},
-       {".zip", "unzip"}}};
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kUnpackers = {{{".zstd", "zstd -d"},
+                                                                                        {".zst", "zstd -d"},
+                                                                                        {".gz", "gzip -d"},
+                                                                                        {".bz2", "bzip2 -d"},
+                                                                                        {".xz", "xz -d"},
+                                                                                        {".lz4", "lz4 -d"},
+                                                                                        {".zip", "unzip"}}};
   const std::string extension = extension_of(path);
   for (const auto& [ending, unpacker] : kUnpackers)
     if (extension == ending) return unpacker;
@@ -97,11 +96,13 @@ Result<> check_kind(const fs::path& path) {
   if (kind == kKinds.end() || kind->ending == extension_of(path)) return {};
   const std::string name = shell_quoted(path.string());
   if (kind->ending.empty())
-    return fail(format("{}: its content is compressed by {} as a whole, which cannot be read in parts; unpack it: "
-                       "{} {} > UNPACKED{}",
-                       path.string(), kind->name, kind->unpacker, name, extension_of(path)));
-  return fail(format("{}: its content is that of {}; give it the ending of one: mv {} {}", path.string(), kind->name,
-                     name, shell_quoted(fs::path(path).replace_extension(kind->ending).string())));
+    return fail(
+        format("{}: its content is compressed by {} as a whole, which cannot be read in parts; unpack it: "
+               "{} {} > UNPACKED{}",
+               path.string(), kind->name, kind->unpacker, name, extension_of(path)));
+  return fail(format("{}: its content is that of {}; give it the ending of one: mv {} {}", path.string(),
+                     kind->name, name,
+                     shell_quoted(fs::path(path).replace_extension(kind->ending).string())));
 }
 
 /// Where the file that metadata.yaml names lies, if it is there. Bags of early versions name it with the
@@ -154,10 +155,10 @@ Result<FolderFiles> files_of_metadata(const fs::path& folder) {
       if (fs::exists(*found))
         named.files.push_back(std::move(*found));
       else
-        named.faults.push_back(
-            {format("{}: names '{}', which is not there; copy it beside that file, or let 'ros2 bag reindex' write "
-                    "metadata.yaml anew",
-                    file.string(), name.Scalar())});
+        named.faults.push_back({format(
+            "{}: names '{}', which is not there; copy it beside that file, or let 'ros2 bag reindex' write "
+            "metadata.yaml anew",
+            file.string(), name.Scalar())});
     }
     if (known.empty()) return fail(format("{}: names no files (relative_file_paths)", file.string()));
     return named;

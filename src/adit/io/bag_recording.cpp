@@ -3,6 +3,7 @@
 #include "adit/io/bag_recording.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -61,6 +62,7 @@ struct Tracks {
   std::vector<BagMessage> scans;
   std::vector<Stamp> stamps;
   std::vector<std::string> warnings;  // about scans
+  std::size_t num_left_out = 0;       // Recording::num_scans_left_out
   PoseTrack wheel;
   PoseTrack truth;
   ImuTrack imu;
@@ -82,12 +84,13 @@ Result<> leave_scans_with_pose(Recording& recording, Tracks& tracks, const Movin
         format("the LiDAR moves on the robot ({}), and /tf never says where it was at a scan's time: "
                "look at the clocks with adit info, or {}",
                recording.mount_source, kMountRemedy));
-  const std::size_t num_lost = tracks.stamps.size() - stamps.size();
-  if (num_lost > 0)
+  const std::size_t num_without = tracks.stamps.size() - stamps.size();
+  recording.num_scans_left_out += num_without;
+  if (num_without > 0)
     recording.warnings.push_back(format(
         "{} of {} scans are left out, as /tf does not say where the LiDAR was then ({}); --mount takes it "
         "for fixed",
-        num_lost, tracks.stamps.size(), recording.mount_source));
+        num_without, tracks.stamps.size(), recording.mount_source));
   tracks.scans = std::move(scans);
   tracks.stamps = std::move(stamps);
   recording.T_base_lidar = *T_base_lidar.at(tracks.stamps.front());
@@ -286,9 +289,29 @@ BagPass::Visit stamps_into(const Bag& bag, Tracks& tracks, LeftOut& left_out) {
   };
 }
 
+/// Of the scans that are not kept, those that no other stands for: a scan that was sent twice costs nothing.
+std::size_t num_lost(const Tracks& tracks, const std::vector<std::size_t>& kept) {
+  constexpr double kTogether = 1.0;  // seconds between the times of recording of one scan that was sent twice
+  std::size_t num = 0;
+  for (std::size_t i = 0, next = 0; i < tracks.stamps.size(); ++i) {
+    if (next < kept.size() && kept[next] == i) {
+      ++next;
+      continue;
+    }
+    const auto twin =
+        std::ranges::lower_bound(kept, tracks.stamps[i], {}, [&](std::size_t k) { return tracks.stamps[k]; });
+    const bool is_there =
+        twin != kept.end() && tracks.stamps[*twin] == tracks.stamps[i] &&
+        std::abs(to_seconds(tracks.scans[*twin].log_time - tracks.scans[i].log_time)) < kTogether;
+    num += is_there ? 0U : 1U;
+  }
+  return num;
+}
+
 /// Leaves out scans whose stamps do not ascend with the others'.
 Result<> put_in_order(Tracks& tracks, const std::string& topic) {
   const std::vector<std::size_t> kept = longest_ascending(tracks.stamps);
+  tracks.num_left_out += num_lost(tracks, kept);
   const std::optional<std::string> note = note_of_left_out("scans", tracks.stamps, kept);
   if (note && kept.size() < 2) return fail(topic + ": " + *note);
   if (note) tracks.warnings.push_back(topic + ": " + *note);
@@ -325,6 +348,7 @@ Result<Tracks> read_tracks(const Bag& bag, const BagTopics& topics, const Record
       tracks.warnings.push_back(names_of(bag, of) + ": " + *sentence);
   };
   warn(topics.points, scans);
+  tracks.num_left_out += scans.num();
   warn(topics.static_transforms, static_links);
   warn(topics.transforms, links);
   if (Result<> done = put_in_order(tracks, names_of(bag, topics.points)); !done)
@@ -347,6 +371,7 @@ Recording recording_of(Tracks& tracks, const Bag& bag, const BagTopics& topics,
   if (!config.topics_under.empty())
     recording.name = config.topics_under.substr(config.topics_under.rfind('/') + 1);
   std::ranges::copy(tracks.warnings, std::back_inserter(recording.warnings));
+  recording.num_scans_left_out = tracks.num_left_out;
   recording.wheel = std::move(tracks.wheel.poses);
   recording.wheel_covariance = tracks.wheel.covariance;
   std::ranges::copy(tracks.wheel.warnings, std::back_inserter(recording.warnings));

@@ -169,8 +169,9 @@ TEST(Bag, WhatAFolderLacksIsNamed) {
   const test::TemporaryFolder folder;
   const fs::path metadata = folder / "metadata.yaml";
   test::put_file(metadata, metadata_naming({"a_0.db3"}));
-  EXPECT_ERROR(open_bag(folder.path()),
-               "metadata.yaml: names 'a_0.db3', which is not there; copy it beside that file, or let 'ros2 bag");
+  EXPECT_ERROR(
+      open_bag(folder.path()),
+      "metadata.yaml: names 'a_0.db3', which is not there; copy it beside that file, or let 'ros2 bag");
   test::put_file(metadata, metadata_naming({"a_0.db3.zstd"}));
   EXPECT_ERROR(open_bag(folder.path()), "unpack it: zstd -d");
   test::put_file(folder / "b.db3.zstd", "packed");
@@ -191,7 +192,8 @@ TEST(Bag, AFileOfAnotherKindThanItsEndingIsNamed) {
   const test::TemporaryFolder folder;
   const Bag bag = a_bag();
   write_db3(folder / "lite.mcap", bag, bag.messages);
-  EXPECT_ERROR(open_bag(folder / "lite.mcap"), "lite.mcap: its content is that of an SQLite file; give it the");
+  EXPECT_ERROR(open_bag(folder / "lite.mcap"),
+               "lite.mcap: its content is that of an SQLite file; give it the");
   test::ForeignFile file;
   test::put_file(folder / "m.bag", file.clouds("/points").bytes());
   EXPECT_ERROR(open_bag(folder / "m.bag"), "m.bag: its content is that of an MCAP file");

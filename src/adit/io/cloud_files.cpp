@@ -73,14 +73,15 @@ std::string point_times_note(TimeUnit unit, UnitSource source) {
 }
 
 std::optional<std::string> stated_unit_warning(TimeUnit unit, const PointCloud& sweep) {
-  constexpr std::int64_t kShortest = 1'000'000;     // nanoseconds; LiDARs take 50 to 200 ms
+  constexpr std::int64_t kShortest = 1'000'000;  // nanoseconds; LiDARs take 50 to 200 ms
   constexpr std::int64_t kLongest = 1'000'000'000;
   if (!sweep.has_times()) return std::nullopt;
   const auto [first, last] = std::ranges::minmax(sweep.time_offsets_ns);
   const std::int64_t lasts = std::int64_t{last} - first;
   if (lasts >= kShortest && lasts <= kLongest) return std::nullopt;
   return format(
-      "point times: in {}, as stated by --point-times, the first sweep lasts {:.3g} s, where LiDARs take 0.05 to "
+      "point times: in {}, as stated by --point-times, the first sweep lasts {:.3g} s, where LiDARs take "
+      "0.05 to "
       "0.2 s; state the unit in which the driver writes them (s, ms, us or ns), or leave the option out",
       to_string(unit), 1e-9 * static_cast<double>(lasts));
 }

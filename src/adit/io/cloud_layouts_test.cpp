@@ -312,6 +312,33 @@ TEST(CloudLayouts, AUnitThatIsStatedIsSaidToBe) {
       << wrong.warnings[0];
 }
 
+TEST(CloudLayouts, ScansThatAClockCostAreCounted) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const std::string cloud_frame = "lidar";
+  const auto recorded = [&](const std::vector<std::int64_t>& tenths) {
+    test::ForeignFile file;
+    Stamp arrived = test::make_scan(0, 0).stamp;
+    for (std::size_t k = 0; k < tenths.size(); ++k) {
+      Scan scan = test::make_scan(0, 10);
+      scan.stamp.ns += tenths[k] * (kSecond / 10);
+      arrived = arrived + Duration(kSecond / 10);
+      file.cloud_messages("/points", {{scan.stamp, ros::encode_cloud(scan, cloud_frame)}},
+                          arrived - scan.stamp);
+    }
+    file.links({test::link("base_link", cloud_frame, Pose())});
+    return file.read().value();
+  };
+  const Recording set_back = recorded({0, 1, 2, 3, 4, 5, -40, -39, -38});
+  EXPECT_EQ(set_back.num_scans(), 6U);
+  EXPECT_EQ(set_back.num_scans_left_out, 3U);
+  EXPECT_EQ(recorded({0, 1, 900, 3, 4}).num_scans_left_out, 1U);
+  const Recording repeated = recorded({0, 0, 1, 1, 2, 2});
+  EXPECT_EQ(repeated.num_scans(), 3U);
+  EXPECT_EQ(repeated.num_scans_left_out, 0U) << "sent twice, none is lost";
+  EXPECT_EQ(recorded({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 0, 1, 2}).num_scans_left_out, 3U)
+      << "of the same stamps, and not the same scans";
+}
+
 TEST(CloudLayouts, MissingTimesAreSaidOnce) {
   test::ForeignFile file;
   std::vector<std::pair<Stamp, std::string>> clouds;

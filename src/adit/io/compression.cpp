@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::size_t kLargest = std::size_t{1} << 30U;
 constexpr std::size_t kUsualOfZstd = 64;  // bytes that one stands for: of chunks, and of maps of long drives
-constexpr std::size_t kFirst = std::size_t{1} << 20U;  // bytes of memory, before data show that they need more
+constexpr std::size_t kFirst = std::size_t{1}
+                               << 20U;  // bytes of memory, before data show that they need more
 // Bytes that one compressed byte can stand for: a zstd block of 128 KiB that repeats one byte takes four, LZ4
 // counts runs in 255s, and a block of 900 kB of bzip2, in which five bytes stand for 259, takes some 32.
 constexpr std::size_t kMostOfZstd = 32768;
@@ -31,8 +32,8 @@ Result<> check_claim(std::string_view bytes, std::size_t size, std::size_t most_
   return fail(format("{} compressed bytes cannot hold {} bytes; the size is damaged", bytes.size(), size));
 }
 
-/// Some kilobytes can stand for so much that `check_claim` passes a damaged size: memory is taken only as data
-/// come. Through a buffer of zstd's own, which takes longer than all at once.
+/// Some kilobytes can stand for so much that `check_claim` passes a damaged size: memory is taken only as
+/// data come. Through a buffer of zstd's own, which takes longer than all at once.
 Result<std::string> decompress_zstd_by_steps(std::string_view bytes, std::size_t size) {
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), &ZSTD_freeDCtx);
   ADIT_CHECK(context != nullptr, "out of memory");

@@ -16,7 +16,8 @@ namespace adit {
 [[nodiscard]] std::string compress_zstd(std::string_view bytes);
 
 /// Exactly `size` bytes, or an error; more than so few bytes can hold is refused as damage, and more than 1
-/// GiB, of zstd only where that is more than 64 times `bytes`.
+/// GiB, of zstd only where that is more than 64 times `bytes`. Of zstd beyond that many times, and of bz2,
+/// memory is taken as data come.
 Result<std::string> decompress(std::string_view bytes, std::string_view compression, std::size_t size);
 
 /// Of data that are cut: as many of the `size` bytes as what is there gives, whole blocks of it. Of bz2,

@@ -61,8 +61,9 @@ TEST(Compression, ZstdTakesMemoryAsDataCome) {
                "end early");
   // Where the memory is full when the data end.
   const std::string mebibyte(std::size_t{1} << 20U, '\0');
-  EXPECT_EQ(decompress(compress_zstd(mebibyte) + compress_zstd(mebibyte), "zstd", 2 * mebibyte.size()).value(),
-            mebibyte + mebibyte);
+  EXPECT_EQ(
+      decompress(compress_zstd(mebibyte) + compress_zstd(mebibyte), "zstd", 2 * mebibyte.size()).value(),
+      mebibyte + mebibyte);
   // So many bytes that they could be a gibibyte, and are a few hundred kilobytes.
   std::string claims;
   while (claims.size() < 33'000) claims += compress_zstd("few");

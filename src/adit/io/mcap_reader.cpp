@@ -242,8 +242,8 @@ Result<Contents> contents_before_cut(const ByteSource& source) {
   contents.torn = scanned ? format("byte {}: the file ends without a footer", source.size)
                           : format("the file breaks off: {}", scanned.error().message);
   if (contents.messages.empty())
-    return fail(format("{}, and no message is whole; copy the file again from where it was recorded",
-                       contents.torn));
+    return fail(
+        format("{}, and no message is whole; copy the file again from where it was recorded", contents.torn));
   return check_channels(contents).map([&] { return std::move(contents); });
 }
 

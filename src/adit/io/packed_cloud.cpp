@@ -328,7 +328,7 @@ Result<CloudFile> unpack(PackedCloud packed) {
   });
 }
 
-Result<CloudFile> unpack_file(PackedCloud packed) {
+Result<CloudFile> unpack_file(const PackedCloud& packed) {
   const std::size_t num_points = packed.num_points;
   return unpack(packed).and_then([&](CloudFile file) -> Result<CloudFile> {
     if (file.cloud.empty()) return fail(format("none of the {} points is finite", num_points));

@@ -72,7 +72,7 @@ void assign_field(PackedCloud& cloud, std::string_view name, PackedField field);
 /// point is finite, the cloud is empty.
 Result<CloudFile> unpack(PackedCloud packed);
 /// `unpack` of a file: fails where it has no finite point, too.
-Result<CloudFile> unpack_file(PackedCloud packed);
+Result<CloudFile> unpack_file(const PackedCloud& packed);
 
 /// Whether `config.stamp_at` is one of its values.
 Result<> check_stamp_at(const RecordingConfig& config);

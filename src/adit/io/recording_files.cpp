@@ -49,11 +49,11 @@ Result<> check_no_session(const std::string& input) {
   std::error_code ignored;
   if (!std::filesystem::exists(std::filesystem::path(input) / "session.toml", ignored)) return {};
   const std::string name = shell_quoted(input);
-  return fail(
-      format("{}: is a session, not a recording; adit slam --session {} RECORDING goes on from it, adit localize "
-             "{} RECORDING finds a robot in it, adit merge joins it with others, and adit info {} shows what it "
-             "holds",
-             input, name, name, name));
+  return fail(format(
+      "{}: is a session, not a recording; adit slam --session {} RECORDING goes on from it, adit localize "
+      "{} RECORDING finds a robot in it, adit merge joins it with others, and adit info {} shows what it "
+      "holds",
+      input, name, name, name));
 }
 
 /// A topic that is asked for and that no folder of clouds can have is not to be passed over.

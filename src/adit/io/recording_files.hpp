@@ -17,8 +17,9 @@ namespace adit {
 ///  - `FOLDER@even`, `FOLDER@odd`, `FOLDER@FIRST:STEP`: part of the scans, so that one drive can serve as two
 ///  robots.
 ///    The recording's name then ends in the part: "nclt_even".
-/// Anything else is an error that lists these; of a session it names the commands that take sessions. `config`
-/// overrides what the input says of itself; of a folder of clouds it may name no topics, which it has none of.
+/// Anything else is an error that lists these; of a session it names the commands that take sessions.
+/// `config` overrides what the input says of itself; of a folder of clouds it may name no topics, which it
+/// has none of.
 Result<Recording> open_recording(const std::string& input, const RecordingConfig& config = {});
 
 }  // namespace adit

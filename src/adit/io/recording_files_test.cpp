@@ -42,7 +42,8 @@ TEST(OpenRecording, AFolderOfCloudsHasNoTopics) {
                "there is no topic '/ouster/points', as this is a folder of clouds: its clouds are the files");
   EXPECT_ERROR(open_recording(path, {.wheel = "/odom"}), "odometry.tum beside the clouds; leave --wheel out");
   EXPECT_ERROR(open_recording(path, {.imu = "/imu"}), "it holds no IMU; leave --imu out");
-  EXPECT_ERROR(open_recording(path, {.truth = "/gt"}), "groundtruth.tum beside the clouds; leave --truth out");
+  EXPECT_ERROR(open_recording(path, {.truth = "/gt"}),
+               "groundtruth.tum beside the clouds; leave --truth out");
   EXPECT_ERROR(open_recording(path + "@even", {.tf = "/tf"}), "given by --mount; leave --tf out");
   EXPECT_ERROR(open_recording(path, {.topics_under = "/husky1"}), "leave --set recording.topics_under out");
   EXPECT_TRUE(open_recording(path, {.wheel = "none", .imu = "none", .truth = "none"}));
@@ -81,8 +82,8 @@ TEST(OpenRecording, TheUnitOfPointTimesIsTheOneThatIsStated) {
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(write_cloud(folder / (std::to_string(i) + ".pcd"), cloud));
   const std::string path = folder.path().string();
   const auto says = [](const std::vector<std::string>& all, std::string_view text) {
-    return std::ranges::count_if(
-        all, [&](const std::string& one) { return one.find(text) != std::string::npos; });
+    return std::ranges::count_if(all,
+                                 [&](const std::string& one) { return one.find(text) != std::string::npos; });
   };
   const Recording right = open_recording(path, {.point_times = "ms"}).value();
   EXPECT_EQ(right.read_scan(1)->cloud.time_offsets_ns.back(), 100'000'000);

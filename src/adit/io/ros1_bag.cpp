@@ -298,7 +298,8 @@ Result<Contents> read_contents(const ByteSource& source) {
   if (!magic) return tl::unexpected(magic.error());
   if (*magic != kMagic) return fail("byte 0: not a bag of ROS 1 (format 2.0), or truncated");
   const Result<Record> header = read_record(source, kMagic.size());
-  if (!header) return fail(format("the file breaks off in its header: {}; {}", header.error().message, kCopyAgain));
+  if (!header)
+    return fail(format("the file breaks off in its header: {}; {}", header.error().message, kCopyAgain));
   // Where the recorder did not get to write the index, it is 0, or behind the cut.
   const std::uint64_t index_at = number_in<std::uint64_t>(header->fields, "index_pos").value_or(0);
   Contents contents;
@@ -311,13 +312,14 @@ Result<Contents> read_contents(const ByteSource& source) {
   const Result<> scanned = scan_file(source, contents);
   const std::size_t num_messages = contents.bag.messages.size();
   if (num_messages == 0)
-    return fail(
-        format("the file breaks off before its first whole message: {}; {}",
-               scanned ? format("it ends at byte {}", source.size) : scanned.error().message, kCopyAgain));
+    return fail(format("the file breaks off before its first whole message: {}; {}",
+                       scanned ? format("it ends at byte {}", source.size) : scanned.error().message,
+                       kCopyAgain));
   if (!scanned)
-    contents.bag.warnings.push_back(format("the file breaks off: {}; {} messages in front of that are read; where the recording went on, copy "
-               "the file again",
-               scanned.error().message, num_messages));
+    contents.bag.warnings.push_back(format(
+        "the file breaks off: {}; {} messages in front of that are read; where the recording went on, copy "
+        "the file again",
+        scanned.error().message, num_messages));
   else if (!listed)
     contents.bag.warnings.push_back(index_warning(listed.error().message, num_messages, "rosbag reindex"));
   return contents;

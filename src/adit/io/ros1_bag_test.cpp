@@ -215,8 +215,9 @@ TEST(Ros1Bag, EveryTruncationIsReadSoFarOrAnError) {
 TEST(Ros1Bag, WithoutAWholeMessageTheErrorSaysWhatToDo) {
   const std::string bytes = recording_bytes();
   EXPECT_ERROR(open_ros1_bag(memory_source(bytes.substr(0, 300))), "copy it again");
-  EXPECT_ERROR(open_ros1_bag(memory_source(bytes.substr(0, 100))),
-               "the file breaks off in its header: byte 13: a record reaches past the end of the file; copy it again");
+  EXPECT_ERROR(
+      open_ros1_bag(memory_source(bytes.substr(0, 100))),
+      "the file breaks off in its header: byte 13: a record reaches past the end of the file; copy it again");
 }
 
 TEST(Ros1Bag, ACutInTheListsAtItsEndCostsNoMessage) {

@@ -52,9 +52,9 @@ Result<CloudMessage> decode_cloud(std::string_view message, MessageEncoding enco
                                   std::optional<TimeUnit> time_unit = {});
 /// What a PointCloud2 holds, as it stands: "x float32, y float32, z float32, t uint32; 1024 x 64 points".
 Result<std::string> describe_cloud(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
-/// The same of Livox's CustomMsg: intensity is the reflectivity, times are nanoseconds from its `timebase`, the
-/// time of the first point. Where that is further from the stamp than two sweeps, as by another clock, they
-/// count from the stamp.
+/// The same of Livox's CustomMsg: intensity is the reflectivity, times are nanoseconds from its `timebase`,
+/// the time of the first point. Where that is further from the stamp than two sweeps, as by another clock,
+/// they count from the stamp.
 Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
 
 /// T_frame_child at a time.

@@ -340,8 +340,7 @@ Result<CloudFile> first_readable(const std::vector<fs::path>& clouds, std::optio
 void note_point_times(Recording& recording, const CloudFile& first, const FolderReading& reading) {
   if (!first.time_unit) return;
   const UnitSource source = reading.time_unit ? UnitSource::stated : UnitSource::found;
-  if (!first.has_usual_time_unit)
-    recording.assumptions.push_back(point_times_note(*first.time_unit, source));
+  if (!first.has_usual_time_unit) recording.assumptions.push_back(point_times_note(*first.time_unit, source));
   if (source == UnitSource::found) return;
   if (auto warning = stated_unit_warning(*first.time_unit, first.cloud))
     recording.warnings.push_back(std::move(*warning));

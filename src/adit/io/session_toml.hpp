@@ -13,8 +13,8 @@
 
 namespace adit {
 
-/// What files and people are told of a merge that a person keeps apart, in the place of the kind of refusal and
-/// of the outcome of the best hypothesis: these stay as the test left them, or unsure.
+/// What files and people are told of a merge that a person keeps apart, in the place of the kind of refusal
+/// and of the outcome of the best hypothesis: these stay as the test left them, or unsure.
 inline constexpr std::string_view kVetoed = "vetoed";
 /// Reasons that a person gave begin so (slam.hpp, Ruling).
 inline constexpr std::string_view kPerson = "a person ";

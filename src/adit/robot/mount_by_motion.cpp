@@ -39,8 +39,6 @@ std::vector<MotionStep> steps_of(const Recording& recording, std::span<const std
   return out;
 }
 
-constexpr double kOpenSigma = 0.05;  // metres: a quarter of the way between usual scans
-
 /// A MotionStep on the floor.
 struct Step {
   Eigen::Vector2d by_wheels;
@@ -51,6 +49,7 @@ struct Step {
 };
 
 Step on_the_floor(const MotionStep& step) {
+  constexpr double kOpenSigma = 0.05;    // metres: a quarter of the way between usual scans
   constexpr double kTurnSigma = 0.0005;  // radians
   Step out{step.by_wheels, step.by_scans.translation().head<2>(), step.covariance.topLeftCorner<2, 2>(),
            step.by_scans.yaw()};
@@ -108,8 +107,7 @@ std::vector<StepBeyondWheels> beyond_wheels(const std::vector<Step>& steps, doub
   return out;
 }
 
-constexpr double kLeastMotion = 1.0;    // m^2, of all steps: 25 of 0.2 m
-constexpr double kEnoughTurns = 0.01;   // rad^2, of all steps: some 10 of 2 degrees
+constexpr double kLeastMotion = 1.0;  // m^2, of all steps: 25 of 0.2 m
 constexpr std::size_t kFewSteps = 40;
 
 /// A shift by its share of turns, and what goes with the way instead, with their standard deviations.
@@ -129,6 +127,7 @@ std::optional<ShiftByTurns> shift_by_turns(const Eigen::MatrixXd& J, const Eigen
   const Eigen::MatrixXd inverse_H = H.inverse();
   const Eigen::VectorXd x = inverse_H * (J.transpose() * beyond);
   const double variance = (beyond - J * x).squaredNorm() / static_cast<double>(J.rows() - J.cols());
+  constexpr double kEnoughTurns = 0.01;  // rad^2: some 10 steps of 2 degrees
   return ShiftByTurns{x[0], std::sqrt(variance * inverse_H(0, 0)), x[1],
                       squared_turns > kEnoughTurns ? std::sqrt(variance * inverse_H(1, 1))
                                                    : std::numeric_limits<double>::infinity()};
@@ -207,10 +206,9 @@ std::vector<std::size_t> where_it_turns(const Recording& recording, const std::v
   return out;
 }
 
-/// Whether scans know this motion in all directions, and as far as the wheels went.
-bool is_known_in_space(const MotionStep& step) {
-  const Matrix3 covariance = step.covariance.topLeftCorner<3, 3>();
-  return step.is_registered && covariance.trace() < kOpenSigma * kOpenSigma &&
+/// Whether scans have the robot go as far as the wheels do, in whatever direction.
+bool goes_as_far_in_space(const MotionStep& step) {
+  return step.is_registered &&
          goes_as_far(step.by_scans.translation().norm(), step.by_wheels.norm(), step.by_scans.angle());
 }
 
@@ -233,21 +231,27 @@ std::optional<Vector3> direction_ahead(const std::vector<MotionStep>& known) {
   return sum.normalized();
 }
 
-/// The axis about which the robot turns anticlockwise; none where it turns too little, or scans and wheels do
-/// not turn together.
-std::optional<Vector3> axis_of_turns(const std::vector<MotionStep>& known) {
-  constexpr double kCorrelation = 0.8;
+/// The axis about which the robot turns anticlockwise: by how much it turns by the scans where it turns by
+/// one radian by the wheels, least squares of all steps. None where it turns too little against the roll and
+/// pitch of the way, or by another angle than wheels that slip in turns would say.
+std::optional<Vector3> axis_of_turns(const std::vector<MotionStep>& steps) {
+  constexpr double kSigma = 0.15;  // of the axis, a share of its length: 9 degrees
+  constexpr double kLeast = 0.4;   // radians a radian
+  constexpr double kMost = 2.5;
   Vector3 sum = Vector3::Zero();
   double by_wheels = 0.0;
-  double by_scans = 0.0;
-  for (const MotionStep& step : known) {
-    const Vector3 turned = so3::log(step.by_scans.rotation());
-    sum += step.turned_by_wheels * turned;
+  for (const MotionStep& step : steps) {
+    sum += step.turned_by_wheels * so3::log(step.by_scans.rotation());
     by_wheels += step.turned_by_wheels * step.turned_by_wheels;
-    by_scans += turned.squaredNorm();
   }
-  if (by_wheels < kEnoughTurns || sum.norm() < kCorrelation * std::sqrt(by_wheels * by_scans)) return {};
-  return sum.normalized();
+  if (by_wheels == 0.0) return {};
+  const Vector3 axis = sum / by_wheels;
+  double squares = 0.0;
+  for (const MotionStep& step : steps)
+    squares += (so3::log(step.by_scans.rotation()) - step.turned_by_wheels * axis).squaredNorm();
+  const double sigma = std::sqrt(squares / (3.0 * static_cast<double>(steps.size())) / by_wheels);
+  if (axis.norm() < kLeast || axis.norm() > kMost || sigma > kSigma * axis.norm()) return {};
+  return axis.normalized();
 }
 
 }  // namespace
@@ -274,9 +278,9 @@ Result<std::vector<MotionStep>> motion_steps(const Recording& recording) {
 
 std::optional<TiltByMotion> tilt_by_motion(const std::vector<MotionStep>& steps) {
   constexpr double kLeastDeg = 30.0;
-  constexpr double kUpright = 0.3;  // of the direction ahead in the plane of the base: else it points up or down
+  constexpr double kUpright = 0.3;  // part of a direction that has to be left for it to point somewhere
   std::vector<MotionStep> known;
-  std::ranges::copy_if(steps, std::back_inserter(known), is_known_in_space);
+  std::ranges::copy_if(steps, std::back_inserter(known), goes_as_far_in_space);
   const std::optional<Vector3> ahead = direction_ahead(known);
   if (!ahead) return {};
   const Vector3 level(ahead->x(), ahead->y(), 0.0);
@@ -284,10 +288,11 @@ std::optional<TiltByMotion> tilt_by_motion(const std::vector<MotionStep>& steps)
   Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(*ahead, along);
   if (const std::optional<Vector3> axis = axis_of_turns(known)) {
     // About the direction ahead, and as wheels may be wired left for right, no further than it lies down.
-    const Vector3 across = turn * *axis;
-    const Vector3 up = (across - across.dot(along) * along).normalized();
+    const Vector3 turned = turn * *axis;
+    const Vector3 up = turned - turned.dot(along) * along;
     const double roll = std::atan2(up.cross(Vector3::UnitZ()).dot(along), up.z());
-    if (std::abs(roll) > kLeastDeg * kDegree && std::abs(roll) < std::numbers::pi - kLeastDeg * kDegree)
+    if (up.norm() > kUpright && std::abs(roll) > kLeastDeg * kDegree &&
+        std::abs(roll) < std::numbers::pi - kLeastDeg * kDegree)
       turn = Eigen::Quaterniond(Eigen::AngleAxisd(roll, along)) * turn;
   }
   TiltByMotion tilt{turn.toRotationMatrix(), 0.0, known.size()};

@@ -15,8 +15,9 @@ namespace adit {
 
 /// From one scan to the next, how wheels and scans have the robot move.
 struct MotionStep {
-  Eigen::Vector2d by_wheels = Eigen::Vector2d::Zero();  ///< Metres, in the base frame at the first of the two.
-  double turned_by_wheels = 0.0;                        ///< Yaw, radians.
+  Eigen::Vector2d by_wheels =
+      Eigen::Vector2d::Zero();    ///< Metres, in the base frame at the first of the two.
+  double turned_by_wheels = 0.0;  ///< Yaw, radians.
   /// T_base0_base1, in the axes that the mount in use gives the base.
   Pose by_scans;
   Matrix6 covariance = Matrix6::Zero();  ///< Of `by_scans`, right perturbation, [translation; rotation].
@@ -33,11 +34,13 @@ struct TiltByMotion {
   double tilt_deg = 0.0;                       ///< Of its vertical axis, 0 to 180.
   std::size_t num_steps = 0;                   ///< From scan to scan, that it was found by; 40 or more.
 };
-/// A robot drives along its x axis and turns about its z axis: a mount by which it climbs out of its own floor,
-/// or turns about an axis that lies down, is wrong. Only steps count in which scans know the motion in all
-/// directions, and as long as by the wheels; where wheels count backward the tilt is the same. None where scans
-/// do not tell, and for tilts of less than 30 degrees, which the floor shows better (scan_checks.hpp). How the
-/// robot is turned about the direction in which it drives shows where it turns.
+/// A robot drives along its x axis and turns about its z axis: a mount by which it climbs out of its own
+/// floor, or turns about an axis that lies down, is wrong. Only steps count that are as long by the scans as
+/// by the wheels, whose directions have to agree; where wheels count backward the tilt is the same. What
+/// scans state of their certainty is not used, as it is wrong by such a mount: the floor has to confirm the
+/// tilt (scan_checks.hpp). None where steps do not tell, and for tilts of less than 30 degrees, which the
+/// floor shows better. How the LiDAR is turned about the direction in which the robot drives shows in turns
+/// alone.
 [[nodiscard]] std::optional<TiltByMotion> tilt_by_motion(const std::vector<MotionStep>& steps);
 
 /// How far the LiDAR's mount is from where the motion between scans puts it, if the wheels are right. One

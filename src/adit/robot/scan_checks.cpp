@@ -319,6 +319,7 @@ Result<ScansSeen> look_at_scans(const Recording& recording, std::size_t num) {
   seen.points = median(points);
   seen.sweep_s = median(sweeps);
   seen.nearest_m = percentile(ranges, 1.0);
+  seen.median_m = percentile(ranges, 50.0);
   seen.farthest_m = *std::ranges::max_element(ranges);
   const auto at_the_end = std::ranges::count_if(ranges, [&](double r) { return r > 0.97 * seen.farthest_m; });
   seen.share_at_the_end = static_cast<double>(at_the_end) / static_cast<double>(ranges.size());

@@ -45,6 +45,7 @@ struct ScansSeen {
   bool has_times = false;     ///< All these scans have times of their points.
   double sweep_s = 0.0;       ///< From the first to the last point, by their times; the median.
   double nearest_m = 0.0;     ///< One return in a hundred is nearer,
+  double median_m = 0.0;      ///< half of them are,
   double farthest_m = 0.0;    ///< and none is farther.
   /// Share of all returns within the last 3 % before `farthest_m`: large where something cuts them off.
   double share_at_the_end = 0.0;

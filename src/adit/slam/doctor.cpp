@@ -51,12 +51,15 @@ Diagnosis scans_missing(const Recording& recording) {
   const ScanTiming timing = timing_of(recording.scan_stamps);
   const std::string check = "scans: missing";
   if (timing.interval_s == 0.0) return {check, Health::unknown, "there is one scan"};
-  const double share = static_cast<double>(timing.num_missing) /
-                       static_cast<double>(timing.num_missing + recording.num_scans());
-  std::string sentence = format(
-      "{} scans, one every {:.3f} s; {} missing ({:.1f} %), the longest gap {:.2f} s", recording.num_scans(),
-      timing.interval_s, timing.num_missing, 100.0 * share, timing.longest_gap_s);
+  // A scan that was left out alone leaves a gap, too; a stretch before a clock was set back leaves none.
+  const std::size_t num_lost = std::max(timing.num_missing, recording.num_scans_left_out);
+  const double share = static_cast<double>(num_lost) / static_cast<double>(num_lost + recording.num_scans());
+  std::string sentence =
+      format("{} scans, one every {:.3f} s; {} missing ({:.1f} %), the longest gap {:.2f} s",
+             recording.num_scans(), timing.interval_s, num_lost, 100.0 * share, timing.longest_gap_s);
   if (timing.num_missing > 0) sentence += format(" at {:.1f} s", timing.longest_gap_at_s);
+  if (recording.num_scans_left_out > 0)
+    sentence += format("; {} were recorded and left out, as said of the file", recording.num_scans_left_out);
   if (timing.interval_s >= kLong)
     return {check, seldom(timing.interval_s), sentence, remedy_of_seldom(recording)};
   constexpr double kNotable = 0.005;
@@ -64,10 +67,14 @@ Diagnosis scans_missing(const Recording& recording) {
   Health health = Health::good;
   if (share > kNotable || timing.longest_gap_s > kLong) health = Health::noted;
   if (share > kTooMany || timing.longest_gap_s > 3.0 * kLong) health = Health::spoils;
+  if (health == Health::good) return {check, health, sentence};
+  if (2 * recording.num_scans_left_out > num_lost)
+    return {
+        check, health, sentence,
+        "what is said of the file has the cause; where a clock jumped, let the driver stamp by one that is "
+        "not set while it records, and cut this recording in two at the jump"};
   return {check, health, sentence,
-          health == Health::good
-              ? ""
-              : "record to a faster disk, with a larger cache of the recorder, or fewer topics"};
+          "record to a faster disk, with a larger cache of the recorder, or fewer topics"};
 }
 
 Diagnosis point_times(const Recording& recording, const ScansSeen& seen) {
@@ -89,8 +96,14 @@ Diagnosis point_times(const Recording& recording, const ScansSeen& seen) {
 Diagnosis ranges(const ScansSeen& seen) {
   constexpr double kCut = 0.003;   // share of the returns in the last 3 % of the range
   constexpr double kShort = 60.0;  // metres
+  constexpr double kFar = 500.0;   // metres: beyond the reach of most LiDARs, let alone in a mine
   const std::string sentence = format("{:.0f} points a scan, from {:.1f} m (1 % are nearer) to {:.1f} m",
                                       seen.points, seen.nearest_m, seen.farthest_m);
+  if (seen.median_m > kFar)
+    return {"scans: range", Health::spoils,
+            format("{}, half of them beyond {:.0f} m: no LiDAR sees that far", sentence, seen.median_m),
+            "points are in metres: these are probably in millimetres, so divide x, y and z by 1000 where the "
+            "clouds are made"};
   if (seen.share_at_the_end > kCut && seen.farthest_m < kShort)
     return {"scans: range", Health::noted, sentence + ", where they end as if cut off",
             "raise the largest range of the driver or of a filter: far walls tell one tunnel from another"};
@@ -158,9 +171,41 @@ Pose levelled(const Pose& T_base_lidar, const FloorSeen& floor) {
           Vector3(at.x(), at.y(), above)};
 }
 
+/// `mount` turned as the motion says and levelled by the floor that is then seen; none where it is not seen.
+std::optional<Pose> levelled_by_motion(const Recording& recording, const TiltByMotion& tilt) {
+  constexpr double kLeft = 15.0;   // degrees of tilt that the motion may leave
+  constexpr double kSpread = 6.0;  // degrees: of a floor, not of what is taken for one
+  const Pose& stated = recording.T_base_lidar;
+  Recording turned = recording;
+  turned.T_base_lidar = Pose((Pose(Eigen::Quaterniond(tilt.R_level_base), Vector3::Zero()) *
+                              Pose(stated.rotation(), Vector3::Zero()))
+                                 .rotation(),
+                             stated.translation());
+  const Result<ScansSeen> seen = look_at_scans(turned);
+  if (!seen || !seen->floor || seen->floor->spread_deg > kSpread ||
+      seen->floor->up.z() < std::cos(kLeft * kDegree))
+    return {};
+  return levelled(turned.T_base_lidar, *seen->floor);
+}
+
 /// Levels `mount` where it is not.
-Diagnosis mount_tilt(const ScansSeen& seen, Pose& mount) {
+Diagnosis mount_tilt(const Recording& recording, const ScansSeen& seen,
+                     const std::optional<TiltByMotion>& by_motion, Pose& mount) {
   const std::string check = "mount: tilt and height";
+  if (by_motion) {
+    const std::string sentence = format(
+        "by the motion between {} pairs of scans the robot drives, or turns, out of the plane that the mount "
+        "takes for level: the LiDAR is tilted by some {:.0f} degrees against it",
+        by_motion->num_steps, by_motion->tilt_deg);
+    if (const std::optional<Pose> level = levelled_by_motion(recording, *by_motion)) {
+      mount = *level;
+      return {check, Health::spoils, sentence,
+              "--mount " + mount_option(mount) + " levels it by the floor that is seen then"};
+    }
+    if (!seen.floor)
+      return {check, Health::spoils, sentence + ", by which the floor is not seen",
+              std::string(kMountRemedy)};
+  }
   if (!seen.floor) return {check, Health::unknown, "too few scans show the floor"};
   const FloorSeen& floor = *seen.floor;
   const double tilt = std::acos(std::clamp(floor.up.z(), -1.0, 1.0)) / kDegree;
@@ -178,10 +223,9 @@ Diagnosis mount_tilt(const ScansSeen& seen, Pose& mount) {
           "--mount " + mount_option(mount) + " levels it"};
 }
 
-/// `mount`: levelled.
-Diagnosis mount_turn(const Recording& recording, const Pose& mount) {
+/// `found`: with the mount levelled, which is `mount`.
+Diagnosis mount_turn(const Result<MountByMotion>& found, const Pose& mount) {
   const std::string check = "mount: turn and lever arm";
-  const Result<MountByMotion> found = mount_by_motion(recording);
   if (!found) return {check, Health::unknown, found.error().message};
   std::string sentence = format(
       "by the motion between {} pairs of scans the mount is off by {:+.2f} degrees of yaw "
@@ -217,6 +261,19 @@ Diagnosis mount_turn(const Recording& recording, const Pose& mount) {
   constexpr double kMuch = 5.0;  // degrees
   return {check, std::abs(found->yaw_deg) > kMuch ? Health::spoils : Health::noted, sentence,
           "--mount " + mount_option(better) + ", if the wheels are right"};
+}
+
+void add_mount(const Recording& recording, const ScansSeen& seen, std::vector<Diagnosis>& out) {
+  Pose mount = recording.T_base_lidar;
+  Result<std::vector<MotionStep>> steps = motion_steps(recording);
+  out.push_back(mount_tilt(recording, seen, steps ? tilt_by_motion(*steps) : std::nullopt, mount));
+  if (mount.matrix() != recording.T_base_lidar.matrix()) {
+    Recording level = recording;
+    level.T_base_lidar = mount;
+    steps = motion_steps(level);
+  }
+  out.push_back(mount_turn(
+      steps.and_then([](const std::vector<MotionStep>& all) { return mount_by_motion(all); }), mount));
 }
 
 void add_sensors(const Recording& recording, const std::vector<SensorFinding>& findings,
@@ -270,8 +327,11 @@ Diagnosis mapping(const Recording& recording, RobotSlamConfig config) {
                      to_seconds(recording.scan_stamps[first] - recording.scan_stamps.front()))};
     if (why.empty()) why = map.error().message;
   }
+  std::size_t num_looked_at = 0;  // stretches of a short recording overlap
+  for (std::size_t i = 0; i < starts.size(); ++i)
+    num_looked_at += i + 1 < starts.size() ? std::min(length, starts[i + 1] - starts[i]) : length;
   return {"mapping", Health::spoils,
-          format("nothing can be mapped, by {} of the scans: {}", starts.size() * length, why)};
+          format("nothing can be mapped, by {} of {} scans: {}", num_looked_at, recording.num_scans(), why)};
 }
 
 }  // namespace
@@ -304,9 +364,7 @@ Result<std::vector<Diagnosis>> diagnose(const Recording& recording, const RobotS
   out.push_back(view(*seen));
   out.push_back(self_hits(recording, *seen));
   out.push_back(mount_source(recording));
-  Pose mount = recording.T_base_lidar;
-  out.push_back(mount_tilt(*seen, mount));
-  out.push_back(mount_turn(recording, mount));
+  add_mount(recording, *seen, out);
   Recording sound = recording;
   add_sensors(recording, use_sound_sensors(sound), out);
   out.push_back(mapping(sound, config));

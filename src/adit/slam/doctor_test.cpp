@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "adit/core/angles.hpp"
+#include "adit/io/mount.hpp"
 #include "support/foreign_mcap.hpp"
 #include "support/synthetic_scan.hpp"
 
@@ -66,6 +69,7 @@ TEST(DoctorInMemory, WhatSlamCannotMapIsAProblem) {
   EXPECT_EQ(mapping.health, Health::spoils);
   EXPECT_TRUE(has(mapping.sentence, "nothing can be mapped")) << mapping.sentence;
   EXPECT_TRUE(has(mapping.sentence, "the first has 20 points")) << mapping.sentence;
+  EXPECT_TRUE(has(mapping.sentence, "by 62 of 80 scans")) << "stretches overlap: " << mapping.sentence;
 }
 
 TEST(DoctorInMemory, OfScansThatComeSeldomTheStampsAreToBeChecked) {
@@ -77,6 +81,56 @@ TEST(DoctorInMemory, OfScansThatComeSeldomTheStampsAreToBeChecked) {
   EXPECT_FALSE(has(measured.remedy, "faster disk")) << measured.remedy;
   recording.assumptions = {"stamps: the number in each name counts as seconds"};
   EXPECT_TRUE(has(of(recording, "scans: missing").remedy, "stamps.txt"));
+}
+
+TEST(DoctorInMemory, ScansThatWereLeftOutAreMissing) {
+  Recording recording = straight_drive();
+  EXPECT_EQ(of(recording, "scans: missing").health, Health::good);
+  recording.num_scans_left_out = 1;
+  EXPECT_EQ(of(recording, "scans: missing").health, Health::noted);
+  recording.num_scans_left_out = 40;  // a third, and no gap between those that are left
+  const Diagnosis missing = of(recording, "scans: missing");
+  EXPECT_EQ(missing.health, Health::spoils);
+  EXPECT_TRUE(has(missing.sentence, "40 missing (33.3 %)")) << missing.sentence;
+  EXPECT_TRUE(has(missing.remedy, "where a clock jumped")) << missing.remedy;
+}
+
+TEST(DoctorInMemory, CloudsInMillimetresAreAProblem) {
+  Recording recording = straight_drive();
+  EXPECT_EQ(of(recording, "scans: range").health, Health::good);
+  recording.read_scan = [read = recording.read_scan](std::size_t i) {
+    return read(i).map([](Scan scan) {
+      for (Eigen::Vector3f& p : scan.cloud.points) p *= 1000.0F;
+      return scan;
+    });
+  };
+  const Diagnosis range = of(recording, "scans: range");
+  EXPECT_EQ(range.health, Health::spoils);
+  EXPECT_TRUE(has(range.remedy, "millimetres")) << range.remedy;
+}
+
+/// The mount that a remedy names.
+Pose mount_in(const std::string& remedy) {
+  const std::size_t begin = remedy.find("--mount ") + 8;
+  return parse_mount(remedy.substr(begin, remedy.find(' ', begin) - begin)).value_or(Pose());
+}
+
+TEST(DoctorInMemory, AMountThatLiesDownIsAProblem) {
+  const Recording good = straight_drive();
+  for (const double pitch : {-45.0, 90.0}) {
+    Recording recording = good;
+    const Eigen::AngleAxisd turn(pitch * kDegree, Vector3::UnitY());
+    recording.T_base_lidar = Pose(Eigen::Quaterniond(turn), good.T_base_lidar.translation());
+    const Result<std::vector<Diagnosis>> all = diagnose(recording);
+    ASSERT_TRUE(all) << all.error().message;
+    const Diagnosis tilt = *std::ranges::find(*all, "mount: tilt and height", &Diagnosis::check);
+    EXPECT_EQ(tilt.health, Health::spoils) << pitch;
+    EXPECT_TRUE(has(tilt.sentence, "by the motion between")) << tilt.sentence;
+    const Pose error = good.T_base_lidar.inverse() * mount_in(tilt.remedy);
+    EXPECT_LT(error.log().tail<3>().norm(), 3.0 * kDegree) << tilt.remedy;
+    const Diagnosis yaw = *std::ranges::find(*all, "mount: turn and lever arm", &Diagnosis::check);
+    EXPECT_EQ(yaw.health, Health::good) << "of the levelled mount: " << yaw.sentence;
+  }
 }
 
 TEST(DoctorInMemory, SensorsThatAreMissingAreNotCalledNeedless) {

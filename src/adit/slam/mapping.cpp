@@ -3,6 +3,7 @@
 #include "adit/slam/mapping.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -55,6 +56,21 @@ void note_quality(const RobotMap& map, std::vector<std::string>& notes) {
       format("{}: {:.0f} % of the LiDAR's returns were confirmed by no other and are left out of the map, as "
              "dust, rain and moving things are",
              map.name, 100.0 * mean));
+}
+
+/// A note where wheels and scans are at odds over most of the way: wheels slip for stretches, and a mount
+/// that is wrong lets them look so all along.
+void note_slips(const RobotMap& map, const Recording& recording, std::vector<std::string>& notes) {
+  constexpr double kMost = 0.5;   // of the way by the wheels
+  constexpr double kLeast = 5.0;  // metres
+  double slipped = 0.0;
+  for (const SlipStretch& slip : map.slips) slipped += std::abs(slip.counted_m);
+  const double way = path_length(recording.wheel);
+  if (slipped < kLeast || slipped < kMost * way) return;
+  notes.push_back(format(
+      "{}: by the scans the wheels slipped for {:.0f} m of the {:.0f} m that they counted, so that the "
+      "mount of the LiDAR or the scale of the wheels is probably wrong; adit doctor measures both",
+      map.name, slipped, way));
 }
 
 /// A note where scans are missing for so long that the velocity before says no more where the robot went, and
@@ -133,6 +149,7 @@ Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig
     if (const auto sentence = left_out[i].sentence())
       mapping.notes.push_back(format("{}: {}", recordings[i].name, *sentence));
     note_quality(*maps[i], mapping.notes);
+    note_slips(*maps[i], recordings[i], mapping.notes);
     mapping.robots.push_back({std::make_shared<const RobotMap>(select_keyframes(*maps[i], config.keyframes)),
                               std::string(to_string(configs[i].odometry.method)), recordings[i].lidar});
   }

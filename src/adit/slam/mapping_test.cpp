@@ -122,6 +122,32 @@ TEST(Mapping, WithAnImuPlaneIcpNeedsNoWheels) {
   EXPECT_TRUE(mapping->notes.empty());
 }
 
+// As those of a mount that is wrong look, or of wheels of another size.
+TEST(Mapping, WheelsThatSlipNearlyAllTheWayAreNoted) {
+  const auto notes_with = [](double counted) {  // metres by the wheels in each step, of which 0.3 are driven
+    Recording recording = drive("ada");
+    recording.scan_stamps.clear();
+    for (std::size_t i = 0; i < 40; ++i) {
+      recording.scan_stamps.push_back(Stamp{static_cast<std::int64_t>(i + 1) * 100'000'000});
+      const double steps = static_cast<double>(i);
+      recording.wheel.push_back(
+          {recording.scan_stamps.back(),
+           Pose::translation_of(steps < 3.0 ? 0.3 * steps : 0.6 + counted * (steps - 2.0), 0, 0)});
+    }
+    recording.read_scan = [stamps = recording.scan_stamps](std::size_t i) -> Result<Scan> {
+      return seen_from(0.3 * static_cast<double>(i), stamps.at(i));
+    };
+    SlamConfig config;
+    config.check_sensors = false;  // which leaves such wheels out, where it sees them
+    return map_robots({recording}, config).value().notes;
+  };
+  EXPECT_TRUE(notes_with(0.3).empty());
+  const std::vector<std::string> notes = notes_with(0.9);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_TRUE(notes[0].starts_with("ada: by the scans the wheels slipped for ")) << notes[0];
+  EXPECT_NE(notes[0].find("the mount of the LiDAR"), std::string::npos) << notes[0];
+}
+
 TEST(Mapping, MoreRobotsThanIdsAreRefused) {
   const std::vector<Recording> many(257, drive("ada"));
   EXPECT_ERROR(map_robots(many, SlamConfig{}), "at most 256 robots");
@@ -225,8 +251,8 @@ std::vector<std::string> names_in(const SlamRun& run) {
 }
 
 std::ptrdiff_t num_with(const std::vector<std::string>& notes, std::string_view text) {
-  return std::ranges::count_if(
-      notes, [&](const std::string& note) { return note.find(text) != std::string::npos; });
+  return std::ranges::count_if(notes,
+                               [&](const std::string& note) { return note.find(text) != std::string::npos; });
 }
 
 TEST(Slam, ARobotThatIsThereTwiceCountsOnce) {

@@ -97,8 +97,8 @@ struct Renamed {
   std::string note;
 };
 
-/// Distinct names for all, those of the sessions first. What the sessions say of robots that were taken out is
-/// said of those that have their maps.
+/// Distinct names for all, those of the sessions first. What the sessions say of robots that were taken out
+/// is said of those that have their maps.
 std::vector<Renamed> name_all(std::vector<SavedFleet>& saved, std::vector<Recording>& recordings,
                               const std::vector<TakenOut>& taken_out) {
   std::vector<Renamed> notes;
@@ -333,8 +333,8 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& more) 
   to.insert(to.end(), more.begin(), more.end());
 }
 
-/// Says first which robots are called otherwise or are there twice. The new name of one that is left out is of
-/// no interest.
+/// Says first which robots are called otherwise or are there twice. The new name of one that is left out is
+/// of no interest.
 void note_robots(const std::vector<Renamed>& renamed, SlamRun& run) {
   std::vector<std::string> notes;
   for (const auto& [name, note] : renamed)

@@ -71,10 +71,11 @@ struct Ruling {
 /// The same from where sessions were left (read_fleet): robots of one session are neither mapped nor searched
 /// again, and meet those of the others and the new ones. With the configuration that a session was made with,
 /// it gives what `slam` of all recordings at once would (docs/decisions/0055). Names that occur twice get a
-/// number, with a note; of robots with the same drive the first one counts, with a note. `rulings` come last and are kept as the reason of the pair. Fails, too, where there
-/// are more than 256 robots, where sessions described places in different ways, on a ruling about a robot
-/// that does not exist, under a policy without merge checks, and where no alignment was found that could be
-/// confirmed, or a loop is in none or not in use.
+/// number, with a note; of robots with the same drive the first one counts, with a note. `rulings` come last
+/// and are kept as the reason of the pair. Fails, too, where there are more than 256 robots, where sessions
+/// described places in different ways, on a ruling about a robot that does not exist, under a policy without
+/// merge checks, and where no alignment was found that could be confirmed, or a loop is in none or not in
+/// use.
 [[nodiscard]] Result<SlamRun> slam_on(std::vector<SavedFleet> saved, std::vector<Recording> recordings,
                                       const SlamConfig& config, const std::vector<Ruling>& rulings = {});
 
