@@ -19,9 +19,9 @@ namespace adit {
 
 /// What comes and goes around one robot.
 struct DrawnVisit {
-  int people = 0;     ///< Who walk with it.
-  double dust = 0.0;  ///< Share of rays that end in dust near the sensor.
-  AirConfig air = {};
+  int people = 0;      ///< Who walk with it.
+  double dust = 0.0;   ///< Share of rays that end in dust near the sensor.
+  AirConfig air = {};  ///< Of its visit.
 };
 /// Of one robot; the number of people is drawn too (Poisson), where `spread` is not 0.
 [[nodiscard]] DrawnVisit drawn_visit(const VisitConfig& usual, const AirConfig& air, double spread,
