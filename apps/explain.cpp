@@ -33,9 +33,9 @@ std::string title_of(const SavedMerge& merge) {
                   merge.check.accepted ? "loops in use" : "no loops in use");
   const std::string robots = format("{} and {}", merge.a, merge.b);
   if (merge.merged) return robots + ": merged" + (merge.accuracy ? ", " + to_string(*merge.accuracy) : "");
-  const std::string_view words = refusal_text(merge.check.refused_kind, merge.check.reason);
-  const std::string kind =
-      merge.check.accepted || words == to_string(RefusalKind::unknown) ? "" : format(" ({})", words);
+  const std::string kind = merge.check.accepted || merge.check.refused_kind == RefusalKind::unknown
+                               ? ""
+                               : format(" ({})", to_string(merge.check.refused_kind));
   return robots + ": not merged" + kind + (merge.share_a_map ? ", but share a map through other robots" : "");
 }
 
@@ -64,13 +64,12 @@ Table hypotheses_of(const SavedMerge& merge) {
       .header = {"alignment", "loops", "evidence", "of walls", "compared m", "places", "agree", "distinctive",
                  "changes", "movable objects", "patches", "equal signs", "found again", "m apart"},
       .rows = {}};
-  for (std::size_t n = 0; n < merge.check.hypotheses.size(); ++n) {
-    const MergeHypothesis& h = merge.check.hypotheses[n];
+  for (const MergeHypothesis& h : merge.check.hypotheses) {
     const bool is_weighed = h.outcome != HypothesisOutcome::refuted;
     const bool has_walls = h.counts.num_wall_patches > 0;
     const bool was_looked_for = h.counts.num_looked_for > 0;
     table.rows.push_back(
-        {std::string(outcome_text(merge.check, n)), format("{}", h.loops.size()),
+        {std::string(to_string(h.outcome)), format("{}", h.loops.size()),
          is_weighed ? format("{:.1f}", h.evidence) : "-", is_weighed ? format("{:.1f}", h.walls) : "-",
          format("{:.0f}", h.counts.compared_m), format("{}", h.num_checked), format("{}", h.num_passed),
          format("{}", h.counts.num_distinctive), format("{}", h.counts.num_changes),
@@ -90,9 +89,8 @@ void print_text(const SavedMerge& merge) {
 
 nlohmann::ordered_json json_of(const SavedMerge& merge) {
   nlohmann::ordered_json hypotheses = nlohmann::ordered_json::array();
-  for (std::size_t n = 0; n < merge.check.hypotheses.size(); ++n) {
-    const MergeHypothesis& h = merge.check.hypotheses[n];
-    hypotheses.push_back({{"outcome", outcome_text(merge.check, n)},
+  for (const MergeHypothesis& h : merge.check.hypotheses)
+    hypotheses.push_back({{"outcome", to_string(h.outcome)},
                           {"loops", h.loops.size()},
                           {"evidence", h.evidence},
                           {"evidence_of_walls", h.walls},
@@ -108,13 +106,12 @@ nlohmann::ordered_json json_of(const SavedMerge& merge) {
                           {"found_again", h.counts.num_found_again},
                           {"not_found_again", h.counts.num_not_found},
                           {"from_best_m", h.from_best_m}});
-  }
   nlohmann::ordered_json out = {
       {"robots", {merge.a, merge.b}},     {"merged", merge.merged}, {"share_a_map", merge.share_a_map},
       {"accepted", merge.check.accepted}, {"why", why(merge)},      {"evidence_needed", merge.check.needed},
       {"hypotheses", hypotheses}};
   if (!merge.merged && !merge.check.accepted && merge.a != merge.b)
-    out["refused_kind"] = refusal_text(merge.check.refused_kind, merge.check.reason);
+    out["refused_kind"] = to_string(merge.check.refused_kind);
   if (const auto& advice = merge.check.advice)
     out["where_to_drive"] = {{"robot", merge.b},
                              {"along", merge.a},

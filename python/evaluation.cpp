@@ -69,8 +69,7 @@ void add_evaluation(py::module_& m) {
       },
       py::arg("estimate"), py::arg("truth"), py::arg("segment") = 10.0, py::arg("tolerance") = 0.1,
       "Relative pose error over segments of the true path, metres. Each ends at the pose nearest to its "
-      "length, "
-      "and is left out where that is off by more than this share, as evo_rpe --all_pairs "
+      "length, and is left out where that is off by more than this share, as evo_rpe --all_pairs "
       "--pairs_from_reference has it.");
 }
 

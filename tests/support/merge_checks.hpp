@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "adit/core/rng.hpp"
 #include "adit/fleet/merge/merge_checker.hpp"
 #include "support/opposite_drives.hpp"
 
@@ -60,5 +61,21 @@ inline constexpr ComparedPlace kAgrees{0.5, true};
 inline constexpr ComparedPlace kDiffers{1.5, true};
 inline constexpr ComparedPlace kSilent{0.5, false};
 inline constexpr ComparedPlace kHasANiche{5.0, true};
+
+/// A place that agrees, whose 100 patches of wall are off by `relief_m` (standard deviation) and all of them
+/// by `range_error_m`, which an error of range may be; each seen twice with noise of 1 cm. Metres.
+inline ComparedPlace agreeing_with_relief(std::uint32_t theirs, double relief_m, double range_error_m = 0.0) {
+  ComparedPlace place = kAgrees;
+  Rng rng(theirs);
+  for (int i = 0; i < 100; ++i) {
+    const double relief = relief_m * rng.normal();
+    for (int scan = 0; scan < 2; ++scan) {
+      place.offsets.push_back(
+          {{static_cast<int>(theirs), i, 0, 0}, range_error_m + relief + 0.01 * rng.normal()});
+      place.offsets.back().by_sensors[0] = 1.0;
+    }
+  }
+  return place;
+}
 
 }  // namespace adit::test

@@ -99,7 +99,8 @@ struct Recording {
   std::vector<std::string> assumptions;  ///< By the reader, a sentence each with its remedy.
   std::vector<std::string> warnings;     ///< What could not be read, a sentence each.
   /// Scans that were recorded and cannot be used, as their stamps do not ascend with the others' or cannot be
-  /// read, or nobody knows where the LiDAR was; `warnings` says why. One that was sent twice is none.
+  /// read, or nobody knows where the LiDAR was; `warnings` says why. A scan that was sent twice does not
+  /// count.
   std::size_t num_scans_left_out = 0;
   std::vector<Stamp> scan_stamps;                      ///< Strictly ascending.
   std::function<Result<Scan>(std::size_t)> read_scan;  ///< Thread-safe; scan i has stamp scan_stamps[i].

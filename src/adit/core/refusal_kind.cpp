@@ -24,6 +24,8 @@ std::string_view to_string(RefusalKind kind) {
       return "sensor";
     case RefusalKind::taken_back:
       return "taken back";
+    case RefusalKind::vetoed:
+      return "vetoed";
     case RefusalKind::unknown:
       break;
   }

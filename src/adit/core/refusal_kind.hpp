@@ -19,12 +19,14 @@ enum class RefusalKind : std::uint8_t {
   sensor,            ///< All places agree; walls lie apart, mostly by what errors of range would make.
   taken_back,        ///< Merges with further robots contradict it.
   unknown,           ///< No decision gave one.
+  vetoed,            ///< A person keeps the maps apart, whatever the test says.
 };
 /// All of them, in the order above.
-inline constexpr std::array kRefusalKinds{
-    RefusalKind::no_loop,      RefusalKind::too_little,    RefusalKind::rival,
-    RefusalKind::other_tunnel, RefusalKind::changed_place, RefusalKind::changed_or_other,
-    RefusalKind::sensor,       RefusalKind::taken_back,    RefusalKind::unknown};
+inline constexpr std::array kRefusalKinds{RefusalKind::no_loop,       RefusalKind::too_little,
+                                          RefusalKind::rival,         RefusalKind::other_tunnel,
+                                          RefusalKind::changed_place, RefusalKind::changed_or_other,
+                                          RefusalKind::sensor,        RefusalKind::taken_back,
+                                          RefusalKind::unknown,       RefusalKind::vetoed};
 /// In words, for tables and files.
 [[nodiscard]] std::string_view to_string(RefusalKind kind);
 /// Of such words; unknown for any other.

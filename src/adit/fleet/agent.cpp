@@ -270,7 +270,6 @@ Agent::Replies Agent::register_clouds(RobotId peer, const Clouds& clouds) {
   session.finish_registration(arrived);
   Replies replies = ledger_.loops_since(map_->id, num_before);
   const bool is_done = session.state() != PeerState::awaiting_clouds;
-  if (is_done) to_check_.insert(peer);
   append(replies, is_adaptive() && is_done ? begin_check(peer) : request_of(session));
   return replies;
 }
@@ -295,6 +294,7 @@ Agent::Replies Agent::check_if_due(RobotId peer) {
 }
 
 Agent::Replies Agent::begin_check(RobotId peer) {
+  to_check_.insert(peer);
   // Of keyframes that the peer has no longer it could not send what it saw there.
   RobotGraph theirs = known().robots.at(peer);
   while (!theirs.nodes.empty() &&

@@ -176,7 +176,7 @@ class Agent {
   FleetEstimate estimate_;
   std::map<RobotId, PeerSession> sessions_;
   std::map<RobotId, MergeChecker> checks_;  ///< Under way.
-  std::set<RobotId> to_check_;              ///< Peers with loops that no verdict knows yet.
+  std::set<RobotId> to_check_;              ///< Peers whose check has begun and has no verdict yet.
   std::shared_ptr<FeatureStore> features_;
   LoopRegistration registration_;
   std::shared_ptr<CandidateSearch> search_;

@@ -107,8 +107,8 @@ TEST(InterruptedAgent, AComparisonOfKeyframesThatThePeerHasNoLongerIsPlannedAnew
   for (const auto& [own, theirs] : known.checks.at({{0}, {1}}).loops) EXPECT_LT(theirs, truth.size());
 }
 
-// The peer drives on, and is repaired in the middle of the second check: the verdict of the first is none on
-// the loops that were found since.
+// The peer drives on, and is repaired in the middle of the second check. The verdict of the first check does
+// not know the loops that were found since, so that the second is due.
 TEST(InterruptedAgent, ACheckOfAMapThatHasGrownIsMadeUpForToo) {
   TwoRobots fleet(3, adaptive());
   const auto peer_after = [&](std::size_t num_poses) {

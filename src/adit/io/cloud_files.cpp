@@ -81,8 +81,8 @@ std::optional<std::string> stated_unit_warning(TimeUnit unit, const PointCloud& 
   if (lasts >= kShortest && lasts <= kLongest) return std::nullopt;
   return format(
       "point times: in {}, as stated by --point-times, the first sweep lasts {:.3g} s, where LiDARs take "
-      "0.05 to "
-      "0.2 s; state the unit in which the driver writes them (s, ms, us or ns), or leave the option out",
+      "0.05 to 0.2 s; state the unit in which the driver writes them (s, ms, us or ns), or leave the option "
+      "out",
       to_string(unit), 1e-9 * static_cast<double>(lasts));
 }
 

@@ -274,7 +274,7 @@ TEST(Pcd, ErrorsNameThePlace) {
   EXPECT_ERROR(read_pcd("FIELDS x y z\nSIZE 4 4 3\nTYPE F F F\n"), "header line 3: TYPE: no type F3");
   EXPECT_ERROR(read_pcd("solid cube\n"), "header line 1: solid");
   EXPECT_ERROR(read_pcd(pcd_header("x y", "4 4", "F F", 1, "ascii") + "1 2\n"),
-               "no field 'z'; there are x, y, and points need x, y and z");
+               "no field 'z'; the fields are: x, y; points need x, y and z");
   EXPECT_ERROR(read_pcd(pcd_header("x y z", "4 4 4", "F F F", 2, "ascii") + "1 2 3\n1 2\n"),
                "line 10: 2 values, 3 needed");
   EXPECT_ERROR(read_pcd(pcd_header("x y z", "4 4 4", "F F F", 2, "ascii") + "1 2 3\n"), "1 of 2 points");

@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t kLargest = std::size_t{1} << 30U;
 constexpr std::size_t kUsualOfZstd = 64;  // bytes that one stands for: of chunks, and of maps of long drives
-constexpr std::size_t kFirst = std::size_t{1}
-                               << 20U;  // bytes of memory, before data show that they need more
+/// Bytes of memory that are taken before data show that they need more.
+constexpr std::size_t kFirst = std::size_t{1} << 20U;
 // Bytes that one compressed byte can stand for: a zstd block of 128 KiB that repeats one byte takes four, LZ4
 // counts runs in 255s, and a block of 900 kB of bzip2, in which five bytes stand for 259, takes some 32.
 constexpr std::size_t kMostOfZstd = 32768;

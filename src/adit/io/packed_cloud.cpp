@@ -153,19 +153,19 @@ std::optional<TimeUnit> unit_of_times(const PackedCloud& packed, const std::vect
   return {};
 }
 
-/// "are x, y, ring", in one line whatever the file says; "is none" where there are none.
+/// "x, y, ring", in one line whatever the file says; "none" if there are no names.
 std::string names_text(std::vector<std::string> names) {
   constexpr std::size_t kMost = 20;
-  if (names.empty()) return "is none";
+  if (names.empty()) return "none";
   const bool are_more = names.size() > kMost;
   if (are_more) names.resize(kMost);
   for (std::string& name : names) name = printable(name);
-  return format("are {}{}", fmt::join(names, ", "), are_more ? ", ..." : "");
+  return format("{}{}", fmt::join(names, ", "), are_more ? ", ..." : "");
 }
 
 Result<> check_field(const PackedCloud& cloud, const std::optional<PackedField>& field, const char* name) {
   if (!field)
-    return fail(format("no field '{}'; there {}, and points need x, y and z, in metres", name,
+    return fail(format("no field '{}'; the fields are: {}; points need x, y and z, in metres", name,
                        names_text(cloud.names)));
   const std::size_t size = size_of(field->type);
   const std::size_t available = cloud.bytes.size();

@@ -37,13 +37,12 @@ toml::table advice_table(const MergeAdvice& advice) {
 /// A merge that was tested, joined or not, with the hypotheses about it, the best one first.
 toml::table merge_table(const FleetGraph& fleet, const MergeCheck& check) {
   toml::array hypotheses;
-  for (std::size_t n = 0; n < check.hypotheses.size(); ++n) {
-    const MergeHypothesis& h = check.hypotheses[n];
+  for (const MergeHypothesis& h : check.hypotheses) {
     toml::array loops;
     for (const auto& [a, b] : h.loops)
       loops.push_back(toml::array{static_cast<std::int64_t>(a), static_cast<std::int64_t>(b)});
     hypotheses.push_back(
-        toml::table{{"outcome", std::string(outcome_text(check, n))},
+        toml::table{{"outcome", std::string(to_string(h.outcome))},
                     {"evidence", rounded(h.evidence)},
                     {"places_compared", static_cast<std::int64_t>(h.num_checked)},
                     {"places_differing", static_cast<std::int64_t>(h.num_differing())},
@@ -65,8 +64,7 @@ toml::table merge_table(const FleetGraph& fleet, const MergeCheck& check) {
                   {"evidence_needed", rounded(check.needed)},
                   {"reason", check.reason},
                   {"hypotheses", hypotheses}};
-  if (!check.accepted)
-    out.insert("refused_kind", std::string(refusal_text(check.refused_kind, check.reason)));
+  if (!check.accepted) out.insert("refused_kind", std::string(to_string(check.refused_kind)));
   if (check.advice) out.insert("where_to_drive", advice_table(*check.advice));
   return out;
 }
@@ -214,9 +212,9 @@ Provenance provenance_in(const toml::table& table) {
 
 HypothesisOutcome outcome_in(const std::string& words) {
   using enum HypothesisOutcome;
-  for (const HypothesisOutcome outcome : {accepted, unsure, rival, behind})
+  for (const HypothesisOutcome outcome : {accepted, unsure, rival, behind, vetoed})
     if (words == to_string(outcome)) return outcome;
-  return words == kVetoed ? unsure : refuted;
+  return refuted;
 }
 
 MergeHypothesis hypothesis_in(const toml::table& table) {
@@ -341,16 +339,6 @@ std::vector<SavedMerge> merges_of_pairs(const std::vector<std::string>& robots, 
 }
 
 }  // namespace
-
-bool is_vetoed(const MergeCheck& check) { return !check.accepted && check.reason.starts_with(kPerson); }
-
-std::string_view refusal_text(RefusalKind kind, std::string_view reason) {
-  return kind == RefusalKind::unknown && reason.starts_with(kPerson) ? kVetoed : to_string(kind);
-}
-
-std::string_view outcome_text(const MergeCheck& check, std::size_t number) {
-  return number == 0 && is_vetoed(check) ? kVetoed : to_string(check.hypotheses.at(number).outcome);
-}
 
 std::string session_toml(const Session& session) {
   toml::table table;

@@ -3,7 +3,6 @@
 /// session.toml: where a session came from and what was decided in it.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,18 +11,6 @@
 #include "adit/io/session_dir.hpp"
 
 namespace adit {
-
-/// What files and people are told of a merge that a person keeps apart, in the place of the kind of refusal
-/// and of the outcome of the best hypothesis: these stay as the test left them, or unsure.
-inline constexpr std::string_view kVetoed = "vetoed";
-/// Reasons that a person gave begin so (slam.hpp, Ruling).
-inline constexpr std::string_view kPerson = "a person ";
-/// Whether a person, and not the test, is why the check joins nothing.
-[[nodiscard]] bool is_vetoed(const MergeCheck& check);
-/// kVetoed, or the kind of the refusal in words. `reason`: of the refusal.
-[[nodiscard]] std::string_view refusal_text(RefusalKind kind, std::string_view reason);
-/// kVetoed, or the outcome of hypothesis `number` of the check in words.
-[[nodiscard]] std::string_view outcome_text(const MergeCheck& check, std::size_t number);
 
 /// The text of the file. The provenance's configuration is its last table.
 [[nodiscard]] std::string session_toml(const Session& session);

@@ -306,9 +306,4 @@ Result<MountByMotion> mount_by_motion(const std::vector<MotionStep>& steps) {
   return mount_from(on_floor);
 }
 
-Result<MountByMotion> mount_by_motion(const Recording& recording) {
-  return motion_steps(recording).and_then(
-      [](const std::vector<MotionStep>& steps) { return mount_by_motion(steps); });
-}
-
 }  // namespace adit

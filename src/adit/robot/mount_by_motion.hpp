@@ -62,7 +62,5 @@ struct MountByMotion {
 /// where the robot hardly moves, or the scans leave the motion open. A vehicle whose middle of turning is not
 /// the base's origin shows as `ahead_m`, too. The mount has to be level: see tilt_by_motion.
 [[nodiscard]] Result<MountByMotion> mount_by_motion(const std::vector<MotionStep>& steps);
-/// The same of motion_steps, which fails as well.
-[[nodiscard]] Result<MountByMotion> mount_by_motion(const Recording& recording);
 
 }  // namespace adit

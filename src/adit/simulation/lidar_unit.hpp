@@ -21,7 +21,7 @@ namespace adit {
 /// part to be one number per laser and to drift while the sensor warms up (Glennie, Kusari and Facchin,
 /// "Calibration and stability analysis of the VLP-16 laser scanner", 2016; Glennie and Lichti, "Static
 /// calibration and analysis of the Velodyne HDL-64E S2", 2010). Mounts and clocks: what a careful workshop
-/// reaches without calibration.
+/// reaches without calibration; that one mount in ten is careless is chosen.
 struct LidarErrorConfig {
   double divergence_factor = 0.0;  ///< Width of the beams, of the stated one; no spread. 0: rays.
   double range_bias = 0.0;         ///< Added to every range.

@@ -6,7 +6,6 @@
 
 #include "adit/fleet/joint/frames.hpp"
 #include "adit/fleet/joint/merge_accuracy.hpp"
-#include "adit/io/session_toml.hpp"
 
 namespace adit {
 namespace {
@@ -22,10 +21,10 @@ std::vector<Vector3> odometry_of(const RobotGraph& robot, const Pose& T_frame_od
   return path;
 }
 
-MergePicture::Hypothesis picture_of(const MergeCheck& check, std::size_t number, const FleetGraph& fleet) {
-  const MergeHypothesis& h = check.hypotheses[number];
+MergePicture::Hypothesis picture_of(const MergeHypothesis& h, const MergeCheck& check,
+                                    const FleetGraph& fleet) {
   MergePicture::Hypothesis out;
-  out.outcome = outcome_text(check, number);
+  out.outcome = to_string(h.outcome);
   out.evidence = h.evidence;
   out.places_compared = static_cast<int>(h.num_checked);
   out.places_differing = static_cast<int>(h.num_differing());
@@ -98,8 +97,8 @@ std::vector<MergePicture> merge_pictures(const FleetGraph& fleet, const FleetSol
     if (pair->accuracy) picture.verdict += "; " + to_string(*pair->accuracy);
     picture.evidence_needed = check.needed;
     picture.path = odometry_of(fleet.robots.at(check.a), Pose());
-    for (std::size_t n = 0; n < check.hypotheses.size(); ++n)
-      picture.hypotheses.push_back(picture_of(check, n, fleet));
+    for (const MergeHypothesis& h : check.hypotheses)
+      picture.hypotheses.push_back(picture_of(h, check, fleet));
     pictures.push_back(std::move(picture));
   }
   return pictures;

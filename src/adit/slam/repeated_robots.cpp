@@ -50,8 +50,7 @@ std::vector<TakenOut> take_out_repeated(std::vector<SavedFleet>& saved) {
       }
       const std::string sentence = format(
           "{} and {} have the same map, to the bit: it is one recording, which counts once; what was found "
-          "or "
-          "ruled about the former is left out, and its pairs are tested anew",
+          "or ruled about the former is left out, and its pairs are tested anew",
           name_in(fleet, map->name), same->second);
       const auto mapping = std::ranges::find_if(
           fleet.provenance.robots, [&](const RobotProvenance& robot) { return robot.is_of_map(map->name); });

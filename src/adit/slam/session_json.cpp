@@ -10,7 +10,6 @@
 #include "adit/core/version.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/loops_csv.hpp"
-#include "adit/io/session_toml.hpp"
 #include "adit/report/palette.hpp"
 #include "adit/slam/session_evaluation.hpp"
 #include "adit/slam/session_mcap.hpp"
@@ -58,15 +57,14 @@ Json accuracy_json(const std::optional<MergeAccuracy>& accuracy) {
 Json pairs_json(const Session& session) {
   Json pairs = Json::array();
   for (const PairOutcome& pair : session.solution.pairs)
-    pairs.push_back(
-        {{"robots", {session.name_of(pair.a), session.name_of(pair.b)}},
-         {"loops", pair.num_loops},
-         {"clique", pair.num_selected},
-         {"second_clique", pair.second_clique},
-         {"merged", pair.merged},
-         {"sigma", accuracy_json(pair.accuracy)},
-         {"refused_kind", pair.merged ? "" : refusal_text(pair.refused_kind, pair.refused_reason)},
-         {"refused_reason", pair.refused_reason}});
+    pairs.push_back({{"robots", {session.name_of(pair.a), session.name_of(pair.b)}},
+                     {"loops", pair.num_loops},
+                     {"clique", pair.num_selected},
+                     {"second_clique", pair.second_clique},
+                     {"merged", pair.merged},
+                     {"sigma", accuracy_json(pair.accuracy)},
+                     {"refused_kind", pair.merged ? "" : to_string(pair.refused_kind)},
+                     {"refused_reason", pair.refused_reason}});
   return pairs;
 }
 

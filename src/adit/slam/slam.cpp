@@ -180,7 +180,6 @@ Result<RobotId> robot_called(const FleetGraph& fleet, const std::string& name) {
 }
 
 constexpr std::string_view kQuoting = "; the test had said: ";
-// All that a person says begins with kPerson (io/session_toml.hpp).
 constexpr std::string_view kLeftOut = "a person left out the loop of ";
 
 /// What the test had said, to be quoted; a ruling that went before is taken back, not quoted.
@@ -223,8 +222,8 @@ Result<MergeCheck> without_loop(MergeCheck check, const Ruling& ruling,
                        name_of_loop(ruling)));
   check.accepted = !check.loops.empty();
   if (!check.accepted) {
-    check.refused_kind = RefusalKind::unknown;
-    if (!check.hypotheses.empty()) check.hypotheses.front().outcome = HypothesisOutcome::unsure;
+    check.refused_kind = RefusalKind::vetoed;
+    if (!check.hypotheses.empty()) check.hypotheses.front().outcome = HypothesisOutcome::vetoed;
   }
   check.reason = format("{}{}{}; {}", kLeftOut, name_of_loop(ruling), check.accepted ? "" : ", the last one",
                         check.reason);
@@ -233,9 +232,9 @@ Result<MergeCheck> without_loop(MergeCheck check, const Ruling& ruling,
 
 MergeCheck kept_apart(MergeCheck check) {
   check.accepted = false;
-  check.refused_kind = RefusalKind::unknown;
+  check.refused_kind = RefusalKind::vetoed;
   check.reason = "a person keeps these maps apart" + quote_of_test(check.reason);
-  if (!check.hypotheses.empty()) check.hypotheses.front().outcome = HypothesisOutcome::unsure;
+  if (!check.hypotheses.empty()) check.hypotheses.front().outcome = HypothesisOutcome::vetoed;
   return check;
 }
 
@@ -255,8 +254,9 @@ Result<MergeCheck> confirmed(MergeCheck check, const Ruling& ruling, const Ruled
   if (hypothesis == check.hypotheses.end() || hypothesis->loops.empty())
     return fail(format("{} and {}: no alignment was found that could be confirmed", ruling.a, ruling.b));
   // What a check says of loops and evidence is of the first one.
-  if (check.hypotheses.front().outcome == HypothesisOutcome::accepted)
-    check.hypotheses.front().outcome = HypothesisOutcome::behind;
+  HypothesisOutcome& of_first = check.hypotheses.front().outcome;
+  if (of_first == HypothesisOutcome::accepted) of_first = HypothesisOutcome::behind;
+  if (of_first == HypothesisOutcome::vetoed) of_first = HypothesisOutcome::unsure;
   std::rotate(check.hypotheses.begin(), hypothesis, hypothesis + 1);
   MergeHypothesis& best = check.hypotheses.front();
   best.outcome = HypothesisOutcome::accepted;

@@ -47,7 +47,7 @@ std::string variant_of(const MergeEffect& effect, double amplitude) {
   return amplitude == 0.0 ? "without effects" : format("{} {:g}", effect.name, amplitude);
 }
 
-/// The run that `run_world` makes of that world under that study; null where there is none yet.
+/// The run that `run_world` makes of that world under that study; null if it has not been made yet.
 const MergeRun* find_run(const std::vector<MergeRun>& runs, const MergeStudy& study,
                          const ListedWorld& world) {
   const ScenarioConfig scenario = scenario_of(world, study.config.simulation);

@@ -67,7 +67,7 @@ void get(Reader& in, MergeHypothesis& hypothesis) {
   in.vector(hypothesis.places);
   hypothesis.walls = in.scalar<double>();
   get(in, hypothesis.counts);
-  if (hypothesis.outcome > HypothesisOutcome::behind || !std::isfinite(hypothesis.evidence) ||
+  if (hypothesis.outcome > HypothesisOutcome::vetoed || !std::isfinite(hypothesis.evidence) ||
       !std::isfinite(hypothesis.walls) || !std::isfinite(hypothesis.from_best_m) ||
       hypothesis.num_passed > hypothesis.num_checked)
     in.refuse();
@@ -113,7 +113,7 @@ void get(Reader& in, MergeCheck& check) {
   get(in, check.reason);
   in.vector(check.hypotheses, kHypothesesPerCheck);
   check.refused_kind = in.scalar<RefusalKind>();
-  if (check.refused_kind > RefusalKind::unknown) in.refuse();
+  if (check.refused_kind > RefusalKind::vetoed) in.refuse();
   if (in.scalar<std::uint8_t>() != 0) get(in, check.advice.emplace());
   if (!std::isfinite(check.evidence) || !std::isfinite(check.needed) || check.num_passed > check.num_checked)
     in.refuse();

@@ -52,6 +52,8 @@ std::string finding(const MergeCheck& check, std::size_t index) {
                  : std::string("hypothesis 1 has a rival");
     case HypothesisOutcome::behind:
       return format("hypothesis {} is far less likely than hypothesis 1", number);
+    case HypothesisOutcome::vetoed:
+      return format("a person keeps these maps apart, whatever the evidence of hypothesis {}", number);
   }
   return format("hypothesis {}", number);
 }

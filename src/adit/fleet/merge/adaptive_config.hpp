@@ -59,7 +59,7 @@ struct AdaptiveConfig {
   /// What is compared: one scan alone shows too little of what another sensor sees (decision 0051).
   SubmapConfig view{.reach_m = 3.0, .step_m = 1.0, .radius_m = 20.0};
   double one_place_m = 10.0;
-  /// What two LiDARs' errors leave of a loop, beside what its registration states (decision 0086).
+  /// Noise of every loop beside what its registration states: errors of two LiDARs (decision 0086).
   LoopNoise loop_noise{.translation = 0.02, .rotation_deg = 0.1};
   MergeCheckConfig merge_check;
 };

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include "adit/core/rng.hpp"
 #include "adit/fleet/merge/merge_checker.hpp"
 #include "adit/fleet/merge/merge_evidence.hpp"
 #include "support/merge_checks.hpp"
@@ -132,17 +131,7 @@ Told told_of_walls(double range_error_m) {
   return told(
       kTrueLoops, 0.5,
       [=](const PlannedComparison& asked) {
-        ComparedPlace place = kAgrees;
-        Rng rng(asked.theirs);
-        for (int i = 0; i < 100; ++i) {
-          const double relief = 0.01 * rng.normal();
-          for (int scan = 0; scan < 2; ++scan) {
-            const double offset = range_error_m + relief + 0.01 * rng.normal();
-            place.offsets.push_back({{static_cast<int>(asked.theirs), i, 0, 0}, offset});
-            place.offsets.back().by_sensors[0] = 1.0;
-          }
-        }
-        return place;
+        return test::agreeing_with_relief(asked.theirs, 0.01, range_error_m);
       },
       MergeCheckConfig());
 }

@@ -14,6 +14,8 @@ std::string_view to_string(HypothesisOutcome outcome) {
       return "unsure";
     case HypothesisOutcome::rival:
       return "rival";
+    case HypothesisOutcome::vetoed:
+      return "vetoed";
     case HypothesisOutcome::behind:
       return "behind";
   }

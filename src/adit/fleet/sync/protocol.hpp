@@ -131,8 +131,9 @@ enum class HypothesisOutcome : std::uint8_t {
   unsure,    ///< The best one, without a rival, but with too little evidence or too few loops.
   rival,     ///< Its evidence and that of another one differ by less than log(1 / rival_rate).
   behind,    ///< Its evidence is less than that of the best one by at least log(1 / rival_rate).
+  vetoed,    ///< The best one of two maps that a person keeps apart, whatever its evidence.
 };
-/// accepted, refuted, unsure, rival, behind.
+/// accepted, refuted, unsure, rival, behind, vetoed.
 [[nodiscard]] std::string_view to_string(HypothesisOutcome outcome);
 
 /// What comparing two scans that a hypothesis puts side by side has shown.
