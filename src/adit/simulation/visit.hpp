@@ -35,10 +35,10 @@ struct VisitConfig {
 [[nodiscard]] Fields fields_of(VisitConfig& config);
 
 /// A working mine by day, on average: a vehicle every 250 m and a pallet every 125 m, half of which stay; one
-/// person; one opening in five closed, every other way on blocked; two stretches of wall per km that were worked
-/// on, by 5 to 30 cm (the classes of support of the Q-system begin at 4 cm of sprayed concrete and end above 15: E.
-/// Grimstad and N. Barton, "Updating of the Q-system for NMT", 1993); pipes along half of the way. Counts are
-/// chosen, not measured.
+/// person; one opening in five closed, every other way on blocked; two stretches of wall per km that were
+/// worked on, by 5 to 30 cm (the classes of support of the Q-system begin at 4 cm of sprayed concrete and end
+/// above 15: E. Grimstad and N. Barton, "Updating of the Q-system for NMT", 1993); pipes along half of the
+/// way. Counts are chosen, not measured.
 [[nodiscard]] VisitConfig field_visits();
 
 /// What stands in the world while each of the robots drives along its `truths` (T_world_base), in their
