@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "listed_worlds.hpp"
 
+#include "adit/study/merge_worlds.hpp"
+
 namespace adit::app {
 
 void add_listed_worlds_options(const Command& command, ListedWorldsOptions& options) {
@@ -9,9 +11,10 @@ void add_listed_worlds_options(const Command& command, ListedWorldsOptions& opti
   WorldChoice& choice = options.choice;
   const bool has_groups = !choice.groups.empty();
   if (has_groups)
-    command.add_option("--groups", choice.groups, "Worlds of these groups: tuning, check, field, limit")
+    command
+        .add_option("--groups", choice.groups, "Worlds of these groups: tuning, check, field, meshes, limit")
         .separated_by_commas()
-        .one_of({"tuning", "check", "field", "limit"})
+        .one_of(world_groups())
         .default_shown();
   const Option only = command
                           .add_option("--only", choice.only,

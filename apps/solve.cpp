@@ -24,6 +24,7 @@ namespace {
 
 struct SolveOptions {
   std::vector<std::string> graphs;
+  bool join = false;
   bool gnc = false;
   bool chordal = false;
   bool no_certificate = false;
@@ -54,10 +55,31 @@ GraphFile graph_of(JrlFile file) {
   return out;
 }
 
+bool is_log(const std::filesystem::path& path) {
+  return path.extension() == ".jrl" || path.extension() == ".cbor" || path.extension() == ".jrr";
+}
+
 Result<GraphFile> read_graph(const std::filesystem::path& path) {
-  const bool is_log = path.extension() == ".jrl" || path.extension() == ".cbor" || path.extension() == ".jrr";
-  if (is_log) return read_jrl(path).map([](JrlFile file) { return graph_of(std::move(file)); });
+  if (is_log(path)) return read_jrl(path).map([](JrlFile file) { return graph_of(std::move(file)); });
   return read_g2o(path).map([](G2oFile file) { return graph_of(std::move(file)); });
+}
+
+// One graph of several files.
+Result<GraphFile> read_joined(const std::vector<std::string>& paths) {
+  std::vector<G2oFile> files;
+  for (const std::string& path : paths) {
+    if (is_log(path)) usage_error(format("--join takes g2o files; {} holds all its robots itself", path));
+    Result<G2oFile> file = read_g2o(path);
+    if (!file) return tl::unexpected(file.error());
+    files.push_back(std::move(*file));
+  }
+  return merge_g2o(files).map([&](G2oFile merged) {
+    const std::vector<std::size_t> file_of = merged.edge_files;
+    GraphFile out = graph_of(std::move(merged));
+    for (std::size_t e = 0; e < file_of.size(); ++e)
+      out.edge_places[e] = format("{}: {}", paths[file_of[e]], out.edge_places[e]);
+    return out;
+  });
 }
 
 template <class P>
@@ -227,15 +249,19 @@ void print_line(const nlohmann::json& r, bool gnc) {
 }
 
 Result<> run(const SolveOptions& options, const Common& common) {
-  if (!options.out.empty() && options.graphs.size() != 1)
-    usage_error("--out takes the result of one graph only");
+  if (!options.out.empty() && options.graphs.size() != 1 && !options.join)
+    usage_error("--out takes the result of one graph only; files that are parts of one need --join");
   const Result<RunConfig> run_config = configured(common);
   if (!run_config) return tl::unexpected(run_config.error());
   GncConfig config = run_config->slam.back_end.gnc;
   if (options.chordal) config.optimizer.initialization = SolveStart::chordal;
   nlohmann::json all = nlohmann::json::array();
-  for (const std::string& name : options.graphs) {
-    Result<GraphFile> file = read_graph(name);
+  const bool joined = options.join && options.graphs.size() > 1;
+  for (std::size_t g = 0; g < (joined ? 1 : options.graphs.size()); ++g) {
+    const std::string name = joined
+                                 ? format("{} and {} more", options.graphs.front(), options.graphs.size() - 1)
+                                 : options.graphs[g];
+    Result<GraphFile> file = joined ? read_joined(options.graphs) : read_graph(name);
     if (!file) return tl::unexpected(file.error());
     const auto result =
         std::visit([&](auto& graph) { return solve(name, options, config, graph, *file); }, file->graph);
@@ -260,6 +286,10 @@ void add_solve(Program& program) {
   command
       .add_option("GRAPH", options->graphs, "g2o files, or JSON Robot Logs (.jrl, .cbor) of several robots")
       .required();
+  command.add_flag(
+      "--join", options->join,
+      "The g2o files are parts of one graph, as one for each robot: nodes of equal keys are one, and "
+      "edges that two files repeat count once");
   command.add_flag("--gnc", options->gnc, "Find and reject false loops (graduated non-convexity)");
   command.add_flag("--chordal", options->chordal, "Start from chordal relaxation whatever the file's poses");
   command.add_flag("--no-certificate", options->no_certificate,

@@ -11,7 +11,7 @@ seconds=$1
 [[ $seconds =~ ^[1-9][0-9]*$ ]] || { echo "fuzz: SECONDS is a whole number from 1 on, not '$seconds'" >&2; exit 2; }
 shift
 kinds=("$@")
-[ ${#kinds[@]} -gt 0 ] || kinds=(mcap bag db3 pcd ply bin tum csv g2o jrl cbor yaml adit loops control config session)
+[ ${#kinds[@]} -gt 0 ] || kinds=(mcap bag db3 pcd ply bin tum csv g2o jrl cbor yaml adit loops control config session metadata georeference beside wire)
 tools/build.sh fuzz adit_fuzz_readers
 export TMPDIR=${TMPDIR:-/dev/shm} # each input is a file
 faults=build/fuzz/faults

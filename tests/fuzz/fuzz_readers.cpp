@@ -5,6 +5,7 @@
 // Readers take any bytes without a fault of memory, without undefined behaviour and without a contract
 // violation, and take no more memory than the bytes warrant; what they make of them is for other tests.
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -13,7 +14,10 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "adit/io/compression.hpp"
 #include "adit/io/config_toml.hpp"
@@ -21,10 +25,12 @@
 #include "adit/io/file_info.hpp"
 #include "adit/io/georeference.hpp"
 #include "adit/io/loops_csv.hpp"
+#include "adit/io/ply.hpp"
 #include "adit/io/recording_files.hpp"
 #include "adit/io/robot_map_file.hpp"
 #include "adit/io/session_toml.hpp"
 #include "adit/io/trajectory_files.hpp"
+#include "adit/transport/wire.hpp"
 
 namespace {
 
@@ -54,6 +60,7 @@ class Folder {
     std::error_code ignored;
     fs::remove_all(path_, ignored);
   }
+  [[nodiscard]] const fs::path& path() const { return path_; }
   [[nodiscard]] fs::path file() const { return path_ / ("input." + extension()); }
 
  private:
@@ -68,6 +75,39 @@ void read_as_recording(const fs::path& path, const adit::RecordingConfig& config
     static_cast<void>(recording->read_scan(i));
 }
 
+void put(const fs::path& path, std::string_view bytes) { std::ofstream(path, std::ios::binary) << bytes; }
+
+/// Readers of what lies beside other files, in a folder of its own.
+const std::map<std::string, void (*)(const fs::path& folder, std::string_view text)> kBeside = {
+    // Of a split bag, one file of which is there and damaged.
+    {"metadata",
+     [](const fs::path& folder, std::string_view text) {
+       put(folder / "metadata.yaml", text);
+       put(folder / "a_0.mcap", "no bag");
+       static_cast<void>(adit::file_info(folder.string(), {}));
+       static_cast<void>(adit::open_recording(folder.string(), {}));
+     }},
+    {"georeference",
+     [](const fs::path& folder, std::string_view text) {
+       put(folder / "georeference.toml", text);
+       static_cast<void>(adit::read_georeferences(folder));
+     }},
+    // Of two clouds: the parts of the text, which a line of "==" ends, in this order; an empty one is no
+    // file.
+    {"beside",
+     [](const fs::path& folder, std::string_view text) {
+       for (const char* name : {"000000.bin", "000001.bin"}) put(folder / name, std::string(16, 0));
+       for (const char* name : {"stamps.txt", "times.txt", "poses.txt", "calib.txt", "odometry.tum",
+                                "groundtruth.tum", "recording.toml"}) {
+         const std::size_t end = std::min(text.find("==\n"), text.size());
+         fs::remove(folder / name);
+         if (end > 0) put(folder / name, text.substr(0, end));
+         text.remove_prefix(std::min(end + 3, text.size()));
+       }
+       read_as_recording(folder, {});
+     }},
+};
+
 /// Readers that take a text.
 const std::map<std::string, void (*)(std::string_view)> kTexts = {
     {"loops", [](std::string_view text) { static_cast<void>(adit::parse_loops_csv(text)); }},
@@ -76,6 +116,16 @@ const std::map<std::string, void (*)(std::string_view)> kTexts = {
      [](std::string_view text) {
        adit::RecordingConfig config;
        static_cast<void>(adit::parse_config(fields_of(config), text));
+     }},
+    // A message between robots, of which fleet.adit holds some, without the checksum at its end.
+    {"wire",
+     [](std::string_view text) {
+       const auto content = std::as_bytes(std::span(text));
+       std::vector<std::byte> bytes(content.begin(), content.end());
+       const std::uint64_t sum = adit::checksum(bytes);
+       const auto end = std::as_bytes(std::span(&sum, 1));
+       bytes.insert(bytes.end(), end.begin(), end.end());
+       static_cast<void>(adit::decode(bytes));
      }},
     {"session",
      [](std::string_view text) {
@@ -134,8 +184,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     reader->second(text);
     return 0;
   }
+  if (const auto reader = kBeside.find(extension()); reader != kBeside.end()) {
+    reader->second(folder.path(), text);
+    return 0;
+  }
   const fs::path path = folder.file();
-  std::ofstream(path, std::ios::binary) << text;
+  put(path, text);
   static_cast<void>(adit::file_info(path.string(), {}));
   if (extension() == "mcap" || extension() == "bag" || extension() == "db3") {
     read_as_recording(path, {});
@@ -144,6 +198,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
         .left = "left_wheel", .right = "right_wheel", .wheel_radius = 0.1, .track_width = 0.5};
     read_as_recording(path, {.wheel = "/joint_states", .drive = drive});
   }
+  if (extension() == "ply") static_cast<void>(adit::read_ply_mesh(text));
   if (extension() == "csv" || extension() == "tum") static_cast<void>(adit::read_trajectory(path));
   return 0;
 }

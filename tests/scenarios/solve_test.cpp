@@ -133,6 +133,17 @@ TEST(SolveSharedGraphs, NineRobotsMerge) {
   expect_fleet_solved({"g2o/multi/example_9robots", 9, 10.278053});
 }
 
+TEST(SolveSharedGraphs, TheProgramJoinsTheFilesOfAFleet) {
+  ADIT_NEED_DATA("g2o/multi/example_4robots/0.g2o");
+  std::string files;
+  for (const char* robot : {"0", "1", "2", "3"})
+    files += " " + test::shared_data(std::string("g2o/multi/example_4robots/") + robot + ".g2o").string();
+  const nlohmann::json joined = solved("--join" + files);
+  ASSERT_TRUE(joined.is_object()) << joined;
+  EXPECT_NEAR(joined["cost_final"].get<double>(), 5.5508915, 1e-5);
+  EXPECT_EQ(solved(files).size(), 4U) << "without it each file is a graph of its own";
+}
+
 constexpr const char* kUnit = " 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 1 0 0 1 0 1\n";  // 6x6 identity, upper triangle
 std::string edge(int from, int to, const std::string& information = kUnit) {
   return "EDGE_SE3:QUAT " + std::to_string(from) + " " + std::to_string(to) + " 1 0 0 0 0 0 1" + information;
@@ -216,6 +227,26 @@ TEST_F(SolveFile, NothingToReadIsAnError) {
   test::expect_refused("solve " + (folder_ / "absent.g2o").string(), 1, "absent.g2o");
   test::expect_refused(file(edge(0, 1) + "EDGE_SE3:QUAT 1 2 1 0 nan 0 0 0 1" + kUnit), 1,
                        "graph.g2o: line 2");
+}
+
+TEST_F(SolveFile, PartsOfOneGraphAreJoined) {
+  constexpr const char* kIndefinite = " 1 0 0 0 0 0 1 0 0 0 0 1 0 0 0 -1 0 0 1 0 1\n";
+  const std::string first = file(edge(0, 1) + edge(1, 2));
+  const std::string second = (folder_ / "second.g2o").string();
+  test::put_file(second, edge(1, 2) + edge(2, 3));
+  const std::string out = (folder_ / "out.g2o").string();
+  const test::ProgramRun run = test::run_adit(first + " " + second + " --join --out " + out);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.err.find("1 edges that several files repeat are counted once"), std::string::npos) << run.err;
+  const Result<G2oFile> solved = read_g2o(out);
+  ASSERT_TRUE(solved) << solved.error().message;
+  EXPECT_EQ(std::get<PoseGraph>(solved->graph).nodes.size(), 4U);
+  EXPECT_EQ(std::get<PoseGraph>(solved->graph).edges.size(), 3U);
+
+  test::put_file(second, edge(2, 3) + edge(3, 4, kIndefinite));
+  test::expect_refused(first + " " + second + " --join", 1, "second.g2o: line 2");
+  test::expect_refused(first + " " + (folder_ / "robots.jrl").string() + " --join", 2,
+                       "--join takes g2o files");
 }
 
 TEST_F(SolveFile, OneResultOnlyGoesToOneFile) {

@@ -87,7 +87,7 @@ struct MergeJoint {
 /// One world under one keyframe policy.
 struct MergeRun {
   std::string world;             ///< As in the list of worlds.
-  std::string group;             ///< "tuning", "check", "field" or "limit".
+  std::string group;             ///< Of the world, as the list of worlds has it.
   std::string keyframes;         ///< The policy; a variant has a second word.
   std::string sensors;           ///< Names of the LiDARs that robots have in turn.
   std::string conditions;        ///< Under which they were simulated: "ideal", "field", or else "other".

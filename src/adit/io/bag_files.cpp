@@ -105,12 +105,18 @@ Result<> check_kind(const fs::path& path) {
                      shell_quoted(fs::path(path).replace_extension(kind->ending).string())));
 }
 
+/// A name that no file can have is of none.
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
 /// Where the file that metadata.yaml names lies, if it is there. Bags of early versions name it with the
 /// bag's own folder.
 Result<fs::path> file_named(const fs::path& folder, const std::string& name) {
   fs::path path = folder / name;
-  if (!fs::exists(path)) path = folder / fs::path(name).filename();
-  if (is_packed(path) && fs::exists(fs::path(path).replace_extension())) return path.replace_extension();
+  if (!is_there(path)) path = folder / fs::path(name).filename();
+  if (is_packed(path) && is_there(fs::path(path).replace_extension())) return path.replace_extension();
   if (is_packed(path)) return fail(unpack_remedy(name, path));
   return path;
 }
@@ -152,7 +158,7 @@ Result<FolderFiles> files_of_metadata(const fs::path& folder) {
       Result<fs::path> found = file_named(folder, name.as<std::string>());
       if (!found) return fail(file.string(), found.error());
       if (!known.insert(found->lexically_normal()).second) continue;
-      if (fs::exists(*found))
+      if (is_there(*found))
         named.files.push_back(std::move(*found));
       else
         named.faults.push_back({format(

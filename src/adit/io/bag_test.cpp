@@ -11,6 +11,7 @@
 #include "adit/core/progress.hpp"
 #include "adit/io/bag_recording.hpp"
 #include "adit/io/compression.hpp"
+#include "adit/io/file_info.hpp"
 #include "adit/io/recording_files.hpp"
 #include "adit/io/tum.hpp"
 #include "support/data.hpp"
@@ -172,6 +173,10 @@ TEST(Bag, WhatAFolderLacksIsNamed) {
   EXPECT_ERROR(
       open_bag(folder.path()),
       "metadata.yaml: names 'a_0.db3', which is not there; copy it beside that file, or let 'ros2 bag");
+  const std::string no_name(300, 'a');  // longer than file systems have them
+  test::put_file(metadata, metadata_naming({no_name + ".db3"}));
+  EXPECT_ERROR(open_bag(folder.path()), "which is not there");
+  EXPECT_ERROR(file_info(no_name, {}), no_name);
   test::put_file(metadata, metadata_naming({"a_0.db3.zstd"}));
   EXPECT_ERROR(open_bag(folder.path()), "unpack it: zstd -d");
   test::put_file(folder / "b.db3.zstd", "packed");

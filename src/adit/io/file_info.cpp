@@ -352,7 +352,8 @@ Result<Json> scans_info(const fs::path& path, const RecordingConfig& config) {
 }
 
 Result<Json> folder_info(const fs::path& path, const RecordingConfig& config) {
-  if (fs::exists(path / "session.toml")) return session_info(path);
+  std::error_code ignored;
+  if (fs::exists(path / "session.toml", ignored)) return session_info(path);
   return is_bag_folder(path) ? bag_info(path, config) : scans_info(path, config);
 }
 
@@ -374,7 +375,8 @@ Result<> check_reading(const RecordingConfig& config) {
 
 Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
   if (const Result<> usable = check_reading(config); !usable) return tl::unexpected(usable.error());
-  if (fs::is_directory(path)) return folder_info(path, config);
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) return folder_info(path, config);
   const std::string extension = lower_case(path.extension().string());
   if (is_bag_file(path)) return bag_info(path, config);
   if (extension == ".pcd" || extension == ".bin") return cloud_info(path);
@@ -387,7 +389,7 @@ Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
   if (extension == ".adit") return adit_info(path);
   if (extension == ".jrl" || extension == ".cbor") return jrl_info(path);
   if (extension == ".yaml" || extension == ".yml") return routes_info(path);
-  if (fs::is_regular_file(path)) {
+  if (fs::is_regular_file(path, ignored)) {
     if (const Result<> plain = check_not_packed(path); !plain) return tl::unexpected(plain.error());
     return fail(
         path.string() +

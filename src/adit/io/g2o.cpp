@@ -184,7 +184,7 @@ class Reader {
       const std::vector<P> poses = spanning_tree_poses(graph_, is_known);
       for (std::size_t i = 0; i < poses.size(); ++i) graph_.nodes[i].pose = poses[i];
     }
-    return {std::move(graph_), std::move(lines), std::move(notes)};
+    return {std::move(graph_), std::move(lines), {}, std::move(notes)};
   }
 
  private:
@@ -275,7 +275,8 @@ Result<G2oFile> merge(const std::vector<G2oFile>& files) {
   std::unordered_map<std::uint64_t, std::size_t> node_of;
   std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> edges_of;
   std::size_t repeated = 0;
-  for (const G2oFile& file : files) {
+  for (std::size_t f = 0; f < files.size(); ++f) {
+    const G2oFile& file = files[f];
     const auto* graph = std::get_if<BasicPoseGraph<P>>(&file.graph);
     if (graph == nullptr) return fail("2-D and 3-D graphs cannot be merged");
     out.notes.insert(out.notes.end(), file.notes.begin(), file.notes.end());
@@ -297,6 +298,7 @@ Result<G2oFile> merge(const std::vector<G2oFile>& files) {
       same_ends.push_back(merged.edges.size());
       merged.edges.push_back(std::move(edge));
       out.edge_lines.push_back(file.edge_lines[e]);
+      out.edge_files.push_back(f);
     }
   }
   if (repeated > 0)

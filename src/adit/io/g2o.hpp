@@ -17,9 +17,10 @@ namespace adit {
 /// What a file holds.
 struct G2oFile {
   std::variant<PoseGraph, PoseGraph2> graph;  ///< In space or in the plane.
-  std::vector<std::size_t> edge_lines;        ///< Line of each edge in the file, from 1.
-  std::vector<std::string>
-      notes;  ///< What was skipped or added: tags with counts, vertices without a line of their own.
+  std::vector<std::size_t> edge_lines;        ///< Line of each edge in its file, from 1.
+  std::vector<std::size_t> edge_files = {};   ///< Of a merged graph: the file of each edge, from 0.
+  /// What was skipped or added: tags with counts, vertices without a line of their own.
+  std::vector<std::string> notes;
 };
 
 /// Reads VERTEX_SE3:QUAT and EDGE_SE3:QUAT, or VERTEX_SE2 and EDGE_SE2 (not both kinds in one file). Vertices

@@ -13,11 +13,7 @@
 namespace adit {
 namespace {
 
-// Of the largest vehicles that drive in drifts (load-haul-dump machines, trucks, light vehicles).
-constexpr float kTallest = 3.1F;  // metres above the floor
-constexpr float kLongest = 7.0F;
-constexpr float kHighestFoot = 1.5F;  // above the floor: what is below may be hidden
-constexpr float kFloorAround = 3.0F;  // metres from a thing to the floor that it stands on
+constexpr ThingShape kThing;
 constexpr float kFloorNormal = 0.8F;  // least vertical part of its normal
 constexpr float kWallNormal = 0.7F;   // largest vertical part of that of a wall
 
@@ -34,7 +30,7 @@ std::optional<float> floor_under(const SeenSurface& scan, const Eigen::AlignedBo
       nearest_m = away;
       nearest = p.z();
     }
-    if (away > kFloorAround) continue;
+    if (away > static_cast<float>(kThing.floor_around_m)) continue;
     lowest = lowest ? std::min(*lowest, p.z()) : p.z();
   }
   return lowest ? lowest : nearest;
@@ -58,6 +54,16 @@ bool continues_a_wall(const SeenSurface& scan, std::size_t point, const std::vec
 }
 
 }  // namespace
+
+Fields fields_of(ThingShape& c) {
+  return {{"tallest_m", &c.tallest_m, "m", 0.0, 100.0,
+           "what ends higher above the floor is no vehicle and counts as structure"},
+          {"longest_m", &c.longest_m, "m", 0.0, 100.0, "what is longer in plan is none either"},
+          {"highest_foot_m", &c.highest_foot_m, "m", 0.0, 100.0,
+           "what begins higher above the floor hangs there: what is lower may be hidden"},
+          {"floor_around_m", &c.floor_around_m, "m", 0.0, 100.0,
+           "distance from a thing to the floor that it stands on, in plan, at most"}};
+}
 
 std::vector<std::vector<std::size_t>> connected_patches(const std::vector<Eigen::Vector3f>& points,
                                                         float cell_size) {
@@ -97,9 +103,11 @@ bool may_be_a_thing(const SeenSurface& scan, std::span<const std::size_t> patch,
                     const std::vector<Compared>& compared, const RegistrationConfig& config) {
   Eigen::AlignedBox3f box;
   for (const std::size_t i : patch) box.extend(scan.points().points[i]);
-  if (box.isEmpty() || box.sizes().head<2>().norm() > kLongest) return false;
+  if (box.isEmpty() || box.sizes().head<2>().norm() > static_cast<float>(kThing.longest_m)) return false;
   const std::optional<float> floor = floor_under(scan, box);
-  if (!floor || box.min().z() > *floor + kHighestFoot || box.max().z() > *floor + kTallest) return false;
+  if (!floor || box.min().z() > *floor + static_cast<float>(kThing.highest_foot_m) ||
+      box.max().z() > *floor + static_cast<float>(kThing.tallest_m))
+    return false;
   const auto num_continuing = std::ranges::count_if(patch, [&](std::size_t i) {
     return continues_a_wall(scan, i, compared, static_cast<float>(config.voxel_size));
   });

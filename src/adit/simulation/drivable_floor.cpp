@@ -42,9 +42,8 @@ struct Ground {
 /// Of all samples: what is above them.
 struct Grounds {
   std::vector<Ground> list;
-  std::size_t num_open = 0;  ///< Samples with nothing above at all,
-  Vector3 first_open = Vector3::Zero();
-  std::size_t num_low = 0;  ///< and those with less above than the robot needs.
+  std::vector<Vector3> open;  ///< Samples with nothing above at all.
+  std::size_t num_low = 0;    ///< Those with less above than the robot needs.
   Vector3 highest_low = Vector3::Zero();
   double highest_m = 0.0;
 };
@@ -65,7 +64,7 @@ Grounds with_headroom(const std::vector<FloorSample>& samples, const Raycaster& 
   Grounds grounds;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (free[i] == RayHit::kMiss) {
-      if (++grounds.num_open == 1) grounds.first_open = position(samples[i]);
+      grounds.open.push_back(position(samples[i]));
     } else if (const double headroom = static_cast<double>(free[i]) + kAboveFloor;
                headroom < config.height_m) {
       ++grounds.num_low;
@@ -315,18 +314,46 @@ Result<> check_size(const TriangleMesh& mesh, const RouteConfig& config) {
              plan_area, std::sqrt(plan_area / kLargestFloor)));
 }
 
-Error no_floor(const TriangleMesh& mesh, const Grounds& grounds, const RouteConfig& config) {
+/// Whether surfaces that nothing is above are the roof of passages whose floor is missing: walls go down from
+/// them, where from the floor of a pit they go up.
+bool are_roofs(const std::vector<Vector3>& open, const Raycaster& raycaster, const RouteConfig& config) {
+  constexpr std::size_t kSamples = 1000;
+  const std::size_t stride = (open.size() + kSamples - 1) / kSamples;
+  int above = 0;
+  int below = 0;
+  for (std::size_t i = 0; i < open.size(); i += stride) {
+    for (const auto& [dx, dy] : kNeighbours) {
+      const Eigen::Vector3f ahead =
+          Eigen::Vector3f(static_cast<float>(dx), static_cast<float>(dy), 0).normalized();
+      const auto meets_wall = [&](double height) {
+        const Eigen::Vector3f eye = (open[i] + height * Vector3::UnitZ()).cast<float>();
+        return raycaster.cast({eye, ahead}, kFarAway).hit();
+      };
+      above += meets_wall(0.5 * config.height_m) ? 1 : 0;
+      below += meets_wall(-0.5 * config.height_m) ? 1 : 0;
+    }
+  }
+  return below > above;
+}
+
+Error no_floor(const TriangleMesh& mesh, const Raycaster& raycaster, const Grounds& grounds,
+               const RouteConfig& config) {
   const Eigen::Vector3f size = bounding_box(mesh).sizes();
-  if (grounds.num_low > 0 && grounds.num_low >= grounds.num_open)
+  if (grounds.num_low > 0 && grounds.num_low >= grounds.open.size())
     return {format(
         "no floor is high enough: the robot needs {} m, and there are {:.2f} m at {}; see routes.height_m; "
         "are the units of the mesh metres?",
         config.height_m, grounds.highest_m, place_text(grounds.highest_low))};
-  if (grounds.num_open > 0)
+  if (!grounds.open.empty() && are_roofs(grounds.open, raycaster, config))
+    return {format(
+        "no floor: what is level are roofs with nothing below them, for example at {}; the mesh has to hold "
+        "the floor that the robot drives on",
+        place_text(grounds.open.front()))};
+  if (!grounds.open.empty())
     return {format(
         "no roof: nothing is above the floor, for example at {}; the mesh has to be closed, so that rays "
         "from the sensor meet something",
-        place_text(grounds.first_open))};
+        place_text(grounds.open.front()))};
   return {format(
       "no floor: all surfaces are steeper than 60 degrees or smaller than the grid of routes.cell_m; the "
       "mesh is {:.1f} x {:.1f} x {:.1f} m: is z upwards, and are its units metres?",
@@ -385,7 +412,7 @@ Result<DrivableFloor> drivable_floor(const TriangleMesh& mesh, const Raycaster& 
   const Phase phase("looking for floor", 4);
   Grounds grounds = with_headroom(floor_samples(mesh, config.cell_m), raycaster, config);
   phase.advance();
-  if (grounds.list.empty()) return tl::unexpected(no_floor(mesh, grounds, config));
+  if (grounds.list.empty()) return tl::unexpected(no_floor(mesh, raycaster, grounds, config));
   link(grounds.list, raycaster, config);
   phase.advance();
   find_drivable(grounds.list, raycaster, config);

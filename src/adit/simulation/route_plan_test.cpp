@@ -54,6 +54,17 @@ TriangleMesh two_levels() {
   return mesh;
 }
 
+/// A room without what is level at `height`.
+TriangleMesh room_without(double height) {
+  TriangleMesh mesh = test::room({0, 0, 0}, {40, 10, 5});
+  std::erase_if(mesh.triangles, [&](const Eigen::Vector3i& t) {
+    return std::ranges::all_of(t, [&](int corner) {
+      return mesh.vertices[static_cast<std::size_t>(corner)].z() == static_cast<float>(height);
+    });
+  });
+  return mesh;
+}
+
 TEST(RoutePlan, RobotsDriveWhatIsPlannedForThemInAGeneratedMine) {
   WorldConfig world_config;
   world_config.preset = "mine";
@@ -167,6 +178,8 @@ TEST(RoutePlan, SaysWhatIsWrongWithAMesh) {
                "no roof: nothing is above the floor");
   EXPECT_ERROR(plan_routes(test::room({0, 0, 0}, {40, 10, 1}), 1, config),
                "no floor is high enough: the robot needs 1.5 m, and there are 1.00 m at");
+  EXPECT_ERROR(plan_routes(room_without(5.0), 1, config), "no roof: nothing is above the floor");
+  EXPECT_ERROR(plan_routes(room_without(0.0), 1, config), "no floor: what is level are roofs");
   TriangleMesh wall;
   test::add_quad(wall, {0, 0, 0}, {40, 0, 0}, {40, 0, 9}, {0, 0, 9});
   EXPECT_ERROR(plan_routes(wall, 1, config), "no floor: all surfaces are steeper than 60 degrees");

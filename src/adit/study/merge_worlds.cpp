@@ -26,14 +26,10 @@ namespace {
 Fields fields_of(ListedWorld& c) {
   Fields fields = {
       {"name", &c.name, "", 0, 0, "what tables and caches call the world"},
-      {"group",
-       &c.group,
-       "",
-       0,
-       0,
-       "tuned on, kept for the check, drawn after the policy was frozen, or beyond what measurement "
-       "can decide",
-       {"tuning", "check", "field", "limit"}},
+      {"group", &c.group, "", 0, 0,
+       "tuned on, kept for the check, drawn after the policy was frozen, meshes of other makers, or beyond "
+       "what measurement can decide",
+       world_groups()},
       {"noise_seed", &c.noise_seed, "", 0, 1e15, "seed of all noise of sensors and wheels"},
       {"lidars", &c.lidars, "", 0, 0, "LiDARs of the robots in turn; empty: as the study has them"},
       {"conditions",
@@ -166,6 +162,8 @@ Result<RobotRun> read_robot(const std::vector<Drives>& drives, std::size_t robot
 }
 
 }  // namespace
+
+std::vector<std::string> world_groups() { return {"tuning", "check", "field", "meshes", "limit"}; }
 
 Result<std::vector<ListedWorld>> read_world_list(const std::filesystem::path& list) {
   std::deque<ListedWorld> worlds;  // Entries stay where they are while others are added.

@@ -13,10 +13,14 @@
 
 namespace adit {
 
+/// What worlds of a list are for: tuned on, kept for the check, drawn after the policy was frozen, meshes of
+/// other makers, or beyond what measurement can decide.
+[[nodiscard]] std::vector<std::string> world_groups();
+
 /// One entry [[world]] of the list: a preset of the generator, or routes through a mesh on disk.
 struct ListedWorld {
   std::string name;              ///< What tables and caches call it; unique in the list.
-  std::string group = "tuning";  ///< "tuning", "check", "field" or "limit".
+  std::string group = "tuning";  ///< One of world_groups().
   std::uint64_t noise_seed = 1;  ///< Of all noise of sensors and wheels.
   std::string lidars;            ///< Of its robots in turn, separated by commas; "": as the study has them.
   std::string conditions;        ///< "ideal" or "field"; "": as the study has them.

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "adit/core/check.hpp"
+#include "adit/registration/changed_thing.hpp"
 #include "adit/registration/sensor_difference.hpp"
 
 namespace adit {
@@ -32,6 +33,7 @@ constexpr std::string_view kOfCopies =
     "chosen between 27 pairs of six worlds of copies and judgement (decision 0079)";
 constexpr std::string_view kLining = "half of 20 m of fresh lining (decision 0041)";
 constexpr std::string_view kVehicle = "chosen: the length of a vehicle";
+constexpr std::string_view kVehicles = "chosen: sizes of the vehicles that drive in drifts (decision 0041)";
 constexpr std::string_view kOfScans = "pairs of scans of the tuning worlds (decision 0010)";
 constexpr std::string_view kLoopsOfFortyTwo =
     "167 true and 414 false hypotheses of 42 seen field worlds (decision 0066)";
@@ -83,6 +85,10 @@ constexpr std::array kOrigins = {
     Origin{"walls.lined_share", kOfElevenWorlds, "2026-11-27"},
     Origin{"walls.few_patches", kOfWalls, "2026-11-22"},
     Origin{"walls.min_patches", kOfElevenWorlds, "2026-11-27"},
+    Origin{"things.tallest_m", kVehicles, "2026-11-24"},
+    Origin{"things.longest_m", kVehicles, "2026-11-24"},
+    Origin{"things.highest_foot_m", kVehicles, "2026-11-24"},
+    Origin{"things.floor_around_m", kVehicles, "2026-11-24"},
     Origin{"sensors.bias_m", kDataSheets, "2026-11-24"},
     Origin{"sensors.walk_m", kDataSheets, "2026-11-24"},
     Origin{"sensors.per_tenfold_m",
@@ -173,6 +179,8 @@ std::vector<EvidenceEntry> evidence_entries(EvidenceModel model) {
   Fields fields;
   append(fields, "fleet", fields_of(fleet));
   for (Field& field : fields_of(model)) fields.push_back(std::move(field));
+  ThingShape things;
+  append(fields, "things", fields_of(things));
   OffsetPrior sensors;
   append(fields, "sensors", fields_of(sensors));
   std::vector<EvidenceEntry> entries;

@@ -64,14 +64,15 @@ struct EvidenceModel {
 /// One value of the model and its origin.
 struct EvidenceEntry {
   std::string key;          ///< "error_rate", "walls.same_share", "fleet.copied", ...
-  double value = 0.0;       ///< Of the model that was given, or of kFleetEvidence or OffsetPrior.
+  double value = 0.0;       ///< Of the model that was given, or of kFleetEvidence, ThingShape or OffsetPrior.
   std::string unit;         ///< "m", "1/km", ...; "" for shares, chances and numbers.
   std::string meaning;      ///< One line, as in the configuration.
   std::string_view source;  ///< What it was fitted to or chosen by.
   std::string_view date;    ///< Of that, year-month-day.
 };
-/// All values: those of kFleetEvidence first, with keys that begin with "fleet.", and last the constants by
-/// which sensors and fits are taken out of the relief of walls (OffsetPrior), with "sensors.".
+/// All values: those of kFleetEvidence first, with keys that begin with "fleet."; last the shape of what may
+/// come and go (ThingShape), with "things.", and the constants by which sensors and fits are taken out of the
+/// relief of walls (OffsetPrior), with "sensors.".
 [[nodiscard]] std::vector<EvidenceEntry> evidence_entries(EvidenceModel model);
 
 }  // namespace adit

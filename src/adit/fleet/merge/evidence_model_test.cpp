@@ -8,6 +8,7 @@
 #include <set>
 
 #include "adit/fleet/merge/adaptive_config.hpp"
+#include "adit/registration/changed_thing.hpp"
 #include "adit/registration/sensor_difference.hpp"
 
 namespace adit {
@@ -37,6 +38,7 @@ TEST(EvidenceModel, EntriesHoldTheValuesOfTheModel) {
   EXPECT_EQ(entry(entries, "things_per_km")->value, 77.0);
   EXPECT_EQ(entry(entries, "walls.few_patches")->value, 123.0);
   EXPECT_EQ(entry(entries, "fleet.copied")->value, kFleetEvidence.copied);
+  EXPECT_EQ(entry(entries, "things.tallest_m")->value, ThingShape().tallest_m);
   EXPECT_EQ(entry(entries, "sensors.bias_m")->value, OffsetPrior().bias_m);
 }
 
