@@ -49,17 +49,18 @@ std::string why(const SavedMerge& merge) {
 Table hypotheses_of(const SavedMerge& merge) {
   Table table{
       .title = {},
-      .caption = format("One line for each alignment that loops put forward and that was tested (at "
-                        "most {}), the best first. A merge needs an evidence of {:.1f}, and every "
-                        "other alignment has to stay well behind. Evidence is the logarithm of "
-                        "a likelihood ratio: of loops and places, where only distinctive places that "
-                        "agree speak for it and changes against it, and of the relief of walls "
-                        "(equal signs: the share of patches on which two pairs of scans find the wall "
-                        "displaced to the same side; half for one wall). Movable objects (vehicles, pallets) "
-                        "speak little against it. Few loops speak against an alignment, unless registration "
-                        "without a guess finds "
-                        "more of its places again than it misses.",
-                        kHypothesesPerCheck, merge.check.needed),
+      .caption =
+          format("One line for each alignment that loops put forward and that was tested (at "
+                 "most {}), the best first. A merge needs an evidence of {:.1f}, and every "
+                 "other alignment has to stay well behind. Evidence is the logarithm of "
+                 "a likelihood ratio: of loops and places, where only distinctive places that "
+                 "agree speak for it and changes against it, and of the relief of walls "
+                 "(equal signs: the share of patches on which two pairs of scans find the wall "
+                 "displaced to the same side; half for one wall). Movable objects (vehicles, pallets) "
+                 "come and go and say nothing. Few loops speak against an alignment, unless registration "
+                 "without a guess finds "
+                 "more of its places again than it misses.",
+                 kHypothesesPerCheck, merge.check.needed),
       .groups = {},
       .header = {"alignment", "loops", "evidence", "of walls", "compared m", "places", "agree", "distinctive",
                  "changes", "movable objects", "patches", "equal signs", "found again", "m apart"},

@@ -81,20 +81,7 @@ class Fit {
     add("fleet.agreement_if_copied", chance_to_agree(copies), copies);
   }
 
-  static double per_km(const Counts& all, std::uint32_t HypothesisCounts::*num) {
-    double sum = 0.0;
-    double metres = 0.0;
-    for (const HypothesisCounts& counts : all) {
-      sum += counts.*num;
-      metres += counts.compared_m;
-    }
-    return metres > 0.0 ? 1000.0 * sum / metres : 0.0;
-  }
-  void fit_changes() {
-    add("changes_at_worst_per_km", changes_at_worst(), right_);
-    add("things_per_km", per_km(right_, &HypothesisCounts::num_things), right_);
-    add("things_elsewhere_per_km", per_km(wrong_, &HypothesisCounts::num_things), wrong_);
-  }
+  void fit_changes() { add("changes_at_worst_per_km", changes_at_worst(), right_); }
   /// The lowest rate under which no more true alignments are refused than is stated.
   [[nodiscard]] double changes_at_worst() const {
     constexpr double kStep = 0.5;     // per km

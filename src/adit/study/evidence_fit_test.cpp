@@ -28,7 +28,6 @@ std::vector<JudgedHypothesis> drawn(std::size_t num) {
     counts.compared_m = 100.0;
     counts.num_distinctive = is_right ? 36 : 2;
     counts.num_changes = is_right ? num_of(0.8) : num_of(6.0);
-    counts.num_things = is_right ? num_of(3.0) : num_of(9.0);
     counts.num_wall_patches = 400;
     counts.equal_signs_sigma = 0.02;
     counts.equal_signs =
@@ -50,8 +49,6 @@ TEST(EvidenceFit, FindsWhatHypothesesWereDrawnFrom) {
   // Numbers of changes are whole: a rate below the true one refuses few enough.
   EXPECT_GT(value_of(fitted, "changes_at_worst_per_km"), 3.0);
   EXPECT_LE(value_of(fitted, "changes_at_worst_per_km"), 8.0);
-  EXPECT_NEAR(value_of(fitted, "things_per_km"), 30.0, 1.0);
-  EXPECT_NEAR(value_of(fitted, "things_elsewhere_per_km"), 90.0, 2.0);
   EXPECT_NEAR(value_of(fitted, "walls.same_share"), 0.53, 0.002);
   EXPECT_NEAR(value_of(fitted, "walls.same_sigma"), 0.01, 0.004);
   EXPECT_NEAR(value_of(fitted, "walls.prior_other_share"), 0.7, 0.01);
@@ -106,12 +103,12 @@ TEST(EvidenceFit, WithoutHypothesesNothingIsFitted) {
 
 TEST(EvidenceFit, TheTableHasOldBesideNew) {
   const Table table =
-      evidence_table({}, {{"things_per_km", 31.0, 200, 31.0}, {"fleet.copied", 0.0, 200, 0.015}});
+      evidence_table({}, {{"changes_at_worst_per_km", 31.0, 200, 31.0}, {"fleet.copied", 0.0, 200, 0.015}});
   const auto row = [&](std::string_view key) {
     return *std::ranges::find_if(table.rows, [&](const auto& cells) { return cells[0] == key; });
   };
-  EXPECT_EQ(row("things_per_km")[2], "84");
-  EXPECT_EQ(row("things_per_km")[3], "31 (200)");
+  EXPECT_EQ(row("changes_at_worst_per_km")[2], "30");
+  EXPECT_EQ(row("changes_at_worst_per_km")[3], "31 (200)");
   EXPECT_EQ(row("fleet.copied")[3], "0 (200; < 0.015)");
 }
 

@@ -15,7 +15,7 @@ namespace adit {
 /// What is asked about a place.
 enum class PlaceQuestion : std::uint8_t {
   agreement,  ///< Whether it agrees; and where it does, by what a displacement shows and how the walls stand.
-  walls,      ///< How the walls stand, where it agrees.
+  walls,      ///< How the walls stand, also beside what differs.
   displacement,  ///< By what a displacement would show, although it differs.
   registration,  ///< Whether registration finds it where nothing is known of it.
 };
@@ -26,7 +26,7 @@ enum class PlaceQuestion : std::uint8_t {
   return question == PlaceQuestion::displacement || (question == PlaceQuestion::agreement && !differs);
 }
 [[nodiscard]] constexpr bool asks_for_walls(PlaceQuestion question, bool differs) {
-  return (question == PlaceQuestion::walls || question == PlaceQuestion::agreement) && !differs;
+  return question == PlaceQuestion::walls || (question == PlaceQuestion::agreement && !differs);
 }
 ///@}
 

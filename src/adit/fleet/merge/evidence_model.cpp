@@ -69,9 +69,6 @@ constexpr std::array kOrigins = {
     Origin{"thing_reach_m", kVehicle, "2026-11-24"},
     Origin{"differing_at_worst", kOfElevenWorlds, "2026-11-27"},
     Origin{"changes_at_worst_per_km", "true pairs of zab and mine worlds (decision 0059)", "2026-11-27"},
-    Origin{"things_per_km", "125 true hypotheses of 34 field worlds (decision 0063)", "2026-11-27"},
-    Origin{"things_elsewhere_per_km", kOfForty, "2026-11-25"},
-    Origin{"things_speak_at_most", "chosen: they come and go (decision 0043)", "2026-11-25"},
     Origin{"walls.same_share", kOfWalls, "2026-11-22"},
     Origin{"walls.same_sigma", kOfWalls, "2026-11-22"},
     Origin{"walls.prior_other_share", "tuning worlds (decision 0013)", "2026-11-21"},
@@ -163,13 +160,7 @@ Fields fields_of(EvidenceModel& c) {
        "does, changes count before a second look confirms them"},
       {"changes_at_worst_per_km", &c.changes_at_worst_per_km, "1/km", 0.1, 1000.0,
        "changes of structure between two visits of one stretch, at worst: doors, blocked, lined or widened "
-       "tunnels"},
-      {"things_per_km", &c.things_per_km, "1/km", 0.1, 1e4,
-       "vehicles and the like that one robot meets on a shared stretch and the other does not"},
-      {"things_elsewhere_per_km", &c.things_elsewhere_per_km, "1/km", 0.1, 1e4,
-       "the same, where the robots drove in different tunnels"},
-      {"things_speak_at_most", &c.things_speak_at_most, "", 0.0, 100.0,
-       "evidence that such things take away at most: they come and go"}};
+       "tunnels"}};
   append(fields, "walls", fields_of(c.walls));
   return fields;
 }

@@ -52,9 +52,6 @@ struct EvidenceModel {
   double thing_reach_m = 5.0;
   double differing_at_worst = 0.8;
   double changes_at_worst_per_km = 30.0;
-  double things_per_km = 84.0;
-  double things_elsewhere_per_km = 117.0;
-  double things_speak_at_most = 1.0;
 
   ReliefModel walls = {};
 };

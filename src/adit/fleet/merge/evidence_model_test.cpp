@@ -31,11 +31,11 @@ TEST(EvidenceModel, EveryValueHasAnOriginAndAMeaning) {
 
 TEST(EvidenceModel, EntriesHoldTheValuesOfTheModel) {
   EvidenceModel model;
-  model.things_per_km = 77.0;
+  model.sight_m = 17.0;
   model.walls.few_patches = 123;
   const std::vector<EvidenceEntry> entries = evidence_entries(model);
-  ASSERT_NE(entry(entries, "things_per_km"), nullptr);
-  EXPECT_EQ(entry(entries, "things_per_km")->value, 77.0);
+  ASSERT_NE(entry(entries, "sight_m"), nullptr);
+  EXPECT_EQ(entry(entries, "sight_m")->value, 17.0);
   EXPECT_EQ(entry(entries, "walls.few_patches")->value, 123.0);
   EXPECT_EQ(entry(entries, "fleet.copied")->value, kFleetEvidence.copied);
   EXPECT_EQ(entry(entries, "things.tallest_m")->value, ThingShape().tallest_m);

@@ -137,6 +137,14 @@ void Hypothesis::add_second_look(std::size_t which, const ComparedPlace& place) 
   first.is_explained = note_changes(seen_again);
 }
 
+void Hypothesis::add_walls(const ComparedPlace& place) {
+  const auto is_known = [&](const Vector3& change) { return structures.has(change); };
+  const bool shows_known_changes =
+      !place.structures.empty() && std::ranges::all_of(place.structures, is_known);
+  if (!place.differs() || shows_known_changes) offsets.add(place.offsets);
+  ++num_walls_compared;
+}
+
 void Hypothesis::add_signs(std::size_t which, const ComparedPlace& place) {
   compared[which].signs = place.signs.value_or(DisplacementSigns());
 }

@@ -29,7 +29,7 @@ enum class FoundAgain : std::uint8_t {
 struct ComparedPlace {
   double difference = 0.0;      ///< Over the limit of Discernment: above 1 the scans cannot be of one place.
   bool is_distinctive = false;  ///< A displacement along the tunnel would have shown, where it was asked for.
-  std::vector<PatchOffset> offsets = {};  ///< Of their walls from the own ones; none where it differs.
+  std::vector<PatchOffset> offsets = {};  ///< Of their walls from the own ones, where that was asked.
   /// Where structure differs by more than the limit, and where one robot met what may come and go; own
   /// odometry frame, metres.
   ///@{
@@ -105,6 +105,9 @@ struct Hypothesis {
   void add(const ComparedPlace& place);
   /// What a second look at a place that differed has shown.
   void add_second_look(std::size_t which, const ComparedPlace& place);
+  /// Of a pair of scans whose place was seen from beside, so that only its walls count: where the scans
+  /// agree, or differ by changes alone that are known.
+  void add_walls(const ComparedPlace& place);
   /// By what a displacement would show at a place that differs.
   void add_signs(std::size_t which, const ComparedPlace& place);
   /// Compared places that differ.

@@ -103,5 +103,25 @@ TEST(Hypothesis, BesideAKnownChangeAPlaceStaysDistinctiveByWhatShowsElsewhere) {
   EXPECT_EQ(outcome_by({}), PlaceOutcome::agrees);
 }
 
+TEST(Hypothesis, WallsCountBesideChangesThatAreKnownAlone) {
+  const Vector3 change(10.0, 2.0, 1.0);
+  const auto num_patches_beside = [&](double difference, const std::vector<Vector3>& structures) {
+    Hypothesis h;
+    h.plan.resize(1);
+    h.second_looks.resize(1);
+    h.add(differing(2.0, {change}));
+    ComparedPlace pair = test::agreeing_with_relief(1, 0.0);
+    pair.difference = difference;
+    pair.structures = structures;
+    h.add_walls(pair);
+    EXPECT_EQ(h.num_walls_compared, 1U);
+    return h.offsets.counted().num_patches;
+  };
+  EXPECT_GT(num_patches_beside(0.5, {}), 50U);
+  EXPECT_GT(num_patches_beside(2.0, {change + Vector3(2.0, 0.0, 0.0)}), 50U);
+  EXPECT_EQ(num_patches_beside(2.0, {change, change + Vector3(40.0, 0.0, 0.0)}), 0U) << "one more change";
+  EXPECT_EQ(num_patches_beside(1e9, {}), 0U) << "nothing in common";
+}
+
 }  // namespace
 }  // namespace adit

@@ -95,7 +95,7 @@ double MergeChecker::needed() const { return std::log(1.0 / config_.evidence.err
 double MergeChecker::least_lead() const { return std::log(1.0 / config_.evidence.rival_rate); }
 
 double MergeChecker::evidence(const Hypothesis& h) const {
-  return evidence_of_scans(h) + evidence_of_walls(h) + evidence_of_things(h);
+  return evidence_of_scans(h) + evidence_of_walls(h);
 }
 
 /// Whether loops are few does not tell them apart: the true one may be beside a copy that was found more
@@ -168,15 +168,6 @@ bool MergeChecker::lacks_walls(const Hypothesis& h, int num_patches) const {
          h.offsets.counted().num_patches < static_cast<std::size_t>(num_patches);
 }
 
-double MergeChecker::evidence_of_things(const Hypothesis& h) const {
-  const auto num = static_cast<double>(h.things.num());
-  const double same = config_.evidence.things_per_km;
-  const double other = config_.evidence.things_elsewhere_per_km;
-  // Few things are no evidence: there may be none at all.
-  return std::clamp(num * std::log(same / other) + (other - same) * compared_km(h),
-                    -config_.evidence.things_speak_at_most, 0.0);
-}
-
 std::optional<std::size_t> MergeChecker::to_go_on_with() const {
   double best_finished = -std::numeric_limits<double>::infinity();
   for (const Hypothesis& h : hypotheses_)
@@ -208,25 +199,31 @@ bool MergeChecker::is_left_unfinished(const Hypothesis& best) const {
 std::optional<std::size_t> MergeChecker::whose_walls_to_compare(const std::vector<std::size_t>& order) const {
   if (!config_.relief) return {};
   const Hypothesis& best = hypotheses_[order.front()];
+  std::vector<std::size_t> others;  // whose walls would tell whether all here are of one mould
+  for (const std::size_t other : order)
+    if (other != order.front() && !differs_too_often(hypotheses_[other]) &&
+        lacks_walls(hypotheses_[other], config_.evidence.walls.few_patches))
+      others.push_back(other);
   const MergeDecision decision = decide(order);
   if (decision == MergeDecision::accepted) {
     // Copies agree at all places: none is accepted whose walls were hardly seen, if more can be, nor before
-    // those of the other alignments have been, whose walls tell whether all here are of one mould.
+    // those of the other alignments have been.
     if (lacks_walls(best, config_.evidence.walls.min_patches)) return order.front();
-    for (const std::size_t other : order)
-      if (other != order.front() && !differs_too_often(hypotheses_[other]) &&
-          lacks_walls(hypotheses_[other], config_.evidence.walls.few_patches))
-        return other;
-    return {};
+    return others.empty() ? std::nullopt : std::optional(others.front());
   }
-  if (best.num_walls_compared == best.wall_plan.size()) return {};
   const double forgivable = has_places_to_find_again(best) ? -evidence_of_few_loops(best) : 0.0;
   // Walls that speak against it are looked at more closely, too, before anything is forgiven.
   const bool may_decide = decision == MergeDecision::too_little_evidence ||
                           (decision == MergeDecision::other_walls && forgivable > 0.0);
+  if (!may_decide) return {};
+  const double missing = needed() - evidence(best) - forgivable;
   const double possible =
-      own_.measured().walls.most_evidence(walls_elsewhere(best)) - evidence_of_walls(best) + forgivable;
-  return may_decide && evidence(best) + possible >= needed() ? std::optional(order.front()) : std::nullopt;
+      own_.measured().walls.most_evidence(walls_elsewhere(best)) - evidence_of_walls(best);
+  if (best.num_walls_compared < best.wall_plan.size() && possible >= missing) return order.front();
+  // The more look-alikes have other walls, the fewer are of one mould, beside the one that the prior stands
+  // for.
+  const double others_possible = std::log1p(static_cast<double>(others.size()));
+  return !others.empty() && others_possible >= missing ? std::optional(others.front()) : std::nullopt;
 }
 
 std::vector<PlannedComparison> MergeChecker::to_find_again(const Hypothesis& h) const {
@@ -335,9 +332,7 @@ void MergeChecker::add(const std::vector<ComparedPlace>& places) {
       break;
     }
     case Stage::walls:
-      // Their places have been seen from beside: of these pairs only the walls count.
-      for (const ComparedPlace& place : places) h.offsets.add(place.offsets);
-      h.num_walls_compared += places.size();
+      for (const ComparedPlace& place : places) h.add_walls(place);
       break;
     case Stage::find_again:
       for (const ComparedPlace& place : places) {

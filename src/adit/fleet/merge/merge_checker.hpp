@@ -105,15 +105,12 @@ class MergeChecker {
   [[nodiscard]] std::vector<EqualSignShare> walls_elsewhere(const Hypothesis& hypothesis) const;
   /// Whether more pairs of its walls have to be compared before they can be called seen.
   [[nodiscard]] bool lacks_walls(const Hypothesis& hypothesis, int num_patches) const;
-  /// Poisson's log likelihood ratio of what may come and go; never positive.
-  [[nodiscard]] double evidence_of_things(const Hypothesis& hypothesis) const;
   /// What a hypothesis can reach when all that is left to compare speaks for it.
   [[nodiscard]] double most_evidence_of_scans(const Hypothesis& hypothesis) const;
   [[nodiscard]] ChancesToGoOn chances() const { return own_.measured().look_alikes.chances(); }
 
   [[nodiscard]] std::optional<std::size_t> to_go_on_with() const;
-  /// By its scans alone the best hypothesis was far behind, and the walls or things of those ahead put it in
-  /// front.
+  /// By its scans alone the best hypothesis was far behind, and the walls of those ahead put it in front.
   [[nodiscard]] bool is_left_unfinished(const Hypothesis& best) const;
   /// Where all have been compared, the best hypothesis if more pairs of its walls could decide, and where it
   /// would be accepted another one that is not refuted and whose walls were hardly seen.

@@ -25,12 +25,10 @@ std::string what_differs(RefusalKind kind) {
 }
 
 /// What is said of places that agree, where that is not enough.
-std::string what_else(const Hypothesis& h, RefusalKind kind) {
+std::string what_else(RefusalKind kind) {
   if (kind == RefusalKind::too_little) return "";
-  if (kind != RefusalKind::changed_place) return ", " + what_differs(kind);
-  return h.num_differing() > 0
-             ? ", which speaks for one tunnel that has changed"
-             : format(", but only one of the robots met {} things that come and go", h.things.num());
+  return ", " + (kind == RefusalKind::changed_place ? "which speaks for one tunnel that has changed"
+                                                    : what_differs(kind));
 }
 
 std::string why_walls_differ(const Hypothesis& h, RefusalKind kind) {
@@ -84,7 +82,7 @@ std::string MergeChecker::why(MergeDecision decision, const std::vector<std::siz
     case MergeDecision::too_little_evidence:
       return format("evidence {:.1f} of {:.1f}: {} of {} places agree, {} of them distinctive{}", evidence(h),
                     needed(), num_agreeing, h.compared.size(), h.num_distinctive(),
-                    what_else(h, refused_kind(decision, best_first)));
+                    what_else(refused_kind(decision, best_first)));
     case MergeDecision::nothing_compared:
       return format(
           "nothing was compared: along the stretch that {} loops align no keyframes of both stand "

@@ -51,12 +51,10 @@ RefusalKind MergeChecker::refused_kind(MergeDecision decision,
   return RefusalKind::unknown;
 }
 
-/// A place has changed where what came and went, or was changed, is all that keeps the evidence below what is
-/// needed. Where places differ and look-alikes are likelier than one tunnel, it is not just too little.
+/// A place has changed where what was changed is all that keeps the evidence below what is needed. Where
+/// places differ and look-alikes are likelier than one tunnel, it is not just too little.
 RefusalKind MergeChecker::kind_where_evidence_is_missing(const Hypothesis& h) const {
-  if (evidence(h) - evidence_of_things(h) >= needed() ||
-      evidence_of_changes(h.places(), chances()) >= needed())
-    return RefusalKind::changed_place;
+  if (evidence_of_changes(h.places(), chances()) >= needed()) return RefusalKind::changed_place;
   if (h.num_differing() == 0 || evidence(h) >= 0.0) return RefusalKind::too_little;
   return 2 * h.num_differing() > h.compared.size() ? RefusalKind::other_tunnel
                                                    : RefusalKind::changed_or_other;

@@ -106,26 +106,6 @@ TEST(MergeRefusal, ChangesAmongPlacesThatAgreeAreNoOtherTunnel) {
   EXPECT_TRUE(check_of_changes(12, 0.5).accepted);
 }
 
-TEST(MergeRefusal, ThingsAloneMayKeepMapsApart) {
-  const auto things_everywhere = [](const PlannedComparison& asked) {
-    ComparedPlace place = kAgrees;
-    place.things.emplace_back(9.0 * asked.theirs, 0.0, 0.0);
-    return place;
-  };
-  // Look-alikes that go on so often that things tip the scales, whatever number of places there is.
-  bool is_found = false;
-  for (double chance = 0.5; chance < 0.95; chance += 0.01) {
-    const Told with = told(kTrueLoops, chance, things_everywhere);
-    const Told without = told(kTrueLoops, chance, [](const PlannedComparison&) { return kAgrees; });
-    if (with.check.accepted) continue;
-    EXPECT_EQ(with.check.refused_kind,
-              without.check.accepted ? RefusalKind::changed_place : RefusalKind::too_little)
-        << with.check.reason;
-    is_found |= without.check.accepted;
-  }
-  EXPECT_TRUE(is_found);
-}
-
 // Walls of another relief, and all of them farther off by what an error of range may be.
 Told told_of_walls(double range_error_m) {
   return told(

@@ -206,11 +206,11 @@ TEST(MergeRival, ALeadThatCannotBeComputedIsNone) {
   EXPECT_FALSE(checked(20.0, std::numeric_limits<double>::quiet_NaN()).accepted);
 }
 
-// By scans the first one is far ahead, and then its walls and things are those of another tunnel.
+// By scans the first one is far ahead, and then its walls are those of another tunnel.
 TEST(MergeRival, OneThatWasLeftBehindIsComparedToTheEndWhereTheWallsPutItInFront) {
   const OdometryChain own = along_x(kNum);
   const OdometryChain theirs = own;
-  LoopsBetween between{own, theirs, kTrueLoops, {0.0, 0.0, 0.0, 3.0, 3.0, 3.0}};
+  LoopsBetween between{own, theirs, kTrueLoops, {0.0, 0.0, 0.0, 4.0, 4.0, 4.0}};
   for (const std::size_t a : {120U, 130U, 140U}) between.loops.push_back(loop_at(a, 60.0));
   EqualSignShares shares;
   for (int i = 0; i < 10; ++i) shares.add_other({1000, 0.65, 0.015});
@@ -220,7 +220,6 @@ TEST(MergeRival, OneThatWasLeftBehindIsComparedToTheEndWhereTheWallsPutItInFront
         (asked.T_own_theirs.inverse() * T_a_b_true(asked.own, asked.theirs)).translation().norm();
     if (off > 5.0) return kSilent;
     ComparedPlace place = kAgrees;
-    place.things.emplace_back(9.0 * asked.theirs, 0.0, 0.0);
     for (int i = 0; i < 100; ++i)
       for (const double metres : {0.01, i % 10 * 10 + i / 10 < 80 ? 0.01 : -0.01})
         place.offsets.push_back({{static_cast<int>(asked.theirs), i, 0, 0}, metres});

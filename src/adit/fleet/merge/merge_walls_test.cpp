@@ -3,6 +3,7 @@
 // What the relief of walls does in a merge check.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 #include <vector>
 
@@ -70,28 +71,45 @@ TEST(MergeWalls, NoneIsAcceptedBeforeItsWallsWereSeen) {
   }
 }
 
-// Another alignment, 20 m off, differs at every third place, so that it is neither refuted nor a rival. If
-// its walls are the same as well, those of the best one say less.
-TEST(MergeWalls, WallsThatAreTheSameAtAnotherAlignmentTooSayLittle) {
+// Another alignment, 20 m off, differs at every third place, so that it is neither refuted nor a rival. The
+// walls of the best one are the same; `own` are those of look-alikes.
+MergeCheck with_another_alignment(double relief_elsewhere_m, const EqualSignShares& own,
+                                  const MergeCheckConfig& config = {}) {
   std::vector<PcmLoop> loops = kTrueLoops;
   for (const std::size_t a : {70U, 120U}) loops.push_back(loop_at(a, 20.0));
+  MergeChecker checker = checker_of(loops, measured(look_alikes(0.7), own), config);
+  return run(checker, [&](const PlannedComparison& asked) {
+    const bool is_elsewhere = asked.own + asked.theirs > kNum + 20;
+    if (!is_elsewhere) return agreeing_with_relief(asked.theirs, 0.0);
+    if (asked.question == PlaceQuestion::walls) return agreeing_with_relief(asked.theirs, relief_elsewhere_m);
+    return asked.theirs / 6 % 3 == 0 ? kDiffers : kAgrees;
+  });
+}
+
+TEST(MergeWalls, WallsThatAreTheSameAtAnotherAlignmentTooSayLittle) {
   EqualSignShares own;
   for (int i = 0; i < 5; ++i) own.add_other({1000, 0.65, 0.015});
-  const auto check = [&](double relief_elsewhere_m) {
-    MergeChecker checker = checker_of(loops, measured(look_alikes(0.7), own), {});
-    return run(checker, [&](const PlannedComparison& asked) {
-      const bool is_elsewhere = asked.own + asked.theirs > kNum + 20;
-      if (!is_elsewhere) return agreeing_with_relief(asked.theirs, 0.0);
-      if (asked.question != PlaceQuestion::walls && asked.theirs / 6 % 3 == 0) return kDiffers;
-      return agreeing_with_relief(asked.theirs, relief_elsewhere_m);
-    });
-  };
-  const MergeCheck others = check(0.01);
-  const MergeCheck one_mould = check(0.0);
+  const MergeCheck others = with_another_alignment(0.01, own);
+  const MergeCheck one_mould = with_another_alignment(0.0, own);
   ASSERT_EQ(others.hypotheses.size(), 2U);
   EXPECT_GT(one_mould.hypotheses.back().counts.num_wall_patches, 100U);
   EXPECT_LT(one_mould.hypotheses.front().walls, others.hypotheses.front().walls - 1.0);
   EXPECT_EQ(one_mould.hypotheses.front().loops, others.hypotheses.front().loops);
+}
+
+TEST(MergeWalls, WallsOfAnotherAlignmentMayGiveWhatIsMissing) {
+  MergeCheckConfig unreachable;
+  unreachable.evidence.error_rate = 1e-12;
+  const MergeCheck before = with_another_alignment(0.01, {}, unreachable);
+  EXPECT_EQ(before.hypotheses.back().counts.num_wall_patches, 0U) << "they could not give as much";
+  MergeCheckConfig within_reach;
+  within_reach.evidence.error_rate = std::exp(-(before.hypotheses.front().evidence + 0.3));
+  const MergeCheck others = with_another_alignment(0.01, {}, within_reach);
+  EXPECT_TRUE(others.accepted) << others.reason;
+  EXPECT_GT(others.hypotheses.back().counts.num_wall_patches, 50U);
+  const MergeCheck one_mould = with_another_alignment(0.0, {}, within_reach);
+  EXPECT_FALSE(one_mould.accepted);
+  EXPECT_LT(one_mould.hypotheses.front().evidence, before.hypotheses.front().evidence);
 }
 
 TEST(MergeWalls, WallsCountWhereOwnLookAlikesHaveOthers) {
