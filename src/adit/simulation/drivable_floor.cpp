@@ -23,6 +23,9 @@ namespace {
 constexpr std::size_t kFloorGrain = 256;
 constexpr double kAboveFloor = 0.02;  ///< Metres: where rays start that look up.
 constexpr double kRough = 0.1;        ///< Metres above what wheels climb that still is the floor's roughness.
+/// A closed mesh has about as many roofs, seen from above, as grounds. Where grounds are so many times fewer,
+/// the floor or the roof is missing.
+constexpr std::size_t kFewGrounds = 10;
 constexpr double kSmallestPart = 4.0;  ///< Square metres: smaller parts of the floor are not told of.
 constexpr double kLargestFloor = 3e7;  ///< Samples of it.
 constexpr float kFarAway = 1e6F;       ///< Metres: no mesh is as large.
@@ -360,6 +363,12 @@ Error no_floor(const TriangleMesh& mesh, const Raycaster& raycaster, const Groun
       size.x(), size.y(), size.z())};
 }
 
+bool is_scrap(const std::vector<std::vector<std::uint32_t>>& parts, double cell) {
+  return std::ranges::all_of(parts, [&](const auto& part) {
+    return static_cast<double>(part.size()) * cell * cell < kSmallestPart;
+  });
+}
+
 Error too_narrow(const std::vector<Ground>& grounds, const RouteConfig& config) {
   const Ground& widest = *std::ranges::max_element(grounds, {}, &Ground::margin);
   return {format(
@@ -418,7 +427,12 @@ Result<DrivableFloor> drivable_floor(const TriangleMesh& mesh, const Raycaster& 
   find_drivable(grounds.list, raycaster, config);
   phase.advance();
   std::vector<std::vector<std::uint32_t>> parts = parts_of(grounds.list);
-  if (parts.empty()) return tl::unexpected(too_narrow(grounds.list, config));
+  if (is_scrap(parts, config.cell_m)) {
+    // Ledges and the like are left where the floor or the roof is missing.
+    if (grounds.list.size() * kFewGrounds < grounds.open.size())
+      return tl::unexpected(no_floor(mesh, raycaster, grounds, config));
+    if (parts.empty()) return tl::unexpected(too_narrow(grounds.list, config));
+  }
   return inside_parts(grounds.list, std::move(parts), raycaster, config)
       .map([&](std::vector<InsidePart> inside) {
         return floor_of(grounds.list, std::move(inside), config.cell_m);

@@ -180,6 +180,9 @@ TEST(RoutePlan, SaysWhatIsWrongWithAMesh) {
                "no floor is high enough: the robot needs 1.5 m, and there are 1.00 m at");
   EXPECT_ERROR(plan_routes(room_without(5.0), 1, config), "no roof: nothing is above the floor");
   EXPECT_ERROR(plan_routes(room_without(0.0), 1, config), "no floor: what is level are roofs");
+  TriangleMesh with_ledge = room_without(0.0);
+  test::add_quad(with_ledge, {0, 0, 1}, {2, 0, 1}, {2, 1, 1}, {0, 1, 1});
+  EXPECT_ERROR(plan_routes(with_ledge, 1, config), "no floor: what is level are roofs");
   TriangleMesh wall;
   test::add_quad(wall, {0, 0, 0}, {40, 0, 0}, {40, 0, 9}, {0, 0, 9});
   EXPECT_ERROR(plan_routes(wall, 1, config), "no floor: all surfaces are steeper than 60 degrees");
