@@ -61,7 +61,8 @@ TEST(WorldList, ErrorsNameTheFileAndTheRemedy) {
                "list.toml: an entry has no name; add name");
   EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\n[[world]]\nname = 'a'\n"),
                "list.toml: two worlds are called 'a'; rename one");
-  EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\ngroup = 'most'\n"), "tuning, check, field, meshes, limit");
+  EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\ngroup = 'most'\n"),
+               "tuning, check, field, meshes, limit");
   EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\nnoise_sed = 1\n"), "noise_seed");
   EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\nlidars = 'os2-32,os3'\n"), "world 'a': ");
   EXPECT_ERROR(worlds_of(folder, "[[world]]\nname = 'a'\nconditions = 'wet'\n"), "ideal, field");

@@ -112,9 +112,9 @@ class MergeChecker {
   [[nodiscard]] std::optional<std::size_t> to_go_on_with() const;
   /// By its scans alone the best hypothesis was far behind, and the walls of those ahead put it in front.
   [[nodiscard]] bool is_left_unfinished(const Hypothesis& best) const;
-  /// Where all have been compared: the best hypothesis if more pairs of its walls could decide, or another one
-  /// that is not refuted and whose walls were hardly seen, if the best would be accepted or walls elsewhere
-  /// could give what it lacks.
+  /// Where all have been compared: the best hypothesis if more pairs of its walls could decide, or another
+  /// one that is not refuted and whose walls were hardly seen, if the best would be accepted or walls
+  /// elsewhere could give what it lacks.
   [[nodiscard]] std::optional<std::size_t> whose_walls_to_compare(
       const std::vector<std::size_t>& best_first) const;
   /// The best hypothesis, where it lacks only what having few loops takes away.
