@@ -25,7 +25,7 @@ constexpr double kAboveFloor = 0.02;  ///< Metres: where rays start that look up
 constexpr double kRough = 0.1;        ///< Metres above what wheels climb that still is the floor's roughness.
 /// A closed mesh has about as many roofs, seen from above, as grounds. Where grounds are so many times fewer,
 /// the floor or the roof is missing.
-constexpr std::size_t kFewGrounds = 10;
+constexpr std::size_t kFewGrounds = 3;
 constexpr double kSmallestPart = 4.0;  ///< Square metres: smaller parts of the floor are not told of.
 constexpr double kLargestFloor = 3e7;  ///< Samples of it.
 constexpr float kFarAway = 1e6F;       ///< Metres: no mesh is as large.
