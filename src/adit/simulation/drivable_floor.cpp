@@ -363,7 +363,8 @@ Error no_floor(const TriangleMesh& mesh, const Raycaster& raycaster, const Groun
       size.x(), size.y(), size.z())};
 }
 
-bool is_scrap(const std::vector<std::vector<std::uint32_t>>& parts, double cell) {
+/// Whether no part, if there is any, is large enough to be told of.
+bool are_all_small(const std::vector<std::vector<std::uint32_t>>& parts, double cell) {
   return std::ranges::all_of(parts, [&](const auto& part) {
     return static_cast<double>(part.size()) * cell * cell < kSmallestPart;
   });
@@ -427,7 +428,7 @@ Result<DrivableFloor> drivable_floor(const TriangleMesh& mesh, const Raycaster& 
   find_drivable(grounds.list, raycaster, config);
   phase.advance();
   std::vector<std::vector<std::uint32_t>> parts = parts_of(grounds.list);
-  if (is_scrap(parts, config.cell_m)) {
+  if (are_all_small(parts, config.cell_m)) {
     // Ledges and the like are left where the floor or the roof is missing.
     if (grounds.list.size() * kFewGrounds < grounds.open.size())
       return tl::unexpected(no_floor(mesh, raycaster, grounds, config));
