@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adit authors
 # SPDX-License-Identifier: MIT
-"""Writes seeds/joints.mcap, .db3 and .bag: the recording of tests/conformance/make_bags.py with its LiDAR on a mast that turns (/tf)
+"""Writes seeds/joints.mcap, .db3 and .bag: the recording of tests/conformance/make_recordings.py with its LiDAR on a mast that turns (/tf)
 and with the joints of its wheels (/joint_states)."""
 import math
 import sys
@@ -9,7 +9,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "conformance"))
-import make_bags as bags  # noqa: E402
+import make_recordings as bags  # noqa: E402
 
 plain_messages = bags.messages
 bags.TOPICS += [("/tf", "tf2_msgs", "TFMessage"), ("/joint_states", "sensor_msgs", "JointState")]

@@ -190,6 +190,12 @@ void note_point_times(Recording& recording, const ros::CloudMessage& first, cons
         "point times: none, so that scans are not corrected for the motion during a sweep");
   else if (!first.has_usual_time_unit)
     recording.assumptions.push_back(point_times_note(*first.time_unit, source));
+  if (first.clock_apart_s)
+    recording.assumptions.push_back(
+        format("point times: they are {:.3f} s from the stamps, as by another clock, and are taken to count "
+               "from the start of the sweep, whose first point gets the stamp; if the stamps are of the end "
+               "of the sweep, --set recording.stamp_at=end",
+               *first.clock_apart_s));
 }
 
 /// The latest time of a point, seconds after the stamp; none where times do not count from the stamp.

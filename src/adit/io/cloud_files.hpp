@@ -45,6 +45,9 @@ struct CloudFile {
   /// Of the times as they are stored: given, or found; none where there are no times or too few to tell.
   std::optional<TimeUnit> time_unit = {};
   bool has_usual_time_unit = true;  ///< Seconds of floats, nanoseconds of integers.
+  /// How far the earliest point is from the scan's stamp, where times are of another clock than the stamp
+  /// and count from the earliest point therefore.
+  std::optional<double> clock_apart_s = {};
 };
 
 /// Reads a cloud, in the frame and unit of the file. A missing, truncated or empty file, an unknown extension

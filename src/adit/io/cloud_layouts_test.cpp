@@ -80,7 +80,7 @@ void put_value(std::string& bytes, std::size_t at, Datatype type, double value, 
 }
 
 /// A PointCloud2 of kNum points; bytes that no field covers are filled with rubbish.
-std::string message_of(const Layout& layout) {
+std::string message_of(const Layout& layout, Stamp stamp = kStamp) {
   const auto width = static_cast<std::uint32_t>(kNum / layout.height);
   const std::uint32_t row_step = width * layout.point_step + layout.row_padding;
   std::string data(std::size_t{row_step} * layout.height, '\xAB');
@@ -89,8 +89,8 @@ std::string message_of(const Layout& layout) {
       put_value(data, i / width * row_step + i % width * layout.point_step + field.offset, field.type,
                 field.value(i), layout.is_big_endian);
   CdrWriter writer;
-  writer.number(static_cast<std::int32_t>(kStamp.ns / 1'000'000'000))
-      .number(static_cast<std::uint32_t>(kStamp.ns % 1'000'000'000))
+  writer.number(static_cast<std::int32_t>(stamp.ns / 1'000'000'000))
+      .number(static_cast<std::uint32_t>(stamp.ns % 1'000'000'000))
       .text("lidar")
       .number(layout.height)
       .number(width)
@@ -121,6 +121,8 @@ double seconds_to_end(std::size_t i) { return time_of(i) - kSweep; }
 double nanoseconds_from_start(std::size_t i) { return std::round(1e9 * time_of(i)); }
 double microseconds_from_start(std::size_t i) { return std::round(1e6 * time_of(i)); }
 double absolute_seconds(std::size_t i) { return 1'700'000'000.123456789 + time_of(i); }
+double seconds_of_atoms(std::size_t i) { return absolute_seconds(i) + 37.0; }  // as PTP counts them
+double seconds_since_switched_on(std::size_t i) { return 7200.0 + time_of(i); }
 double absolute_nanoseconds(std::size_t i) { return 1'700'000'000'123'456'789.0 + 1e9 * time_of(i); }
 
 std::vector<LaidField> with_xyz(std::vector<LaidField> further, Datatype type = Datatype::float32) {
@@ -247,6 +249,31 @@ TEST(CloudLayouts, PixelsOfAnOrganisedCloudThatSawNothingAreLeftOut) {
     ++at;
   }
   EXPECT_EQ(at, cloud.size());
+}
+
+TEST(CloudLayouts, AbsoluteTimesOfAnotherClockCountFromTheStartOfTheSweep) {
+  const auto layout = [](double (*time)(std::size_t)) {
+    return Layout{"another clock",
+                  with_xyz({{"intensity", 16, float32, shine_of}, {"timestamp", 24, float64, time}}), 32};
+  };
+  expect_layout(layout(seconds_of_atoms), 0.0, 5e-7);
+  expect_layout(layout(seconds_since_switched_on), 0.0, 5e-7);
+  std::vector<std::pair<Stamp, std::string>> clouds;
+  for (int k = 0; k < 3; ++k) {
+    const Stamp stamp = kStamp + std::chrono::milliseconds(100 * k);
+    clouds.emplace_back(stamp, message_of(layout(seconds_of_atoms), stamp));
+  }
+  test::ForeignFile file;
+  file.cloud_messages("/points", clouds, std::chrono::milliseconds(110))
+      .links({test::link("base_link", "lidar", Pose())});
+  const Result<Recording> recording = file.read();
+  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_EQ(recording->assumptions.size(), 1U);
+  EXPECT_NE(recording->assumptions[0].find("they are 37.000 s from the stamps"), std::string::npos)
+      << recording->assumptions[0];
+  // All points at one time is no sweep.
+  EXPECT_ERROR(ros::decode_cloud(message_of(layout(noise_of))),
+               "the point times span 0 s and lie -1699999923.123 s from");
 }
 
 /// Three sweeps whose times count from their start, recorded some time after their stamps.

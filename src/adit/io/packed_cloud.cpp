@@ -120,13 +120,14 @@ std::int64_t nanoseconds_of(T value, std::int64_t in_unit) {
   }
 }
 
+constexpr double kShortestSweep = 0.002;  // seconds; LiDARs take 0.05 to 0.2
+
 /// What such times usually are.
 TimeUnit usual_unit(ScalarType type) { return is_float(type) ? TimeUnit::seconds : TimeUnit::nanoseconds; }
 
 /// The unit in which the sweep lasts as long as sweeps do; none where too few times are there, or none does.
 std::optional<TimeUnit> unit_of_times(const PackedCloud& packed, const std::vector<Eigen::Vector3f>& points) {
-  constexpr double kShortest = 0.002;  // seconds; LiDARs take 0.05 to 0.2
-  constexpr double kLongest = 2.0;
+  constexpr double kLongest = 2.0;      // seconds
   constexpr std::size_t kEnough = 100;  // times
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
@@ -148,7 +149,7 @@ std::optional<TimeUnit> unit_of_times(const PackedCloud& packed, const std::vect
     likeliest_first = {nanoseconds, microseconds};
   for (const TimeUnit unit : likeliest_first) {
     const double span = (high - low) * 1e-9 * static_cast<double>(nanoseconds_in(unit));
-    if (span >= kShortest && span <= kLongest) return unit;
+    if (span >= kShortestSweep && span <= kLongest) return unit;
   }
   return {};
 }
@@ -187,10 +188,14 @@ Result<> check_layout(const PackedCloud& cloud) {
   return checked;
 }
 
+struct RelativeTimes {
+  std::vector<std::int32_t> offsets_ns;
+  std::optional<double> clock_apart_s;  ///< As in CloudFile.
+};
+
 /// Offsets from the scan's stamp: as they are when they fit, else relative to the stamp, else to the earliest
 /// point.
-Result<std::vector<std::int32_t>> relative_times(const std::vector<std::int64_t>& times,
-                                                 std::optional<Stamp> stamp) {
+Result<RelativeTimes> relative_times(const std::vector<std::int64_t>& times, std::optional<Stamp> stamp) {
   constexpr std::int64_t kLimit = std::numeric_limits<std::int32_t>::max();
   const auto [low_at, high_at] = std::ranges::minmax_element(times);
   const std::int64_t low = *low_at;
@@ -199,21 +204,29 @@ Result<std::vector<std::int32_t>> relative_times(const std::vector<std::int64_t>
   __extension__ using Wide = __int128;
   const auto fits = [&](Wide origin) { return low - origin >= -kLimit && high - origin <= kLimit; };
   const std::int64_t from_stamp = stamp ? stamp->ns : low;
-  const std::int64_t origin = fits(0) ? 0 : from_stamp;
-  if (!fits(origin) && Wide{high} - low <= kLimit)
-    return fail(format(
-        "the point times lie {:.3f} s from the scan's stamp: another clock, or another unit (--point-times)",
-        static_cast<double>(Wide{low} - from_stamp) * 1e-9));
+  const double span_s = static_cast<double>(Wide{high} - low) * 1e-9;
+  const double from_stamp_s = static_cast<double>(Wide{low} - from_stamp) * 1e-9;
+  std::int64_t origin = fits(0) ? 0 : from_stamp;
+  RelativeTimes relative;
+  if (!fits(origin) && Wide{high} - low <= kLimit) {
+    if (span_s < kShortestSweep)
+      return fail(
+          format("the point times span {:.3g} s and lie {:.3f} s from the scan's stamp: another "
+                 "field, or another unit than was taken (--point-times)",
+                 span_s, from_stamp_s));
+    relative.clock_apart_s = from_stamp_s;
+    origin = low;
+  }
   if (!fits(origin)) {
     return fail(
         format("the point times of the sweep span {:.3f} s, more than 2.1 s: another field, or another "
                "unit than was taken (--point-times)",
-               static_cast<double>(Wide{high} - low) * 1e-9));
+               span_s));
   }
-  std::vector<std::int32_t> offsets(times.size());
-  std::ranges::transform(times, offsets.begin(),
+  relative.offsets_ns.resize(times.size());
+  std::ranges::transform(times, relative.offsets_ns.begin(),
                          [&](std::int64_t t) { return static_cast<std::int32_t>(t - origin); });
-  return offsets;
+  return relative;
 }
 
 }  // namespace
@@ -322,8 +335,9 @@ Result<CloudFile> unpack(PackedCloud packed) {
   }
   leave_finite(file, times);
   if (!packed.time || file.cloud.empty()) return file;
-  return relative_times(times, packed.stamp).map([&](std::vector<std::int32_t> offsets) {
-    file.cloud.time_offsets_ns = std::move(offsets);
+  return relative_times(times, packed.stamp).map([&](RelativeTimes relative) {
+    file.cloud.time_offsets_ns = std::move(relative.offsets_ns);
+    file.clock_apart_s = relative.clock_apart_s;
     return std::move(file);
   });
 }

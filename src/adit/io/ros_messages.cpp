@@ -79,6 +79,7 @@ Result<CloudMessage> unpacked(const PackedCloud& packed, CloudMessage out) {
     out.scan.cloud = std::move(file.cloud);
     out.time_unit = file.time_unit;
     out.has_usual_time_unit = file.has_usual_time_unit;
+    out.clock_apart_s = file.clock_apart_s;
     return std::move(out);
   });
 }

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The adit authors
 # SPDX-License-Identifier: MIT
-"""Writes one small recording in three storages, from the descriptions of the formats and without adit's own code:
-    make_bags.py [FOLDER]    tube.mcap (ROS 2, CDR), tube_lz4.mcap and tube_zstd.mcap (in a chunk, compressed by the programs lz4
+"""Writes one small recording in several storages, from the descriptions of the formats and without adit's own code:
+    make_recordings.py [FOLDER]    tube.mcap (ROS 2, CDR), tube_lz4.mcap and tube_zstd.mcap (in a chunk, compressed by the programs lz4
                              and zstd), tube_split (a folder of two such files, as rosbag2 splits a recording), tube.db3 (ROS 2,
-                             SQLite), tube.bag (ROS 1)
+                             SQLite), tube.bag (ROS 1), tube_bz2.bag and tube_lz4.bag (in a chunk that bzip2 and lz4 compress),
+                             tube_kitti (a sequence as KITTI lays it out: no times of points, truth of the camera), tube_pcd (a
+                             folder of PCD files, binary, with a mount and the odometry beside them)
 Three scans of a tube, the robot driving 0.5 m between them; wheel odometry at 20 Hz; the LiDAR 0.9 m above the base. Points
 carry their times as Velodyne's driver (seconds, float32, with padding behind each point) in ROS 2, as Ouster's (nanoseconds,
 uint32, fields in another order) in ROS 1."""
@@ -138,6 +140,10 @@ def write_db3(path):
     db.close()
 
 
+def compress(program, data):
+    return subprocess.run([program, "-9", "-c", "-q"], input=data, capture_output=True, check=True).stdout
+
+
 def write_mcap(path, compression=None, part=slice(None)):
     """`compression`: None for messages without chunks, else the program that compresses the only chunk, lz4 or zstd. `part`:
     which of the messages."""
@@ -150,7 +156,7 @@ def write_mcap(path, compression=None, part=slice(None)):
         return struct.pack("<BQ", op, len(content)) + content
 
     def chunk(records, stamps):
-        packed = subprocess.run([compression, "-9", "-c", "-q"], input=records, capture_output=True, check=True).stdout
+        packed = compress(compression, records)
         head = struct.pack("<QQQI", min(stamps), max(stamps), len(records), 0)
         return record(6, head + text(compression) + struct.pack("<Q", len(packed)) + packed)
 
@@ -185,7 +191,8 @@ def write_split(folder):
     (folder / "metadata.yaml").write_text("\n".join(lines) + "\n")
 
 
-def write_bag(path):
+def write_bag(path, program=None):
+    """`program`: compresses the only chunk, bzip2 or lz4."""
     def record(fields, data):
         header = b""
         for name, value in fields:
@@ -215,7 +222,9 @@ def write_bag(path):
         fields = [("op", b"\x03"), ("index_pos", struct.pack("<Q", index_pos)), ("conn_count", struct.pack("<I", len(TOPICS))),
                   ("chunk_count", struct.pack("<I", 1))]
         return b"#ROSBAG V2.0\n" + record(fields, b" " * (4096 - len(record(fields, b""))))
-    body = record([("op", b"\x05"), ("compression", b"none"), ("size", struct.pack("<I", len(chunk)))], chunk)
+    compression = {None: b"none", "bzip2": b"bz2", "lz4": b"lz4"}[program]
+    body = record([("op", b"\x05"), ("compression", compression), ("size", struct.pack("<I", len(chunk)))],
+                  compress(program, chunk) if program else chunk)
     for i, entries in index.items():
         body += record([("op", b"\x04"), ("ver", struct.pack("<I", 1)), ("conn", struct.pack("<I", i)),
                         ("count", struct.pack("<I", len(entries)))],
@@ -229,6 +238,32 @@ def write_bag(path):
     path.write_bytes(start(chunk_pos + len(body)) + body + end)
 
 
+def write_kitti(folder):
+    """The camera looks along x of the LiDAR: its x is -y there, its y -z."""
+    (folder / "velodyne").mkdir(parents=True, exist_ok=True)
+    for scan in range(NUM_SCANS):
+        points = b"".join(struct.pack("<ffff", x, y, z, intensity) for x, y, z, intensity, _ in points_of(scan))
+        (folder / "velodyne" / f"{scan:06}.bin").write_bytes(points)
+    (folder / "times.txt").write_text("".join(f"{scan * SCAN_NS / 1e9:e}\n" for scan in range(NUM_SCANS)))
+    (folder / "calib.txt").write_text("Tr: 0 -1 0 0 0 0 -1 0 1 0 0 0\n")
+    (folder / "poses.txt").write_text("".join(f"1 0 0 0 0 1 0 0 0 0 1 {0.5 * scan}\n" for scan in range(NUM_SCANS)))
+
+
+def write_pcd(folder):
+    folder.mkdir(exist_ok=True)
+    for scan in range(NUM_SCANS):
+        head = ["# .PCD v0.7 - Point Cloud Data file format", "VERSION 0.7", "FIELDS x y z intensity t", "SIZE 4 4 4 4 4",
+                "TYPE F F F F U", "COUNT 1 1 1 1 1", f"WIDTH {NUM_POINTS}", "HEIGHT 1", "VIEWPOINT 0 0 0 1 0 0 0",
+                f"POINTS {NUM_POINTS}", "DATA binary"]
+        points = b"".join(struct.pack("<ffffI", x, y, z, intensity, round(seconds * 1e9))
+                          for x, y, z, intensity, seconds in points_of(scan))
+        (folder / f"{scan:06}.pcd").write_bytes("\n".join(head).encode() + b"\n" + points)
+    (folder / "stamps.txt").write_text("".join(f"{(BEGIN_NS + scan * SCAN_NS) / 1e9:.1f}\n" for scan in range(NUM_SCANS)))
+    (folder / "odometry.tum").write_text("".join(f"{(BEGIN_NS + i * 50_000_000) / 1e9:.2f} {0.25 * i} 0 0 0 0 0 1\n"
+                                                 for i in range(2 * NUM_SCANS + 1)))
+    (folder / "recording.toml").write_text('robot = "tube"\nmount = "0 0 0.9"\n')
+
+
 if __name__ == "__main__":
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parent)
     write_mcap(folder / "tube.mcap")
@@ -237,3 +272,7 @@ if __name__ == "__main__":
     write_split(folder / "tube_split")
     write_db3(folder / "tube.db3")
     write_bag(folder / "tube.bag")
+    write_bag(folder / "tube_bz2.bag", "bzip2")
+    write_bag(folder / "tube_lz4.bag", "lz4")
+    write_kitti(folder / "tube_kitti")
+    write_pcd(folder / "tube_pcd")
