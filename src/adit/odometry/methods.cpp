@@ -3,6 +3,7 @@
 #include "adit/odometry/methods.hpp"
 
 #include "adit/core/check.hpp"
+#include "adit/odometry/levelled_odometry.hpp"
 
 namespace adit {
 std::string_view to_string(OdometryMethod method) {
@@ -38,7 +39,8 @@ std::unique_ptr<Odometry> make_odometry(const OdometryConfig& config, const Pose
     case OdometryMethod::plane_icp:
       break;
   }
-  return std::make_unique<PlaneIcp>(config.plane_icp, T_base_lidar);
+  return std::make_unique<LevelledOdometry>(std::make_unique<PlaneIcp>(config.plane_icp, T_base_lidar),
+                                            config.plane_icp.tilt);
 }
 
 }  // namespace adit

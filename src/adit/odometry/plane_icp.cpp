@@ -39,6 +39,7 @@ Fields fields_of(PlaneIcpConfig& c) {
   append(fields, "wheels", fields_of(c.wheels));
   append(fields, "motion", fields_of(c.motion));
   append(fields, "imu", fields_of(c.imu));
+  append(fields, "tilt", fields_of(c.tilt));
   return fields;
 }
 

@@ -10,6 +10,7 @@
 #include "adit/odometry/motion_filter.hpp"
 #include "adit/odometry/odometry.hpp"
 #include "adit/odometry/scan_to_planes.hpp"
+#include "adit/odometry/tilt_filter.hpp"
 #include "adit/odometry/wheel_trust.hpp"
 
 namespace adit {
@@ -26,8 +27,9 @@ struct PlaneIcpConfig {
   WheelNoise wheels;
   MotionNoise motion;
   ImuNoise imu;
+  TiltNoise tilt;  ///< Of `LevelledOdometry`, by which `make_odometry` follows gravity.
 };
-/// Those of scan_to_map, without a prefix, and stationary_motion, sigma, wheels.*, motion.*, imu.*.
+/// Those of scan_to_map, without a prefix, and stationary_motion, sigma, wheels.*, motion.*, imu.*, tilt.*.
 [[nodiscard]] Fields fields_of(PlaneIcpConfig& config);
 
 /// adit's own odometry for tunnels. A filter predicts the motion since the last registered scan, by the IMU

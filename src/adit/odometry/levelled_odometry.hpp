@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The adit authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+
+#include "adit/odometry/odometry.hpp"
+#include "adit/odometry/tilt_filter.hpp"
+
+namespace adit {
+
+/// An odometry whose roll and pitch follow gravity, where there is an IMU; without one, what it wraps, bit by
+/// bit. Ranges that are longer or shorter by a little at the roof than at the floor bend a map, by degrees
+/// over some hundred metres. Over a metre and more the mean of the specific force is what the odometry says
+/// of the acceleration, and gravity; a `TiltFilter` finds by it what roll and pitch have drifted by, and the
+/// path goes on from where it is without that. What has been driven is not bent any more. Figures:
+/// docs/decisions/0090-gravity-keeps-a-map-level.md.
+class LevelledOdometry : public Odometry {
+ public:
+  LevelledOdometry(std::unique_ptr<Odometry> odometry, const TiltNoise& noise);
+
+  OdometryStep register_scan(const Scan& scan, const SensedMotion& motion) override;
+  [[nodiscard]] const PointCloud& cloud_of_last_scan() const override {
+    return odometry_->cloud_of_last_scan();
+  }
+
+ private:
+  /// At a scan; integrals over time since some moment, odometry's frame.
+  struct Moment {
+    Stamp stamp;
+    Vector3 imu = Vector3::Zero();       ///< Where the IMU is, metres.
+    Vector3 force = Vector3::Zero();     ///< Integral of the specific force.
+    Matrix3 rotation = Matrix3::Zero();  ///< Integral of the body's rotation.
+    double driven_m = 0.0;               ///< Since the start.
+    Vector3 velocity = Vector3::Zero();  ///< Of the IMU.
+  };
+
+  void feel(const OdometryStep& step, const SensedMotion& motion);
+
+  std::unique_ptr<Odometry> odometry_;
+  TiltFilter tilt_;
+  std::optional<Pose> T_level_odom_;  ///< Takes drift out of what the odometry says, once it is known.
+  std::optional<OdometryStep> last_;  ///< Of the odometry.
+  std::deque<Moment> moments_;        ///< At the last scans, without a gap of the IMU.
+  std::optional<Moment> begin_;       ///< Of what has been felt since the filter measured.
+  double driven_m_ = 0.0;
+  double driven_before_m_ = 0.0;  ///< When the filter measured last.
+};
+
+}  // namespace adit
