@@ -3,6 +3,7 @@
 #include "adit/odometry/path_uncertainty.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "adit/core/angles.hpp"
@@ -24,6 +25,8 @@ constexpr double kLeast = 1e-4;  // metres
 Fields fields_of(PathNoise& c) {
   return {{"drift_per_metre", &c.drift_per_metre, "1/m", 1e-3, 1e3,
            "variance that a metre adds to the path, in covariances of one registration"},
+          {"tilt_deg", &c.tilt_deg, "deg/sqrt(m)", 0.0, 10.0,
+           "roll and pitch of a path beside that, by errors that all scans of a LiDAR share"},
           {"translation", &c.translation, "m/sqrt(m)", 1e-4, 1.0,
            "of odometries that do not state how well they predict"},
           {"rotation_deg", &c.rotation_deg, "deg/sqrt(m)", 1e-4, 10.0, "likewise"},
@@ -62,7 +65,9 @@ Matrix6 PathUncertainty::drift_of(const OdometryStep& step, double metres) {
   if (!step.predicted && step.num_correspondences > 0) is_stated_ = false;
   is_guessed_ = is_guessed_ || step.is_guess;
   if (!step.predicted) return Matrix6::Zero();
-  return config_.drift_per_metre * metres * registration_ + step.predicted->open_drift;
+  Matrix6 drift = config_.drift_per_metre * metres * registration_ + step.predicted->open_drift;
+  drift.block<2, 2>(3, 3).diagonal().array() += std::pow(config_.tilt_deg * kDegree, 2) * metres;
+  return drift;
 }
 
 Matrix6 PathUncertainty::drift() const {

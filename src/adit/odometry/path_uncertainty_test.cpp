@@ -54,6 +54,13 @@ TEST(PathUncertainty, DriftGrowsWithTheDistanceInCovariancesOfARegistration) {
   EXPECT_GT(path.drift()(1, 1), 2.0 * 2.0 * C(1, 1) + 0.5 * 2.0 * C(5, 5) * std::pow(2.0, 3) / 3.0);
 }
 
+TEST(PathUncertainty, RollAndPitchDriftByErrorsThatNoScanStates) {
+  const double stated = driven(1e9 * all_fixed(), 20, PredictedMotion{}).drift()(4, 4);
+  EXPECT_NEAR(std::sqrt(stated), PathNoise().tilt_deg * kDegree * std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(driven(1e9 * all_fixed(), 20, PredictedMotion{}).drift()(3, 3), stated, 1e-12);
+  EXPECT_LT(driven(1e9 * all_fixed(), 20, PredictedMotion{}).drift()(5, 5), 1e-3 * stated);
+}
+
 TEST(PathUncertainty, OpenDirectionsAreThoseOfThePrediction) {
   PredictedMotion predicted;
   predicted.open_drift(0, 0) = 4e-4;
