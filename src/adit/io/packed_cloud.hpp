@@ -67,10 +67,9 @@ void assign_field(PackedCloud& cloud, std::string_view name, PackedField field);
 
 /// Where the unit of point times is not given, it is the one that makes the sweep last 2 ms to 2 s; where
 /// none does, or a hundred times are not there to tell, floats are seconds and integers nanoseconds. Signed
-/// integers are nanoseconds. Times that lie further from the stamp than 2.1 s, as by another clock, count from
-/// the earliest point.
-/// Fails when x, y or z is absent, a field reaches past the bytes, or times span more than 2.1 s. Where no
-/// point is finite, the cloud is empty.
+/// integers are nanoseconds. Times that lie further from the stamp than 2.1 s, as by another clock, count
+/// from the earliest point. Fails when x, y or z is absent, a field reaches past the bytes, or times span
+/// more than 2.1 s. Where no point is finite, the cloud is empty.
 Result<CloudFile> unpack(PackedCloud packed);
 /// `unpack` of a file: fails where it has no finite point, too.
 Result<CloudFile> unpack_file(const PackedCloud& packed);

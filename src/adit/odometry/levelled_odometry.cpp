@@ -13,6 +13,8 @@ namespace {
 constexpr std::size_t kMoments = 5;
 // Metres over which a force is averaged.
 constexpr double kLeastM = 1.0;
+// Share of gravity that is felt at least, of an IMU that works.
+constexpr double kLeastForce = 0.5;
 
 }  // namespace
 
@@ -22,14 +24,14 @@ LevelledOdometry::LevelledOdometry(std::unique_ptr<Odometry> odometry, const Til
 OdometryStep LevelledOdometry::register_scan(const Scan& scan, const SensedMotion& motion) {
   OdometryStep step = odometry_->register_scan(scan, motion);
   if (last_) feel(step, motion);
-  last_ = step;
+  last_ = {step.stamp, step.T_odom_base};
   if (T_level_odom_) step.T_odom_base = *T_level_odom_ * step.T_odom_base;
   return step;
 }
 
 void LevelledOdometry::feel(const OdometryStep& step, const SensedMotion& motion) {
   const Vector3& at = step.T_odom_base.translation();
-  driven_m_ += (at - last_->T_odom_base.translation()).norm();
+  driven_m_ += (at - last_->T_world_body.translation()).norm();
   if (motion.imu.empty()) {
     moments_.clear();
     begin_.reset();
@@ -54,9 +56,11 @@ void LevelledOdometry::feel(const OdometryStep& step, const SensedMotion& motion
   if (measured_m < kLeastM) return;
   const double seconds = to_seconds(end.stamp - begin_->stamp);
   const Vector3 gravity = (end.force - begin_->force - (end.velocity - begin_->velocity)) / seconds;
-  tilt_.measure(gravity, (end.rotation - begin_->rotation) / seconds, measured_m,
-                end.driven_m - driven_before_m_);
-  driven_before_m_ = end.driven_m;
+  if (gravity.norm() > kLeastForce * kGravity) {
+    tilt_.measure(gravity, (end.rotation - begin_->rotation) / seconds, measured_m,
+                  end.driven_m - driven_before_m_);
+    driven_before_m_ = end.driven_m;
+  }
   begin_ = end;
   // The path goes on from where it is.
   const Eigen::Quaterniond R = tilt_.R_start_now();

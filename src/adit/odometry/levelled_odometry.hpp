@@ -42,7 +42,7 @@ class LevelledOdometry : public Odometry {
   std::unique_ptr<Odometry> odometry_;
   TiltFilter tilt_;
   std::optional<Pose> T_level_odom_;  ///< Takes drift out of what the odometry says, once it is known.
-  std::optional<OdometryStep> last_;  ///< Of the odometry.
+  std::optional<StampedPose> last_;   ///< Of the odometry.
   std::deque<Moment> moments_;        ///< At the last scans, without a gap of the IMU.
   std::optional<Moment> begin_;       ///< Of what has been felt since the filter measured.
   double driven_m_ = 0.0;

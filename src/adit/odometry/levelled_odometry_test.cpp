@@ -140,6 +140,20 @@ TEST(LevelledOdometry, GoesOnAfterAnImuWasSilent) {
   EXPECT_LT(levelled_errors(drive).tilt_deg, 1.0);  // 1.5 without
 }
 
+TEST(LevelledOdometry, AnImuThatSendsZerosTakesNothingOut) {
+  LevelledOdometry levelled(std::make_unique<Drifting>(Vector3(0.0, 0.01, 0.0)), TiltNoise());
+  Drifting alone({0.0, 0.01, 0.0});
+  for (int k = 0; k < 300; ++k) {
+    Scan scan;
+    scan.stamp = Stamp{static_cast<std::int64_t>(1e8) * (100 + k)};
+    SensedMotion motion;
+    motion.imu = {{scan.stamp - std::chrono::milliseconds(100)}, {scan.stamp}};
+    const Pose difference = alone.register_scan(scan, {}).T_odom_base.inverse() *
+                            levelled.register_scan(scan, motion).T_odom_base;
+    EXPECT_LT(difference.log().norm(), 1e-9);
+  }
+}
+
 TEST(LevelledOdometry, WithoutAnImuEveryBitIsThatOfTheOdometry) {
   Drifting alone({0.01, 0.01, 0.01});
   LevelledOdometry levelled(std::make_unique<Drifting>(Vector3(0.01, 0.01, 0.01)), TiltNoise());
