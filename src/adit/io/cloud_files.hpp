@@ -45,8 +45,8 @@ struct CloudFile {
   /// Of the times as they are stored: given, or found; none where there are no times or too few to tell.
   std::optional<TimeUnit> time_unit = {};
   bool has_usual_time_unit = true;  ///< Seconds of floats, nanoseconds of integers.
-  /// How far the earliest point is from the scan's stamp, where times are of another clock than the stamp
-  /// and count from the earliest point therefore.
+  /// By how many seconds the earliest point is after the scan's stamp, where times are of another clock than
+  /// the stamp and count from the earliest point therefore.
   std::optional<double> clock_apart_s = {};
 };
 

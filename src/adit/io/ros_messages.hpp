@@ -43,7 +43,7 @@ struct CloudMessage {
   Scan scan;                               ///< With the stamp of the header; points in metres.
   std::optional<TimeUnit> time_unit = {};  ///< As in CloudFile, like the two that follow.
   bool has_usual_time_unit = true;         ///< Seconds of floats, nanoseconds of integers.
-  std::optional<double> clock_apart_s = {};
+  std::optional<double> clock_apart_s = {};  ///< Seconds.
 };
 /// The stamp's seconds must fit 32 bits: see `fits_ros`.
 [[nodiscard]] std::string encode_cloud(const Scan& scan, std::string_view frame);

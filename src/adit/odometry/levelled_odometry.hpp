@@ -19,6 +19,7 @@ namespace adit {
 /// docs/decisions/0090-gravity-keeps-a-map-level.md.
 class LevelledOdometry : public Odometry {
  public:
+  /// Takes what is to be levelled, at its first scan.
   LevelledOdometry(std::unique_ptr<Odometry> odometry, const TiltNoise& noise);
 
   OdometryStep register_scan(const Scan& scan, const SensedMotion& motion) override;

@@ -23,6 +23,7 @@ struct TiltNoise {
 /// once it turns the two part.
 class TiltFilter {
  public:
+  /// Of a drive that begins; what is up is hardly known.
   explicit TiltFilter(const TiltNoise& noise);
 
   /// `force`: mean of the specific force less the mean acceleration, any length but zero, in the odometry's
