@@ -39,10 +39,10 @@ inline constexpr std::string_view kMarkers = "visualization_msgs/msg/MarkerArray
 
 /// A cloud in the frame named.
 struct CloudMessage {
-  std::string frame;                       ///< Of the points, as the header names it.
-  Scan scan;                               ///< With the stamp of the header; points in metres.
-  std::optional<TimeUnit> time_unit = {};  ///< As in CloudFile, like the two that follow.
-  bool has_usual_time_unit = true;         ///< Seconds of floats, nanoseconds of integers.
+  std::string frame;                         ///< Of the points, as the header names it.
+  Scan scan;                                 ///< With the stamp of the header; points in metres.
+  std::optional<TimeUnit> time_unit = {};    ///< As in CloudFile, like the two that follow.
+  bool has_usual_time_unit = true;           ///< Seconds of floats, nanoseconds of integers.
   std::optional<double> clock_apart_s = {};  ///< Seconds.
 };
 /// The stamp's seconds must fit 32 bits: see `fits_ros`.
