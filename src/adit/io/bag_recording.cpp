@@ -191,11 +191,10 @@ void note_point_times(Recording& recording, const ros::CloudMessage& first, cons
   else if (!first.has_usual_time_unit)
     recording.assumptions.push_back(point_times_note(*first.time_unit, source));
   if (first.clock_apart_s)
-    recording.assumptions.push_back(
-        format("point times: they are {:.3f} s from the stamps, as by another clock, and are taken to count "
-               "from the start of the sweep, whose first point gets the stamp; if the stamps are of the end "
-               "of the sweep, --set recording.stamp_at=end",
-               *first.clock_apart_s));
+    recording.assumptions.push_back(format(
+        "point times: they are {:.3f} s from the stamps, as by another clock, and count from the first "
+        "point of the sweep; recording.stamp_at says whether the stamp is of its start or its end",
+        *first.clock_apart_s));
 }
 
 /// The latest time of a point, seconds after the stamp; none where times do not count from the stamp.

@@ -7,7 +7,8 @@
 
 namespace adit {
 
-/// How the attitude of an odometry drifts, and how well an IMU feels what is up. Standard deviations.
+/// How the attitude of an odometry drifts, and how well an IMU feels what is up. Standard deviations,
+/// set by simulated drives with shaking IMUs (docs/decisions/0090-gravity-keeps-a-map-level.md).
 struct TiltNoise {
   double drift_deg = 0.03;  ///< Roll and pitch of the odometry, a random walk: degrees after one metre.
   double force_deg =
