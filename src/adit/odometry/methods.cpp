@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "adit/odometry/methods.hpp"
 
+#include <utility>
+
 #include "adit/core/check.hpp"
 #include "adit/odometry/levelled_odometry.hpp"
 
@@ -39,8 +41,9 @@ std::unique_ptr<Odometry> make_odometry(const OdometryConfig& config, const Pose
     case OdometryMethod::plane_icp:
       break;
   }
-  return std::make_unique<LevelledOdometry>(std::make_unique<PlaneIcp>(config.plane_icp, T_base_lidar),
-                                            config.plane_icp.tilt);
+  auto plane_icp = std::make_unique<PlaneIcp>(config.plane_icp, T_base_lidar);
+  if (config.plane_icp.tilt.drift_deg == 0.0) return plane_icp;
+  return std::make_unique<LevelledOdometry>(std::move(plane_icp), config.plane_icp.tilt);
 }
 
 }  // namespace adit

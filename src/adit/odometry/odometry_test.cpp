@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "adit/core/parallel.hpp"
+#include "adit/odometry/levelled_odometry.hpp"
 #include "support/synthetic_scan.hpp"
 
 namespace adit {
@@ -417,6 +418,13 @@ TEST(OdometryConfig, FieldsCarryTheirPrefixAndDefaultsAreInRange) {
     EXPECT_EQ(config.method, method);
   }
   EXPECT_FALSE(set_field(fields_of(config), "method", "icp"));
+}
+
+TEST(MakeOdometry, PlaneIcpFollowsGravityUnlessNoDriftIsTakenOut) {
+  OdometryConfig config;
+  EXPECT_NE(dynamic_cast<LevelledOdometry*>(make_odometry(config, kMount).get()), nullptr);
+  config.plane_icp.tilt.drift_deg = 0.0;
+  EXPECT_NE(dynamic_cast<PlaneIcp*>(make_odometry(config, kMount).get()), nullptr);
 }
 
 }  // namespace

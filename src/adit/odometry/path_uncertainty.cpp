@@ -23,15 +23,16 @@ constexpr double kLeast = 1e-4;  // metres
 }  // namespace
 
 Fields fields_of(PathNoise& c) {
-  return {{"drift_per_metre", &c.drift_per_metre, "1/m", 1e-3, 1e3,
-           "variance that a metre adds to the path, in covariances of one registration"},
-          {"tilt_deg", &c.tilt_deg, "deg/sqrt(m)", 0.0, 10.0,
-           "roll and pitch of a path beside that, by errors that all scans of a LiDAR share"},
-          {"translation", &c.translation, "m/sqrt(m)", 1e-4, 1.0,
-           "of odometries that do not state how well they predict"},
-          {"rotation_deg", &c.rotation_deg, "deg/sqrt(m)", 1e-4, 10.0, "likewise"},
-          {"guessed", &c.guessed, "", 1.0, 100.0,
-           "factor on that noise where scans come at irregular intervals and there are no wheels"}};
+  return {
+      {"drift_per_metre", &c.drift_per_metre, "1/m", 1e-3, 1e3,
+       "variance that a metre adds to the path, in covariances of one registration"},
+      {"roll_pitch_deg", &c.roll_pitch_deg, "deg/sqrt(m)", 0.0, 10.0,
+       "random walk of roll and pitch that no scan states, as ranges of one LiDAR err alike in all scans"},
+      {"translation", &c.translation, "m/sqrt(m)", 1e-4, 1.0,
+       "of odometries that do not state how well they predict"},
+      {"rotation_deg", &c.rotation_deg, "deg/sqrt(m)", 1e-4, 10.0, "likewise"},
+      {"guessed", &c.guessed, "", 1.0, 100.0,
+       "factor on that noise where scans come at irregular intervals and there are no wheels"}};
 }
 
 Matrix6 random_walk(const PathNoise& noise, double distance_m) {
@@ -66,7 +67,7 @@ Matrix6 PathUncertainty::drift_of(const OdometryStep& step, double metres) {
   is_guessed_ = is_guessed_ || step.is_guess;
   if (!step.predicted) return Matrix6::Zero();
   Matrix6 drift = config_.drift_per_metre * metres * registration_ + step.predicted->open_drift;
-  drift.block<2, 2>(3, 3).diagonal().array() += std::pow(config_.tilt_deg * kDegree, 2) * metres;
+  drift.block<2, 2>(3, 3).diagonal().array() += std::pow(config_.roll_pitch_deg * kDegree, 2) * metres;
   return drift;
 }
 

@@ -21,7 +21,7 @@ struct PathNoise {
   /// Of roll and pitch beside that, a random walk, degrees after one metre: LiDARs whose ranges err with the
   /// angle at which they meet a wall, or from ring to ring, bend a map evenly, with no scan that says so.
   /// Measured on simulated drives: docs/decisions/0091-roll-and-pitch-drift.md.
-  double tilt_deg = 0.03;
+  double roll_pitch_deg = 0.03;
   /// Of methods that do not state how well they predict: sigma after one metre, metres and degrees. They move
   /// in fewer directions than a scan could fix, so that its information says too much.
   double translation = 0.05;

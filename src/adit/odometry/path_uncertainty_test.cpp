@@ -56,7 +56,7 @@ TEST(PathUncertainty, DriftGrowsWithTheDistanceInCovariancesOfARegistration) {
 
 TEST(PathUncertainty, RollAndPitchDriftByErrorsThatNoScanStates) {
   const double stated = driven(1e9 * all_fixed(), 20, PredictedMotion{}).drift()(4, 4);
-  EXPECT_NEAR(std::sqrt(stated), PathNoise().tilt_deg * kDegree * std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(std::sqrt(stated), PathNoise().roll_pitch_deg * kDegree * std::sqrt(2.0), 1e-6);
   EXPECT_NEAR(driven(1e9 * all_fixed(), 20, PredictedMotion{}).drift()(3, 3), stated, 1e-12);
   EXPECT_LT(driven(1e9 * all_fixed(), 20, PredictedMotion{}).drift()(5, 5), 1e-3 * stated);
 }

@@ -42,31 +42,43 @@ void TiltFilter::measure(const Vector3& force, const Matrix3& R_odom_base, doubl
                          double driven_m) {
   ADIT_CHECK(measured_m > 0.0, "a force is felt over some distance");
   const Vector3 up = force.normalized();
-  if (!started_) {
-    R_level_odom_ = levelled(up).rotation_matrix();
-    started_ = true;
-  }
+  if (num_believed_ == 0) R_up_odom_ = levelled(up).rotation_matrix();
   covariance_.block<2, 2>(kNow, kNow).diagonal().array() +=
       std::pow(noise_.drift_deg * kDegree, 2) * driven_m;
   Eigen::Matrix<double, 2, kSize> H = Eigen::Matrix<double, 2, kSize>::Zero();
   H.middleCols<2>(kNow).setIdentity();
-  H.middleCols<3>(kOffset) = (R_level_odom_ * R_odom_base).topRows<2>();
-  const Eigen::Vector2d innovation = (R_level_odom_ * up).head<2>() - H * state_;
+  H.middleCols<3>(kOffset) = (R_up_odom_ * R_odom_base).topRows<2>();
+  const Eigen::Vector2d innovation = (R_up_odom_ * up).head<2>() - H * state_;
   Eigen::Matrix2d S = H * covariance_ * H.transpose();
   S.diagonal().array() += std::pow(noise_.force_deg * kDegree, 2) / measured_m;
   const Eigen::LLT<Eigen::Matrix2d> factor(S);
-  if (innovation.dot(factor.solve(innovation)) > kMostSigmas * kMostSigmas) return;
+  if (innovation.dot(factor.solve(innovation)) > kMostSigmas * kMostSigmas) {
+    if (num_believed_ == 1)
+      *this = TiltFilter(noise_);
+    else if (may_have_jumped_)
+      forget_now();
+    return;
+  }
+  ++num_believed_;
+  may_have_jumped_ = false;
   const Eigen::Matrix<double, kSize, 2> gain = factor.solve(H * covariance_).transpose();
   state_ += gain * innovation;
   covariance_ -= gain * H * covariance_;
   covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
 }
 
+/// What was up before a jump says nothing of what is up now; the start and the offset are what they were.
+void TiltFilter::forget_now() {
+  covariance_.middleRows<2>(kNow).setZero();
+  covariance_.middleCols<2>(kNow).setZero();
+  covariance_.block<2, 2>(kNow, kNow).diagonal().setConstant(kUnknown * kUnknown);
+}
+
 Eigen::Quaterniond TiltFilter::R_start_now() const {
   const Vector3 start = unit_with(state_.segment<2>(kStart));
   const Vector3 now = unit_with(state_.segment<2>(kNow));
   // The shortest turn: half of it is between the two.
-  const Vector3 axis = R_level_odom_.transpose() * now.cross(start);
+  const Vector3 axis = R_up_odom_.transpose() * now.cross(start);
   return Eigen::Quaterniond(1.0 + now.dot(start), axis.x(), axis.y(), axis.z()).normalized();
 }
 
