@@ -209,7 +209,7 @@ TEST(Session, ExplainsWhyItDidNotMergeAndWhereToDrive) {
   EXPECT_EQ(pair["hypotheses"][0]["outcome"], "unsure");
   ASSERT_TRUE(pair.contains("where_to_drive")) << pair["why"];
   EXPECT_GT(pair["where_to_drive"]["missing"].get<double>(), 0.0);
-  EXPECT_NE(pair["why"].get<std::string>().find(" go on along the path of "), std::string::npos)
+  EXPECT_NE(pair["why"].get<std::string>().find(" drive along the path of "), std::string::npos)
       << pair["why"];
 }
 

@@ -339,14 +339,23 @@ Agent::Replies Agent::conclude_check(RobotId peer) {
 
 MergeCheck Agent::with_advice(MergeCheck verdict, const MergeChecker& checker) {
   const std::optional<UndecidedStretch> undecided = checker.undecided();
-  if (!undecided) return verdict;
-  const std::optional<MergeAdvice> advice =
-      where_to_drive(*undecided, chain_by(verdict.a), chain_by(verdict.b),
-                     config_.adaptive.merge_check.spacing_m, what_own_map_knows(discernment()));
+  const bool is_nothing_shared =
+      verdict.refused_kind == RefusalKind::no_loop || verdict.refused_kind == RefusalKind::other_tunnel;
+  if (!undecided && !is_nothing_shared) return verdict;
+  const double spacing_m = config_.adaptive.merge_check.spacing_m;
+  const OdometryChain own = chain_by(verdict.a);
+  std::optional<MergeAdvice> advice;
+  if (undecided)
+    advice =
+        where_to_drive(*undecided, own, chain_by(verdict.b), spacing_m, what_own_map_knows(discernment()));
+  if (!advice)
+    advice = where_to_be_recognised(own, undecided ? undecided->shared : std::vector<std::uint32_t>(),
+                                    undecided ? undecided->missing : verdict.needed, spacing_m,
+                                    landmarks_of(search_->self_distances(), discernment()));
   const std::string& name_a = known().robots.at(verdict.a).name;
   const std::string& name_b = known().robots.at(verdict.b).name;
   if (!advice) {
-    verdict.reason += format(", but {} has been to no place beyond it that would tell", name_a);
+    verdict.reason += format(", but {} has been to no place that would tell", name_a);
     return verdict;
   }
   verdict = checker.verdict(verdict.a, verdict.b, in_words(*advice, name_a, name_b));

@@ -44,8 +44,14 @@ TEST(AdaptiveAgent, KeepsRobotsOfTwoStreetsApartWithAReason) {
   fleet.meet();
   const FleetSolution solution = fleet.agents[0].solve({});
   EXPECT_FALSE(solution.pairs[0].merged);
-  EXPECT_FALSE(solution.pairs[0].refused_reason.empty());
   EXPECT_EQ(solution.components.size(), 2U);
+  // And where the other robot would be recognised.
+  const MergeCheck& check = fleet.agents[0].known().checks.at({fleet.agents[0].id(), fleet.agents[1].id()});
+  ASSERT_TRUE(check.advice) << check.reason;
+  EXPECT_GT(check.advice->gain, 0.0);
+  EXPECT_NE(solution.pairs[0].refused_reason.find("let robot_1 drive along the path of robot_0 from"),
+            std::string::npos)
+      << solution.pairs[0].refused_reason;
 }
 
 TEST(AdaptiveAgent, RegistersNoMoreCandidatesThanAskedFor) {
@@ -318,7 +324,7 @@ TEST(AdaptiveAgent, ADriveThatFollowsTheAdviceIsMergedWithTheEvidenceItPromised)
   ASSERT_FALSE(before.accepted) << before.reason;
   EXPECT_EQ(before.refused_kind, RefusalKind::too_little) << before.reason;
   ASSERT_TRUE(before.advice) << before.reason;
-  EXPECT_NE(before.reason.find("let robot_1 go on along the path of robot_0 from"), std::string::npos)
+  EXPECT_NE(before.reason.find("let robot_1 drive along the path of robot_0 from"), std::string::npos)
       << before.reason;
   EXPECT_NEAR(before.advice->missing, before.needed - before.evidence, 1e-9);
   EXPECT_GE(before.advice->gain, before.advice->missing);

@@ -153,9 +153,10 @@ std::vector<FittedValue> fitted_values(const std::vector<JudgedHypothesis>& hypo
 Table evidence_table(const EvidenceModel& in_use, const std::vector<FittedValue>& fitted) {
   Table table{
       "The evidence model",
-      "Every value that decides a merge: as in use, and as the hypotheses of this run have it. In brackets "
+      "Every value of the evidence model: as in use, and as the hypotheses of this run have it. In brackets "
       "the number of hypotheses, and of shares the upper limit at a confidence of 95 %. Values without a fit "
-      "are chosen, or no count of hypotheses shows them. docs/configuration.md has their meaning.",
+      "are chosen, or no count of hypotheses shows them. docs/configuration.md has "
+      "their meaning; scales of measuring are in docs/scales_of_measuring.md.",
       {},
       {"Value", "Unit", "In use", "Fitted here", "Source", "Date"},
       {}};

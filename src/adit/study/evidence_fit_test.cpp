@@ -94,6 +94,7 @@ TEST(EvidenceFit, CopiesAreThoseThatAgreeMoreOftenThanLookAlikesDoByChance) {
 TEST(EvidenceFit, WithoutHypothesesNothingIsFitted) {
   EXPECT_TRUE(fitted_values({}, {}).empty());
   const Table table = evidence_table({}, {});
+  EXPECT_NE(table.caption.find("scales of measuring are in"), std::string::npos) << "not all that decides";
   EXPECT_EQ(table.rows.size(), evidence_entries({}).size());
   for (const auto& row : table.rows) {
     ASSERT_EQ(row.size(), table.header.size());

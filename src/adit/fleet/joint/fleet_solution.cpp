@@ -9,6 +9,7 @@
 #include "adit/fleet/joint/condensed_graph.hpp"
 #include "adit/fleet/joint/frames.hpp"
 #include "adit/fleet/joint/loop_selection.hpp"
+#include "adit/fleet/merge/merge_advice.hpp"
 
 namespace adit {
 
@@ -82,6 +83,13 @@ struct Refusal {
   std::string reason;
 };
 
+/// By the merge check, or where it names no place, `anywhere`.
+std::string where_to_drive_for(const FleetGraph& fleet, const PairOutcome& pair, std::string anywhere) {
+  const auto check = fleet.checks.find({pair.a, pair.b});
+  if (check == fleet.checks.end() || !check->second.advice) return anywhere;
+  return in_words(*check->second.advice, fleet.robots.at(pair.a).name, fleet.robots.at(pair.b).name);
+}
+
 /// Where no loop can take part.
 Refusal without_loops(const FleetGraph& fleet, const PairOutcome& pair, const Tried& tried) {
   for (const RobotId robot : {pair.a, pair.b}) {
@@ -101,15 +109,19 @@ Refusal without_loops(const FleetGraph& fleet, const PairOutcome& pair, const Tr
   if (tried.num_rejected == 0 && unsearched != fleet.unsearched.end())
     return {RefusalKind::no_loop, unsearched->second};
   if (tried.num_rejected == 0) {
-    return {RefusalKind::no_loop, format("no keyframe of {} resembled one of {}; drive on until both have "
-                                         "passed the same place, none is known yet",
-                                         fleet.robots.at(pair.a).name, fleet.robots.at(pair.b).name)};
+    return {RefusalKind::no_loop,
+            format("no keyframe of {} resembled one of {}; {}", fleet.robots.at(pair.a).name,
+                   fleet.robots.at(pair.b).name,
+                   where_to_drive_for(fleet, pair,
+                                      "drive on until both have passed the same place, none is known yet"))};
   }
   const auto most = std::ranges::max_element(tried.reasons, {}, &decltype(tried.reasons)::value_type::second);
-  return {RefusalKind::no_loop,
-          format("none of {} candidates could be registered (mostly: {}); drive on until both have passed "
-                 "the same place, nearer to one another, none is known yet",
-                 tried.num_rejected, most->first)};
+  return {
+      RefusalKind::no_loop,
+      format("none of {} candidates could be registered (mostly: {}); {}", tried.num_rejected, most->first,
+             where_to_drive_for(fleet, pair,
+                                "drive on until both have passed the same place, nearer to one another, "
+                                "none is known yet"))};
 }
 
 /// Why the solver found no poses for the map that these loops would make; empty where it did, or where none

@@ -43,6 +43,8 @@ Fields fields_of(MergeCheckConfig& c) {
        "places compared per hypothesis before the best ones are compared further"},
       {"max_hypotheses", &c.max_hypotheses, "", 1, 1000,
        "sets of consistent loops that are tested, the largest ones"},
+      {"loops_agree", &c.loops_agree, "", 0.01, 0.999999,
+       "loops are of one set if each two agree as true loops do with this probability"},
       {"same_alignment_m", &c.same_alignment_m, "m", 0.0, 1000.0,
        "hypotheses are one if they put the other robot within this distance of one another"},
       {"misplaced_m", &c.misplaced_m, "m", 0.0, 1000.0,

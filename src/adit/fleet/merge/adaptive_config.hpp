@@ -39,6 +39,7 @@ struct MergeCheckConfig {
   int max_found_again = 8;
   int first_checks = 8;
   int max_hypotheses = 12;
+  double loops_agree = 0.99;
   double same_alignment_m = 3.0;
   double misplaced_m = 0.75;
   int misplaced_keyframes = 60;

@@ -154,7 +154,8 @@ Fields fields_of(EvidenceModel& c) {
        "what differs within this of where a change of structure was first seen belongs to it: half of 20 m "
        "of fresh lining to each side"},
       {"thing_reach_m", &c.thing_reach_m, "m", 0.1, 100.0,
-       "the same for what may come and go: the length of a vehicle"},
+       "the same for what may come and go, which is counted and told and is no evidence: the length of a "
+       "vehicle"},
       {"differing_at_worst", &c.differing_at_worst, "", 0.5, 1.0,
        "share of the places of one tunnel that differ at the first look, at worst; where one place more "
        "does, changes count before a second look confirms them"},

@@ -241,7 +241,9 @@ std::vector<Hypothesis> hypotheses_of(const LoopsBetween& between, double reach_
   std::iota(rest.begin(), rest.end(), std::size_t{0});
   while (!rest.empty() && hypotheses.size() < static_cast<std::size_t>(check.max_hypotheses)) {
     Hypothesis hypothesis(config);
-    for (const std::size_t l : pcm(between.own, between.theirs, picked(between.loops, rest)).largest)
+    const PcmConfig agreeing{.probability = check.loops_agree};
+    for (const std::size_t l :
+         pcm(between.own, between.theirs, picked(between.loops, rest), agreeing).largest)
       hypothesis.loops.push_back(rest[l]);
     std::erase_if(rest, [&](std::size_t l) { return std::ranges::binary_search(hypothesis.loops, l); });
     hypothesis.loops = without_misplaced(hypothesis.loops, between, check);

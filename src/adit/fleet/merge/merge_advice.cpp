@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "adit/core/format.hpp"
@@ -17,6 +18,7 @@ constexpr double kFarthest = 100.0;      // metres along the path that a drive i
 constexpr std::size_t kMostPlaces = 70;  // that are asked about: 33 beyond each end, and what rounding adds
 constexpr double kBeen = 5.0;            // metres, a tunnel's width: a robot this near has been there
 constexpr double kOnePart = 20.0;        // metres: places of one stretch are not farther apart along the path
+constexpr std::size_t kOfALandmark = 20;  // places that a robot is asked to pass to be recognised
 
 /// Own keyframes beyond an end of what both drove, in the order in which they would be passed.
 struct Way {
@@ -184,19 +186,66 @@ bool is_better(const MergeAdvice& one, const MergeAdvice& other, const DriveSear
   return search.is_decided(one) || (!search.is_decided(other) && one.gain > other.gain);
 }
 
-}  // namespace
+/// The own path but for what is near one of the `shared` keyframes: stretches of places.
+std::vector<std::vector<std::uint32_t>> stretches_apart_from(const std::vector<std::uint32_t>& shared,
+                                                             const OdometryChain& own, double spacing_m) {
+  const std::vector<double>& path_m = own.path_m();
+  std::vector<std::vector<std::uint32_t>> out;
+  double last_m = -std::numeric_limits<double>::infinity();
+  for (std::uint32_t k = 0; k < own.size(); ++k) {
+    if (path_m[k] - last_m < spacing_m) continue;
+    const Vector3 position = own.pose(k).translation();
+    if (std::ranges::any_of(shared, [&](std::uint32_t other) {
+          return (own.pose(other).translation() - position).norm() < kBeen;
+        }))
+      continue;
+    if (path_m[k] - last_m > kOnePart) out.emplace_back();
+    out.back().push_back(k);
+    last_m = path_m[k];
+  }
+  return out;
+}
 
-OwnMapKnows what_own_map_knows(Discernment& discernment) {
-  const auto distinctive = [&discernment](const std::vector<std::uint32_t>& keyframes) {
+/// At most `kOfALandmark` places in a row whose distances from look-alikes sum up to most.
+std::vector<std::uint32_t> most_outstanding(const std::vector<std::vector<std::uint32_t>>& stretches,
+                                            const std::vector<double>& distances) {
+  std::vector<std::uint32_t> best;
+  double most = 0.0;
+  for (const std::vector<std::uint32_t>& stretch : stretches) {
+    double sum = 0.0;
+    for (std::size_t end = 1; end <= stretch.size(); ++end) {
+      const std::size_t begin = end - std::min(end, kOfALandmark);
+      sum += distances[stretch[end - 1]];
+      if (begin > 0) sum -= distances[stretch[begin - 1]];
+      if (sum <= most) continue;
+      most = sum;
+      best.assign(stretch.begin() + static_cast<std::ptrdiff_t>(begin),
+                  stretch.begin() + static_cast<std::ptrdiff_t>(end));
+    }
+  }
+  return best;
+}
+
+std::function<std::vector<bool>(const std::vector<std::uint32_t>&)> asked_of(Discernment& discernment) {
+  return [&discernment](const std::vector<std::uint32_t>& keyframes) {
     return discernment.distinctive(keyframes);
   };
+}
+
+}  // namespace
+
+OwnLandmarks landmarks_of(std::vector<double> distances, Discernment& discernment) {
+  return {std::move(distances), discernment.measured().look_alikes.chances(), asked_of(discernment)};
+}
+
+OwnMapKnows what_own_map_knows(Discernment& discernment) {
   const auto differ = [&discernment](const std::vector<OwnComparison>& pairs) {
     std::vector<bool> out;
     for (const LocalFit& fit : discernment.compare(pairs, FitFrom::guess))
       out.push_back(discernment.differ(fit.agreement));
     return out;
   };
-  return {distinctive, differ};
+  return {asked_of(discernment), differ};
 }
 
 std::optional<MergeAdvice> where_to_drive(const UndecidedStretch& stretch, const OdometryChain& own,
@@ -216,9 +265,28 @@ std::optional<MergeAdvice> where_to_drive(const UndecidedStretch& stretch, const
   return best;
 }
 
+std::optional<MergeAdvice> where_to_be_recognised(const OdometryChain& own,
+                                                  const std::vector<std::uint32_t>& shared, double missing,
+                                                  double spacing_m, const OwnLandmarks& landmarks) {
+  const std::vector<std::uint32_t> places =
+      most_outstanding(stretches_apart_from(shared, own, spacing_m), landmarks.distances);
+  if (places.empty()) return {};
+  const std::vector<bool> distinctive = landmarks.distinctive(places);
+  MergeAdvice out;
+  out.from_m = own.path_m()[places.front()];
+  out.from = own.pose(places.front()).translation();
+  out.missing = missing;
+  std::size_t num_agreed = 0;
+  for (std::size_t i = 0; i < places.size() && out.gain < missing; ++i) {
+    out.to_m = own.path_m()[places[i]];
+    if (distinctive[i]) out.gain += evidence_of_agreement(landmarks.chances, num_agreed++);
+  }
+  return out.gain > 0.0 ? std::optional(out) : std::nullopt;
+}
+
 std::string in_words(const MergeAdvice& advice, std::string_view name_a, std::string_view name_b) {
   return format(
-      "let {} go on along the path of {} from {:.0f} m (x {:.1f}, y {:.1f} m of its odometry) {} {:.0f} m: "
+      "let {} drive along the path of {} from {:.0f} m (x {:.1f}, y {:.1f} m of its odometry) {} {:.0f} m: "
       "these {:.0f} m are worth {:.1f}, where {:.1f} is missing",
       name_b, name_a, advice.from_m, advice.from.x(), advice.from.y(),
       advice.to_m < advice.from_m ? "back to" : "to", advice.to_m, std::abs(advice.to_m - advice.from_m),

@@ -50,6 +50,25 @@ struct OwnMapKnows {
                                                         const OdometryChain& own, const OdometryChain& theirs,
                                                         double spacing_m, const OwnMapKnows& own_map);
 
+/// What of the own map a robot would be recognised by that drives there.
+struct OwnLandmarks {
+  std::vector<double> distances;  ///< Of each keyframe's descriptor to the most similar other place (0 to 1).
+  ChancesToGoOn chances{};        ///< Of look-alikes.
+  /// Discernment::distinctive.
+  std::function<std::vector<bool>(const std::vector<std::uint32_t>& keyframes)> distinctive;
+};
+/// By that discernment, which must outlive the answer.
+[[nodiscard]] OwnLandmarks landmarks_of(std::vector<double> distances, Discernment& discernment);
+
+/// Where nothing beyond the own keyframes `shared`, if any, is known to be shared: of all stretches of the
+/// own path, up to 60 m each, the one whose places stand out most from the rest of the map, up to where they
+/// are worth `missing`. Their worth is that of their scans; walls are not known before they are met. None
+/// where no place there would be evidence. Asks about at most 20 keyframes, `spacing_m` apart.
+[[nodiscard]] std::optional<MergeAdvice> where_to_be_recognised(const OdometryChain& own,
+                                                                const std::vector<std::uint32_t>& shared,
+                                                                double missing, double spacing_m,
+                                                                const OwnLandmarks& landmarks);
+
 /// Half a sentence: who should drive where, and what that is worth.
 [[nodiscard]] std::string in_words(const MergeAdvice& advice, std::string_view name_a,
                                    std::string_view name_b);

@@ -187,11 +187,68 @@ TEST(MergeAdvice, BetweenRivalsOnlyPlacesThatLookDifferentCount) {
   EXPECT_NEAR(advice->gain, loss + gain_of(1, met.num_passed()), 1e-12);
 }
 
+/// A map of 200 m of which the descriptors of 100 to 140 m are like no others.
+struct Own {
+  OdometryChain chain = along_x(401);
+  std::vector<std::uint32_t> shared;
+  std::size_t num_asked = 0;
+
+  template <class IsDistinctive>
+  std::optional<MergeAdvice> advice(double missing, const IsDistinctive& is_distinctive) {
+    OwnLandmarks landmarks;
+    for (std::size_t k = 0; k < chain.size(); ++k) {
+      const double m = kStep * static_cast<double>(k);
+      landmarks.distances.push_back(m >= 100.0 && m <= 140.0 ? 0.6 : 0.2);
+    }
+    landmarks.chances = kChances;
+    landmarks.distinctive = [&](const std::vector<std::uint32_t>& keyframes) {
+      num_asked += keyframes.size();
+      std::vector<bool> out;
+      for (const std::uint32_t k : keyframes) out.push_back(is_distinctive(kStep * k));
+      return out;
+    };
+    return where_to_be_recognised(chain, shared, missing, kSpacing, landmarks);
+  }
+};
+
+TEST(MergeAdvice, WhereNothingIsSharedItLeadsToWhatStandsOutMost) {
+  Own own;
+  const std::optional<MergeAdvice> advice = own.advice(100.0, kEverywhere);
+  ASSERT_TRUE(advice);
+  EXPECT_LE(advice->from_m, 100.0 + kSpacing);
+  EXPECT_GE(advice->to_m, 140.0 - kSpacing);
+  EXPECT_NEAR(advice->from.x(), advice->from_m, 1e-9);
+  EXPECT_EQ(own.num_asked, 20U);
+  EXPECT_NEAR(advice->gain, gain_of(20, 0), 1e-12);
+  EXPECT_EQ(advice->missing, 100.0);
+}
+
+TEST(MergeAdvice, WhereNothingIsSharedItEndsWhereEnoughIsToBeExpected) {
+  Own own;
+  const std::optional<MergeAdvice> advice = own.advice(1.0, [](double m) { return m > 110.0; });
+  ASSERT_TRUE(advice);
+  EXPECT_GE(advice->gain, 1.0);
+  EXPECT_LT(advice->gain, 1.0 + gain_of(1, 0));
+  EXPECT_GT(advice->to_m, 110.0);
+  EXPECT_LT(advice->to_m, 125.0);
+}
+
+TEST(MergeAdvice, ItLeadsToNoPlaceThatIsSharedOrWouldTellNothing) {
+  Own own;
+  EXPECT_FALSE(own.advice(1.0, kNowhere));
+  for (std::uint32_t k = 160; k <= 320; k += 4) own.shared.push_back(k);  // 80 to 160 m
+  const std::optional<MergeAdvice> advice = own.advice(100.0, kEverywhere);
+  ASSERT_TRUE(advice);
+  EXPECT_TRUE(advice->to_m < 80.0 || advice->from_m > 160.0) << advice->from_m << " to " << advice->to_m;
+  for (std::uint32_t k = 0; k < own.chain.size(); ++k) own.shared.push_back(k);
+  EXPECT_FALSE(own.advice(1.0, kEverywhere));
+}
+
 TEST(MergeAdvice, NamesRobotsPlaceMetresAndGain) {
   const MergeAdvice on{143.2, 183.0, {51.23, -8.04, 0.0}, 5.11, 4.0};
   EXPECT_EQ(
       in_words(on, "robot_0", "robot_2"),
-      "let robot_2 go on along the path of robot_0 from 143 m (x 51.2, y -8.0 m of its odometry) to 183 "
+      "let robot_2 drive along the path of robot_0 from 143 m (x 51.2, y -8.0 m of its odometry) to 183 "
       "m: these 40 m are worth 5.1, where 4.0 is missing");
   MergeAdvice back = on;
   back.to_m = 100.0;

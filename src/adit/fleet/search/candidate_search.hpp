@@ -62,6 +62,9 @@ class CandidateSearch {
   /// Of the own map; made when it is first asked for, valid as long as this.
   [[nodiscard]] const SelfSimilarity& self_similarity();
 
+  /// SelfSimilarity::distances; computed when they are first asked for.
+  [[nodiscard]] const std::vector<double>& self_distances();
+
   /// Of what `most_similar_places` found, those that stand out most from look-alikes in the own map, at most
   /// a few of each place.
   [[nodiscard]] std::vector<LoopCandidate> most_promising(std::vector<LoopCandidate> found);
@@ -70,7 +73,6 @@ class CandidateSearch {
   [[nodiscard]] std::vector<LoopCandidate> revisits();
 
  private:
-  [[nodiscard]] const std::vector<double>& self_distances();
   [[nodiscard]] std::vector<LoopCandidate> standing_out(std::vector<LoopCandidate> found, std::size_t num);
 
   std::shared_ptr<const RobotMap> map_;
