@@ -126,9 +126,10 @@ struct ConvertOptions {
 const std::map<std::string, CloudFormat> kCloudFormats = {
     {"pcd", CloudFormat::pcd}, {"ply", CloudFormat::ply}, {"bin", CloudFormat::kitti}};
 
-/// Says how many scans a folder of clouds lacks.
+/// Says what a folder of clouds lacks.
 Result<> write_folder(const fs::path& out, const Recording& recording, CloudFormat format) {
   return write_scan_folder(out, recording, format).map([&](std::size_t num_empty) {
+    if (!recording.imu.empty()) print_notes("convert", {"folders hold no IMU; .mcap keeps it"});
     if (num_empty > 0)
       print_notes("convert", {adit::format("{} of {} scans have no points, and no file", num_empty,
                                            recording.num_scans())});
@@ -253,6 +254,14 @@ Result<std::size_t> shared_map_of(const PlacedSession& session, const std::strin
                      fmt::join(names, ", ")));
 }
 
+/// Whose points are which, in files that number the robots; none where there is one.
+std::vector<std::string> numbers_of_robots(const JointMap& map) {
+  if (map.maps.size() < 2) return {};
+  std::vector<std::string> numbers;
+  for (const auto& robot : map.maps) numbers.push_back(format("{} {}", number_in_files(*robot), robot->name));
+  return {format("points are numbered by robot: {}", fmt::join(numbers, ", "))};
+}
+
 Result<Written> convert_map(const PlacedSession& session, const ConvertOptions& options,
                             const MapsConfig& config) {
   const fs::path out = options.out;
@@ -276,6 +285,7 @@ Result<Written> convert_map(const PlacedSession& session, const ConvertOptions& 
   const Result<> written =
       options.mesh ? write_joint_mesh(out, map, config, frame) : write_joint_map(out, map, config, frame);
   if (!written) return tl::unexpected(written.error());
+  if (!options.mesh && !is_for_robots(out)) print_notes("convert", numbers_of_robots(map));
   Written files{out};
   if (extension_of(out) == ".pgm") files.push_back(fs::path(out).replace_extension(".yaml"));
   return files;

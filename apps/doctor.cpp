@@ -61,9 +61,11 @@ Result<> doctor_command(const DoctorOptions& options, const Common& common) {
   const RecordingConfig how = recording_config(config->recording, options.recording);
   const Result<Recording> recording = open_recording(options.input, how);
   if (!recording) return tl::unexpected(recording.error());
-  Result<std::vector<Diagnosis>> found = diagnose(*recording, config->slam.robot);
+  const bool is_bag = is_bag_file(options.input) || is_bag_folder(options.input);
+  Result<std::vector<Diagnosis>> found =
+      diagnose(*recording, config->slam.robot, is_bag ? RecordedAs::bag : RecordedAs::folder_of_clouds);
   if (!found) return tl::unexpected(found.error());
-  if (is_bag_file(options.input) || is_bag_folder(options.input)) {
+  if (is_bag) {
     const Result<Bag> bag = open_bag(options.input);
     if (!bag) return tl::unexpected(bag.error());
     std::ranges::move(diagnose_clocks(*bag, how), std::back_inserter(*found));

@@ -64,7 +64,7 @@ Result<Inputs> open_robots(const std::string& path, RecordingConfig config) {
     print_remarks(of_bag + robot, *recording);
     opened.recordings.push_back(std::move(*recording));
   }
-  if (opened.recordings.empty()) return fail(opened.failed.front().reason);
+  if (opened.recordings.empty()) return fail(reasons_of(opened.failed));
   return opened;
 }
 

@@ -15,6 +15,7 @@
 #include "adit/io/text.hpp"
 #include "adit/io/tum.hpp"
 #include "adit/slam/georeference.hpp"
+#include "adit/slam/kept_control.hpp"
 #include "adit/slam/session_pages.hpp"
 #include "inputs.hpp"
 
@@ -57,21 +58,10 @@ void print_pairs(const Session& session) {
 }
 
 /// The points that earlier sessions kept.
-Control kept_control(const std::vector<Georeference>& earlier, const std::string& command) {
-  Control kept;
-  for (const Georeference& map : earlier) {
-    if (map.crs != earlier.front().crs || (map.crs.empty() && &map != &earlier.front())) {
-      print_notes(
-          command,
-          {format("the maps are in coordinate systems that may differ, '{}' and '{}', so that the new "
-                  "session is in none; adit georeference sets one",
-                  earlier.front().crs, map.crs)});
-      return {};
-    }
-    kept.crs = map.crs;
-    for (const JudgedControl& judged : map.points) kept.points.push_back(judged.point);
-  }
-  return kept;
+Control kept_of(const SlamRun& run, const std::string& command) {
+  KeptControl kept = kept_control(run.georeferences);
+  print_notes(command, kept.notes);
+  return {std::move(kept.points), std::move(kept.crs)};
 }
 
 Result<> georeference_written(const std::string& path, const Control& control, bool json,
@@ -88,10 +78,8 @@ Result<> georeference_written(const std::string& path, const Control& control, b
 
 Result<> without_failures(const SlamRun& run, const std::string& out) {
   if (run.failed.empty()) return {};
-  std::string reasons;
-  for (const FailedRobot& robot : run.failed) reasons += "; " + robot.reason;
-  return fail(format("{} of {} recordings could not be mapped and are missing in {}{}", run.failed.size(),
-                     run.failed.size() + run.num_mapped, out, reasons));
+  return fail(format("{} of {} recordings could not be mapped and are missing in {}; {}", run.failed.size(),
+                     run.failed.size() + run.num_mapped, out, reasons_of(run.failed)));
 }
 
 /// "husky:12": a robot and, where it is stated, the index of its keyframe.
@@ -151,6 +139,12 @@ void add_ruling_options(const Command& command, RulingOptions& options, const st
 
 std::vector<Ruling> rulings_of(const RulingOptions& options) {
   std::vector<Ruling> rulings;
+  for (const std::string& pair : options.withdrawn) {
+    rulings.push_back(ruling_of(pair, Ruling::Kind::withdraw));
+    if (rulings.back().loop)
+      usage_error(
+          format("--withdraw {}: all rulings over two robots are withdrawn at once; write A,B", pair));
+  }
   for (const std::string& pair : options.confirmed) rulings.push_back(ruling_of(pair, Ruling::Kind::confirm));
   for (const std::string& pair : options.vetoes) rulings.push_back(ruling_of(pair, Ruling::Kind::veto));
   return rulings;
@@ -217,7 +211,7 @@ Result<> finish_session(SlamRun run, Job job, OutputDir& out, const std::string&
     print_robots(run);
     print_pairs(run.session);
   }
-  const Control given = control.points.empty() ? kept_control(run.georeferences, command) : control;
+  const Control given = control.points.empty() ? kept_of(run, command) : control;
   const Result<> georeferenced = georeference_written(path, given, json, command);
   const Result<> complete = without_failures(run, path);
   if (complete || georeferenced) return complete ? georeferenced : complete;

@@ -24,10 +24,13 @@ void refuse_configuration(const Common& common);
 struct RulingOptions {
   std::vector<std::string> vetoes;
   std::vector<std::string> confirmed;
+  std::vector<std::string> withdrawn;
+
+  [[nodiscard]] bool empty() const { return vetoes.empty() && confirmed.empty() && withdrawn.empty(); }
 };
-/// --veto and --confirm. `needs`: the option that they are given with; "" where they stand alone.
+/// --veto, --confirm and --withdraw. `needs`: the option that they are given with; "" where they stand alone.
 void add_ruling_options(const Command& command, RulingOptions& options, const std::string& needs = "");
-/// Wrong usage where a pair is not two names.
+/// Wrong usage where a pair is not two names. What is withdrawn comes first.
 [[nodiscard]] std::vector<Ruling> rulings_of(const RulingOptions& options);
 
 struct ControlOptions {

@@ -60,6 +60,16 @@ bool is_changed(const SlamOptions& options) {
          !options.keyframes.empty();
 }
 
+/// The steps in which a session was made, as they can be typed. Where each wrote to is not recorded: one that
+/// goes on writes to its session.
+std::string steps_of(const Provenance& provenance) {
+  std::vector<std::string> steps = provenance.earlier_commands;
+  steps.push_back(provenance.command);
+  for (std::string& step : steps)
+    if (step.find(" --session ") == std::string::npos) step += " --out DIR";
+  return format("{}", fmt::join(steps, "; "));
+}
+
 /// The job of an earlier session, from the provenance in its session.toml.
 Result<Job> job_again(const SlamOptions& options, const Common& common) {
   if (!options.inputs.empty() || is_changed(options) || !is_default(options.recording) ||
@@ -72,15 +82,17 @@ Result<Job> job_again(const SlamOptions& options, const Common& common) {
   Job job;
   job.provenance = std::move(header->provenance);
   if (job.provenance.inputs.empty()) return fail(options.rerun + ": names no inputs; is it a session.toml?");
-  if (!job.provenance.earlier_commands.empty()) {
-    std::string commands;
-    for (const std::string& command : job.provenance.earlier_commands) commands += command + "; ";
-    return fail(format("{}: this session was made in several steps; repeat them one by one: {}{}",
-                       options.rerun, commands, job.provenance.command));
-  }
+  const bool is_georeferenced =
+      std::filesystem::exists(std::filesystem::path(options.rerun).parent_path() / "georeference.toml");
+  if (!job.provenance.earlier_commands.empty())
+    return fail(
+        format("{}: this session was made in several steps; repeat them one by one, each DIR being the "
+               "session that a later step names: {}{}",
+               options.rerun, steps_of(job.provenance),
+               is_georeferenced ? "; its georeference is not among them: adit georeference does it" : ""));
   const Result<> set = parse_config(fields_of(job.config), job.provenance.configuration);
   if (!set) return fail(options.rerun + ": configuration", set.error());
-  if (std::filesystem::exists(std::filesystem::path(options.rerun).parent_path() / "georeference.toml"))
+  if (is_georeferenced)
     print_notes("slam", {format("{} is georeferenced; that is not repeated: adit georeference does it",
                                 options.rerun)});
   if (header->version != version())
@@ -116,6 +128,8 @@ Result<> run_job(Job job, const RunConfig& reading, const std::vector<std::strin
   if (!inputs->world.empty()) job.provenance.world = inputs->world;
   Result<SlamRun> run =
       slam_on(std::move(saved), std::move(inputs->recordings), job.config.slam, rulings_of(options.rulings));
+  if (!run && !inputs->failed.empty())
+    return fail(format("{}; {}", run.error().message, reasons_of(inputs->failed)));
   if (!run) return tl::unexpected(run.error());
   std::ranges::move(inputs->failed, std::back_inserter(run->failed));
   print_notes("slam", run->notes);
@@ -127,8 +141,8 @@ Result<> go_on(const SlamOptions& options, const Common& common) {
   const RecordingConfig recording = reading_of_new(common, options.recording);
   if (is_changed(options) || !options.rerun.empty())
     usage_error("a session goes on as it began; give recordings and how to read them, nothing else");
-  if (options.inputs.empty() && options.rulings.vetoes.empty() && options.rulings.confirmed.empty())
-    usage_error("give recordings to add to the session, or --veto or --confirm");
+  if (options.inputs.empty() && options.rulings.empty())
+    usage_error("give recordings to add to the session, or --veto, --confirm or --withdraw");
   Result<SavedSessions> saved = open_sessions({options.session});
   if (!saved) return tl::unexpected(saved.error());
   Job& job = saved->job;
@@ -142,8 +156,9 @@ Result<> go_on(const SlamOptions& options, const Common& common) {
 Result<> slam_command(const SlamOptions& options, const Common& common) {
   if (!options.session.empty()) return go_on(options, common);
   if (options.out.empty()) usage_error("--out is required: the session directory to write");
-  if (!options.rulings.vetoes.empty() || !options.rulings.confirmed.empty())
-    usage_error("--veto and --confirm rule over what a session has found; give it with --session");
+  if (!options.rulings.empty())
+    usage_error(
+        "--veto, --confirm and --withdraw rule over what a session has found; give it with --session");
   Result<Job> job = options.rerun.empty() ? job_of(options, common) : job_again(options, common);
   if (!job) return tl::unexpected(job.error());
   job->provenance.seed = job->config.simulation.seed;

@@ -93,6 +93,10 @@ TEST(Conformance, OfTheTubeSlamAndOdometryMapNothing) {
   EXPECT_NE(without.find("so kiss-icp (LiDAR alone) instead of plane-icp"), std::string::npos) << without;
   const std::string found = test::run_adit("doctor " + tube).out;
   EXPECT_NE(found.find("PROBLEM  mapping: nothing can be mapped"), std::string::npos) << found;
+  EXPECT_NE(found.find("?        wheels and IMU: too little motion"), std::string::npos) << found;
+  const std::string folder_found = test::run_adit("doctor " + (kCases / "tube_kitti").string()).out;
+  EXPECT_NE(folder_found.find("-> put odometry.tum"), std::string::npos) << folder_found;
+  EXPECT_EQ(folder_found.find("TOPIC"), std::string::npos) << folder_found;
 }
 
 constexpr double kEqual = 1e-6;  // as many digits as the files of trajectories have, and some operations

@@ -80,7 +80,7 @@ TEST(Describe, RulingsSayThatSlamTakesThemWithASession) {
   const auto of_command = [&](std::size_t begin) {
     return text.substr(begin, text.find(";;\n", begin) - begin);
   };
-  for (const std::string option : {"--veto", "--confirm"})
+  for (const std::string option : {"--veto", "--confirm", "--withdraw"})
     EXPECT_TRUE(std::regex_search(of_command(slam),
                                   std::regex(option + R"(\[[^\n]*\(repeatable; needs --session\)\])")))
         << option;

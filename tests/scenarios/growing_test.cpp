@@ -73,7 +73,12 @@ TEST_F(Growing, InStepsGivesWhatAllAtOnceGives) {
   ASSERT_EQ(grown.provenance.earlier_commands.size(), 1U);
   EXPECT_EQ(grown.provenance.earlier_commands.front(), "adit slam " + drive("ahead") + " " + drive("behind"));
   EXPECT_EQ(grown.provenance.robots.size(), 3U);
-  expect_refused("slam --rerun " + in("grown") + "/session.toml --out " + in("again"), 1, "one by one");
+  const std::string rerun = "slam --rerun " + in("grown") + "/session.toml --out " + in("again");
+  expect_refused(rerun, 1,
+                 "adit slam " + drive("ahead") + " " + drive("behind") + " --out DIR; adit slam " +
+                     drive("later") + " --session " + in("grown") + "\n");
+  put_file(folder_ / "grown/georeference.toml", "");
+  expect_refused(rerun, 1, "its georeference is not among them");
 
   // Two teams, who both called a robot alike.
   expect_done("slam robot=" + drive("ahead") + " --out " + in("a"));
@@ -144,6 +149,12 @@ TEST_F(Growing, APersonOverrulesTheTest) {
   EXPECT_EQ(text_of("vetoed/session.toml").find("keeps these maps apart"), std::string::npos)
       << "taken back, and not quoted";
   EXPECT_TRUE(text_of("vetoed/ahead/trajectory.tum") == text_of("s/ahead/trajectory.tum"));
+  // Withdrawn, the test's own verdict counts again.
+  expect_done("slam --session " + in("vetoed") + " --withdraw behind,ahead");
+  EXPECT_EQ(read_session(in("vetoed"))->components.size(), 2U);
+  EXPECT_EQ(text_of("vetoed/session.toml").find("a person"), std::string::npos);
+  expect_refused("slam --session " + in("vetoed") + " --withdraw ahead,behind", 1, "nobody has ruled");
+  expect_refused("slam --session " + in("vetoed") + " --withdraw ahead:1,behind:2", 2, "write A,B");
 
   expect_refused("slam --session " + in("vetoed") + " --confirm far,behind", 1, "no alignment was found");
   expect_refused("slam --session " + in("s") + " --veto ahead,nobody", 1,

@@ -43,5 +43,15 @@ TEST(Namespaces, ARobotWithoutAMountStopsNoOther) {
     EXPECT_TRUE(std::filesystem::exists(folder / "s" / robot / "map.adit")) << robot;
 }
 
+TEST(Namespaces, WhereNoRobotCanBeReadEachHasItsReason) {
+  const test::TemporaryFolder folder;
+  test::ForeignFile file;
+  for (const std::string robot : {"husky1", "husky2"}) file.clouds("/" + robot + "/points", robot + "/lidar");
+  test::put_file(folder / "fleet.mcap", file.bytes());
+  const std::string command =
+      "slam --namespaces " + (folder / "fleet.mcap").string() + " --out " + (folder / "s").string();
+  for (const std::string robot : {"/husky1: ", "/husky2: "}) test::expect_refused(command, 1, robot);
+}
+
 }  // namespace
 }  // namespace adit

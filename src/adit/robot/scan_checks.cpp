@@ -180,16 +180,17 @@ struct OfScan {
 OfScan look_at(const Scan& scan, const Pose& T_base_lidar) {
   constexpr std::size_t kEvery = 16;  // points
   OfScan out;
-  std::vector<Vector3> points;
+  const Matrix3 R_base_lidar = T_base_lidar.rotation_matrix();
+  std::vector<Vector3> points;  // from the LiDAR, in the axes of the base
   std::vector<Vector3> in_base;
   for (const Eigen::Vector3f& point : scan.cloud.points) {
     if (point.isZero()) continue;  // a pixel without a return
-    const Vector3& p = points.emplace_back(point.cast<double>());
+    const Vector3& p = points.emplace_back(R_base_lidar * point.cast<double>());
     out.ranges.push_back(p.norm());
     if (out.ranges.size() % kEvery == 0 && out.ranges.back() > 0.0)
       out.some_directions.push_back(p / out.ranges.back());
     out.seen[static_cast<std::size_t>(sector_of(p))] = true;
-    in_base.push_back(T_base_lidar * p);
+    in_base.push_back(T_base_lidar.translation() + p);
   }
   out.floor = floor_of(in_base, T_base_lidar.translation());
   constexpr double kFloorMargin = 0.15;  // metres

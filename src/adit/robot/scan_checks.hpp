@@ -35,7 +35,7 @@ struct SelfHits {
   double share = 0.0;        ///< Of all returns.
   double nearest_m = 0.0;    ///< From the LiDAR, to 10 cm.
   double farthest_m = 0.0;   ///< From the LiDAR, to 10 cm; at most some 1.2 m are looked at.
-  double azimuth_deg = 0.0;  ///< Of their middle, in the frame of the LiDAR.
+  double azimuth_deg = 0.0;  ///< Of their middle, from the LiDAR, in the axes of the base.
 };
 
 /// What a sample of the scans shows.
@@ -52,7 +52,7 @@ struct ScansSeen {
   double cone_deg = 180.0;         ///< Half the opening of the cone in which 99 of 100 returns lie.
   double field_of_view_deg = 0.0;  ///< Azimuths in which at least one scan in ten has a return.
   std::vector<std::pair<double, double>>
-      blind_deg;                       ///< Sectors without, from and to, anticlockwise, LiDAR frame.
+      blind_deg;  ///< Sectors without, from and to, anticlockwise in the axes of the base: 0 is ahead.
   std::optional<FloorSeen> floor;      ///< None where too few scans show one.
   std::optional<SelfHits> self_hits;   ///< None where there are none; not looked for while the robot stands.
   bool has_moved = false;              ///< By the wheels, 5 m or more between the scans.

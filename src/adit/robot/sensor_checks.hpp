@@ -8,6 +8,7 @@
 /// odometry.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,6 +57,15 @@ struct SensorFinding {
 /// fixed order; none for a recording in which nothing is wrong. A sensor that is not there is not checked.
 [[nodiscard]] std::vector<SensorFinding> use_sound_sensors(Recording& recording);
 
+/// Findings, and what the sensors could be compared with.
+struct SensorsChecked {
+  std::vector<SensorFinding> findings;  ///< Those of use_sound_sensors.
+  bool with_imu = false;                ///< There was motion enough to compare the wheels with the IMU.
+  bool with_scans = false;              ///< The same of the scans, which are asked where there is no IMU.
+};
+/// use_sound_sensors, for those who also ask what nothing was found in.
+[[nodiscard]] SensorsChecked check_sensors(Recording& recording);
+
 // The parts of it.
 
 /// Whether wheels and IMU measured while scans were taken, as they do not where clocks differ.
@@ -64,11 +74,21 @@ struct SensorFinding {
 [[nodiscard]] std::vector<SensorFinding> check_imu_alone(Recording& recording);
 /// The wheels alone: values that stay, values that jump, and the covariances that they state.
 [[nodiscard]] std::vector<SensorFinding> check_wheels_alone(Recording& recording);
+
+/// What a comparison of the wheels has shown.
+struct WheelsCompared {
+  std::vector<SensorFinding> findings = {};  ///< None where nothing is wrong, or nothing could be compared.
+  bool has_enough = false;                   ///< There was motion enough to compare.
+};
 /// The wheels' motion against the IMU's: signs, scale, clocks.
-[[nodiscard]] std::vector<SensorFinding> check_wheels_with_imu(Recording& recording);
+[[nodiscard]] WheelsCompared check_wheels_with_imu(Recording& recording);
 /// The wheels' motion against that between scans, where there is no IMU: signs, scale, clocks. Registers
 /// about 300 scans, where by the wheels the robot turns most; nothing is said where the scans leave a motion
 /// open.
-[[nodiscard]] std::vector<SensorFinding> check_wheels_with_scans(Recording& recording);
+[[nodiscard]] WheelsCompared check_wheels_with_scans(Recording& recording);
+/// By how many seconds the wheels' stamps are too late by the scans, 0 where that is within what can be told;
+/// none where the robot turns too little, or otherwise than the scans have it. The IMU has no say. Registers
+/// scans as check_wheels_with_scans does, and changes nothing.
+[[nodiscard]] std::optional<double> wheels_late_by_scans(const Recording& recording);
 
 }  // namespace adit

@@ -145,13 +145,13 @@ constexpr double kScaleTolerance = 0.05;  // share; skid steering is known no be
 
 std::optional<SensorFinding> check_clock(Trajectory& wheel, const WheelComparison& comparison,
                                          const WheelReference& reference) {
-  const TurnComparison& turns = comparison.turns;
-  if (std::abs(turns.late_s) < comparison.clock_tolerance_s || turns.unexplained > 0.7) return std::nullopt;
-  for (StampedPose& pose : wheel) pose.stamp = pose.stamp - from_seconds(turns.late_s);
+  const double late_s = comparison.late_s();
+  if (late_s == 0.0) return std::nullopt;
+  for (StampedPose& pose : wheel) pose.stamp = pose.stamp - from_seconds(late_s);
   return on_wheels(Finding::wheels_late, Consequence::repaired,
                    format("their stamps are {:.2f} s too {} by {}; they are moved by that; make both drivers "
                           "use one clock",
-                          std::abs(turns.late_s), turns.late_s > 0.0 ? "late" : "early", reference.turns));
+                          std::abs(late_s), late_s > 0.0 ? "late" : "early", reference.turns));
 }
 
 std::optional<SensorFinding> check_sign(bool is_turned, bool is_backward, const WheelReference& reference) {
@@ -200,6 +200,11 @@ std::optional<SensorFinding> check_covariance(const Recording& recording) {
 
 }  // namespace
 
+double WheelComparison::late_s() const {
+  constexpr double kUnexplained = 0.7;
+  return std::abs(turns.late_s) < clock_tolerance_s || turns.unexplained > kUnexplained ? 0.0 : turns.late_s;
+}
+
 std::vector<SensorFinding> judge_wheels(Recording& recording, const WheelComparison& comparison,
                                         const WheelReference& reference) {
   std::vector<SensorFinding> findings;
@@ -232,7 +237,7 @@ std::vector<SensorFinding> check_wheels_alone(Recording& recording) {
   return findings;
 }
 
-std::vector<SensorFinding> check_wheels_with_imu(Recording& recording) {
+WheelsCompared check_wheels_with_imu(Recording& recording) {
   if (recording.wheel.size() < 2 || recording.imu.size() < 2) return {};
   constexpr Duration kHalfWindow = std::chrono::milliseconds(60);
   constexpr WheelReference kReference{"the gyroscope", "the accelerometer",
@@ -242,7 +247,7 @@ std::vector<SensorFinding> check_wheels_with_imu(Recording& recording) {
   WheelComparison comparison;
   comparison.turns = compare_turns(wheels.turn, imu.turn, kHalfWindow);
   comparison.is_backward = forward_correlation(wheels.forward, imu.forward) < -0.3;
-  return judge_wheels(recording, comparison, kReference);
+  return {judge_wheels(recording, comparison, kReference), comparison.turns.has_curves()};
 }
 
 }  // namespace adit

@@ -25,6 +25,10 @@ struct WheelComparison {
   bool is_backward = false;         ///< They count backward as forward.
   std::optional<double> ahead;      ///< Metres driven per metre that they count; none where nothing is known.
   double clock_tolerance_s = 0.04;  ///< Two steps of the grid of rates.
+
+  /// By how much the wheels' stamps are too late; 0 within the tolerance, or where no shift explains much.
+  /// To be asked where turns.agrees().
+  [[nodiscard]] double late_s() const;
 };
 
 /// Takes the wheels out of the recording or moves their stamps by what was found, and says so.

@@ -170,11 +170,8 @@ WheelComparison compare(const Growths& wheels, const std::vector<Stretch>& stret
   return comparison;
 }
 
-}  // namespace
-
-std::vector<SensorFinding> check_wheels_with_scans(Recording& recording) {
-  if (recording.wheel.size() < 2 || !recording.imu.empty()) return {};
-  constexpr WheelReference kReference{"the scans", "the scans", "--mount if the LiDAR's is wrong", "--mount"};
+// By as many batches of stretches as it takes to tell, or as there are.
+WheelComparison compared_with_scans(const Recording& recording) {
   const Growths wheels = growths_of(recording.wheel);
   const std::vector<std::size_t> scans = scans_to_check(recording);
   const std::vector<Indices> chosen = choose_stretches(recording, wheels.turn, scans);
@@ -190,7 +187,24 @@ std::vector<SensorFinding> check_wheels_with_scans(Recording& recording) {
     comparison = compare(wheels, stretches);
     if (comparison.turns.has_curves() && comparison.ahead) break;
   }
-  return judge_wheels(recording, comparison, kReference);
+  return comparison;
+}
+
+}  // namespace
+
+WheelsCompared check_wheels_with_scans(Recording& recording) {
+  if (recording.wheel.size() < 2 || !recording.imu.empty()) return {};
+  constexpr WheelReference kReference{"the scans", "the scans", "--mount if the LiDAR's is wrong", "--mount"};
+  const WheelComparison comparison = compared_with_scans(recording);
+  return {judge_wheels(recording, comparison, kReference),
+          comparison.turns.has_curves() || comparison.ahead.has_value()};
+}
+
+std::optional<double> wheels_late_by_scans(const Recording& recording) {
+  if (recording.wheel.size() < 2) return std::nullopt;
+  const WheelComparison comparison = compared_with_scans(recording);
+  if (!comparison.turns.agrees()) return std::nullopt;
+  return comparison.late_s();
 }
 
 }  // namespace adit

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <utility>
 
 #include "adit/core/angles.hpp"
 #include "adit/core/format.hpp"
@@ -12,9 +14,8 @@
 #include "adit/io/topic_info.hpp"
 #include "adit/robot/mount_by_motion.hpp"
 #include "adit/robot/scan_checks.hpp"
-#include "adit/robot/scan_loop.hpp"
-#include "adit/robot/scan_motion.hpp"
 #include "adit/robot/sensor_checks.hpp"
+#include "adit/slam/doctor_mapping.hpp"
 
 namespace adit {
 namespace {
@@ -86,6 +87,10 @@ Diagnosis point_times(const Recording& recording, const ScansSeen& seen) {
             "let the driver write a time for each point (Ouster t, Velodyne time, Hesai timestamp)"};
   const std::string sentence =
       format("from {:.3f} s of a sweep, of which one comes every {:.3f} s", seen.sweep_s, interval);
+  if (seen.sweep_s == 0.0)
+    return {
+        check, Health::spoils, "all points of a sweep have the same time",
+        "let the driver write when each point was measured; that of the whole sweep is no time of a point"};
   constexpr double kLeast = 0.2;  // of the interval; some drivers send a part of a turn
   constexpr double kMost = 1.2;
   if (interval > 0.0 && (seen.sweep_s < kLeast * interval || seen.sweep_s > kMost * interval))
@@ -120,7 +125,7 @@ Diagnosis view(const ScansSeen& seen) {
   }
   const std::string sentence =
       format("{:.0f} degrees around", seen.field_of_view_deg) +
-      (blind.empty() ? "" : "; blind: " + blind + " degrees (LiDAR frame, anticlockwise)");
+      (blind.empty() ? "" : "; blind: " + blind + " degrees (0 is ahead of the robot, 90 to its left)");
   constexpr double kNarrow = 60.0;  // half the opening
   constexpr double kNotable = 20.0;
   if (seen.cone_deg < kNarrow)
@@ -145,8 +150,8 @@ Diagnosis self_hits(const Recording& recording, const ScansSeen& seen) {
   return {
       check, hits.share < kFew ? Health::good : Health::noted,
       format(
-          "{:.2f} % of the returns come from {:.1f} to {:.1f} m about {:.0f} degrees in every scan while the "
-          "robot moves",
+          "{:.2f} % of the returns come from {:.1f} to {:.1f} m about {:.0f} degrees (90 is to the robot's "
+          "left) in every scan while the robot moves",
           100.0 * hits.share, hits.nearest_m, hits.farthest_m, hits.azimuth_deg),
       hits.share < kFew ? ""
                         : format("--set robot.odometry.plane_icp.min_range={:.1f} leaves out what is nearer",
@@ -263,7 +268,8 @@ Diagnosis mount_turn(const Result<MountByMotion>& found, const Pose& mount) {
           "--mount " + mount_option(better) + ", if the wheels are right"};
 }
 
-void add_mount(const Recording& recording, const ScansSeen& seen, std::vector<Diagnosis>& out) {
+/// The mount of the LiDAR, levelled where it is not.
+Pose add_mount(const Recording& recording, const ScansSeen& seen, std::vector<Diagnosis>& out) {
   Pose mount = recording.T_base_lidar;
   Result<std::vector<MotionStep>> steps = motion_steps(recording);
   out.push_back(mount_tilt(recording, seen, steps ? tilt_by_motion(*steps) : std::nullopt, mount));
@@ -274,64 +280,82 @@ void add_mount(const Recording& recording, const ScansSeen& seen, std::vector<Di
   }
   out.push_back(mount_turn(
       steps.and_then([](const std::vector<MotionStep>& all) { return mount_by_motion(all); }), mount));
+  return mount;
 }
 
-void add_sensors(const Recording& recording, const std::vector<SensorFinding>& findings,
-                 std::vector<Diagnosis>& out) {
+/// The same scans, by another mount.
+Result<ScansSeen> seen_by_mount(const Recording& recording, const ScansSeen& seen, const Pose& mount) {
+  if (mount.matrix() == recording.T_base_lidar.matrix()) return seen;
+  Recording level = recording;
+  level.T_base_lidar = mount;
+  return look_at_scans(level);
+}
+
+void add_missing_sensors(const Recording& recording, RecordedAs recorded_as, std::vector<Diagnosis>& out) {
+  const bool is_folder = recorded_as == RecordedAs::folder_of_clouds;
   if (recording.wheel.empty())
     out.push_back({"wheels", Health::noted,
                    "the recording has no wheel odometry, so that scans alone say how far",
-                   "--wheel TOPIC if it is there under another type or name"});
+                   is_folder ? "put odometry.tum, the poses by the wheels, beside the clouds"
+                             : "--wheel TOPIC if it is there under another type or name"});
   if (recording.imu.empty() && recording.wheel.empty())
     out.push_back({"IMU", Health::noted,
                    "the recording has none either, so that kiss-icp goes by the scans alone",
-                   "--imu TOPIC if it is there under another name"});
+                   is_folder ? "folders of clouds hold none; record a bag"
+                             : "--imu TOPIC if it is there under another name"});
   else if (recording.imu.empty())
     out.push_back({"IMU", Health::good, "the recording has none, and needs none beside its wheels"});
-  for (const SensorFinding& finding : findings)
+}
+
+/// Where wheels and IMU share a clock that is not the LiDAR's, only the scans tell.
+Diagnosis clock_apart(double late_s) {
+  return {"wheels and IMU", Health::noted,
+          format("the stamps of wheels and IMU, which go together, are {:.2f} s too {} by the scans",
+                 std::abs(late_s), late_s > 0.0 ? "late" : "early"),
+          "make the LiDAR's driver use the clock of the others; where it stamps the other end of a sweep, "
+          "--set recording.stamp_at=start or =end"};
+}
+
+/// Where nothing was found: what was looked at. `by_scans`: as of wheels_late_by_scans.
+Diagnosis sound_sensors(const Recording& sound, const SensorsChecked& checked,
+                        const std::optional<double>& by_scans) {
+  const std::string check = "wheels and IMU";
+  if (sound.wheel.empty())
+    return {check, Health::good,
+            "units, gravity, gaps and covariances of the IMU are sound; without wheels its clock is compared "
+            "with none"};
+  if (!checked.with_imu && !checked.with_scans && !by_scans)
+    return {check, Health::unknown,
+            format("too little motion to compare the wheels with {}",
+                   sound.imu.empty() ? "the scans" : "the IMU or the scans")};
+  if (sound.imu.empty())
+    return {
+        check, Health::good,
+        "units, signs, clock and covariances of the wheels agree with the scans, as far as this drive tells"};
+  return {
+      check, Health::good,
+      format(
+          "{}, as far as this drive tells",
+          !checked.with_imu ? "the clock of the wheels agrees with that of the scans"
+          : by_scans
+              ? "units, signs and covariances agree with one another, and clocks with that of the scans, too"
+              : "units, signs, clocks and covariances agree with one another; too few turns to compare their "
+                "clock with that of the scans")};
+}
+
+/// `sound`: the recording with the sensors that are sound, by `checked`.
+void add_sensors(const Recording& recording, const Recording& sound, const SensorsChecked& checked,
+                 std::vector<Diagnosis>& out) {
+  for (const SensorFinding& finding : checked.findings)
     out.push_back({"wheels and IMU",
                    finding.consequence == Consequence::left_out ? Health::spoils : Health::noted,
                    finding.sentence});
-  if (findings.empty() && (!recording.wheel.empty() || !recording.imu.empty()))
-    out.push_back(
-        {"wheels and IMU", Health::good,
-         "units, signs, clocks and covariances agree with one another and with the scans, as far as this "
-         "drive tells"});
-}
-
-/// `length` scans of a recording, as one of their own.
-Recording stretch_of(const Recording& recording, std::size_t first, std::size_t length) {
-  Recording stretch = recording;
-  const auto begin = recording.scan_stamps.begin() + static_cast<std::ptrdiff_t>(first);
-  stretch.scan_stamps.assign(begin, begin + static_cast<std::ptrdiff_t>(length));
-  stretch.read_scan = [read = recording.read_scan, first](std::size_t i) { return read(first + i); };
-  return stretch;
-}
-
-/// What adit slam would say of `recording`, whose sensors are sound, by some stretches of it.
-Diagnosis mapping(const Recording& recording, RobotSlamConfig config) {
-  constexpr std::size_t kLength = 25;  // scans
-  constexpr std::size_t kStretches = 3;
-  const std::size_t length = std::min(kLength, recording.num_scans());
-  [[maybe_unused]] const std::optional<std::string> note =
-      use_kiss_icp_without_sensors(recording, config.odometry);
-  std::string why;
-  const std::vector<std::size_t> starts = spread_over(recording.num_scans() - length + 1, kStretches);
-  for (const std::size_t first : starts) {
-    LeftOut left_out("scans");
-    const Recording stretch = with_damaged_scans_empty(stretch_of(recording, first, length), left_out);
-    const Result<RobotMap> map = map_recording(stretch, {0}, config);
-    if (map)
-      return {"mapping", Health::good,
-              format("odometry follows the scans from {:.1f} s on",
-                     to_seconds(recording.scan_stamps[first] - recording.scan_stamps.front()))};
-    if (why.empty()) why = map.error().message;
-  }
-  std::size_t num_looked_at = 0;  // stretches of a short recording overlap
-  for (std::size_t i = 0; i < starts.size(); ++i)
-    num_looked_at += i + 1 < starts.size() ? std::min(length, starts[i + 1] - starts[i]) : length;
-  return {"mapping", Health::spoils,
-          format("nothing can be mapped, by {} of {} scans: {}", num_looked_at, recording.num_scans(), why)};
+  // Without an IMU the wheels were compared with the scans already.
+  const std::optional<double> late_s = sound.imu.empty() ? std::nullopt : wheels_late_by_scans(sound);
+  if (late_s.value_or(0.0) != 0.0)
+    out.push_back(clock_apart(*late_s));
+  else if (checked.findings.empty() && (!recording.wheel.empty() || !recording.imu.empty()))
+    out.push_back(sound_sensors(sound, checked, late_s));
 }
 
 }  // namespace
@@ -350,9 +374,14 @@ std::string_view to_string(Health health) {
   return "unknown";
 }
 
-Result<std::vector<Diagnosis>> diagnose(const Recording& recording, const RobotSlamConfig& config) {
+Result<std::vector<Diagnosis>> diagnose(const Recording& recording, const RobotSlamConfig& config,
+                                        RecordedAs recorded_as) {
   const Result<ScansSeen> seen = look_at_scans(recording);
   if (!seen) return tl::unexpected(seen.error());
+  std::vector<Diagnosis> of_mount = {mount_source(recording)};
+  const Pose level = add_mount(recording, *seen, of_mount);
+  const Result<ScansSeen> seen_level = seen_by_mount(recording, *seen, level);
+  if (!seen_level) return tl::unexpected(seen_level.error());
   std::vector<Diagnosis> out;
   for (const std::string& warning : recording.warnings) out.push_back({"file", Health::noted, warning});
   for (const std::string& assumption : recording.assumptions)
@@ -361,13 +390,14 @@ Result<std::vector<Diagnosis>> diagnose(const Recording& recording, const RobotS
   out.push_back(scans_missing(recording));
   out.push_back(point_times(recording, *seen));
   out.push_back(ranges(*seen));
-  out.push_back(view(*seen));
-  out.push_back(self_hits(recording, *seen));
-  out.push_back(mount_source(recording));
-  add_mount(recording, *seen, out);
+  out.push_back(view(*seen_level));
+  out.push_back(self_hits(recording, *seen_level));
+  std::ranges::move(of_mount, std::back_inserter(out));
+  add_missing_sensors(recording, recorded_as, out);
   Recording sound = recording;
-  add_sensors(recording, use_sound_sensors(sound), out);
-  out.push_back(mapping(sound, config));
+  const SensorsChecked checked = check_sensors(sound);
+  add_sensors(recording, sound, checked, out);
+  out.push_back(diagnose_mapping(sound, *seen, config));
   return out;
 }
 

@@ -33,13 +33,21 @@ struct Diagnosis {
   std::string remedy = {};       ///< What to do; "" where nothing is to be done.
 };
 
+/// What a recording was read from, by which some remedies differ.
+enum class RecordedAs : std::uint8_t {
+  bag,               ///< Of topics.
+  folder_of_clouds,  ///< With files beside them.
+};
+
 /// Scans (missing ones, times of points, ranges, view, parts of the robot in it), the mount (tilt and height
 /// by the floor; turn and lever arm by the motion between scans and the wheels), wheels and IMU
-/// (use_sound_sensors), and whether map_recording under `config` makes a map of some stretches of scans, in a
-/// fixed order, one line a check whatever it found. Reads some 40 scans and registers some 700. Fails where a
-/// scan cannot be read, or all are empty.
+/// (check_sensors, and their clock by the scans), and whether map_recording under `config` makes a map of
+/// some stretches of scans, in a fixed order, one line a check whatever it found. Reads some 40 scans and
+/// registers some 700. Directions are in the axes of the levelled mount. Fails where a scan cannot be read,
+/// or all are empty.
 [[nodiscard]] Result<std::vector<Diagnosis>> diagnose(const Recording& recording,
-                                                      const RobotSlamConfig& config = {});
+                                                      const RobotSlamConfig& config = {},
+                                                      RecordedAs recorded_as = RecordedAs::bag);
 
 /// The topics of a bag that adit uses whose stamps and times of recording went at different speeds, one line
 /// each.

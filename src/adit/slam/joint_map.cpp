@@ -78,7 +78,7 @@ MapCloud map_cloud(const JointMap& map, double voxel_m, bool with_normals) {
   for (std::size_t i = 0; i < map.maps.size(); ++i) {
     const PointCloud cloud = merged_cloud(*map.maps[i], map.T_world_keyframe[i], voxel_m);
     append(out.cloud, cloud);
-    out.robots.resize(out.cloud.size(), static_cast<std::uint16_t>(map.maps[i]->id.value + 1));
+    out.robots.resize(out.cloud.size(), number_in_files(*map.maps[i]));
     if (!with_normals) continue;
     const NearestViews views(*map.maps[i], map.T_world_keyframe[i], voxel_m);
     const std::vector<Eigen::Vector3f> normals = normals_of(cloud.points, views, normal_radius(voxel_m));
@@ -115,7 +115,7 @@ std::vector<LasPoint> las_points(const JointMap& map, double voxel_m, const Pose
     for (std::size_t k = 0; k < cloud.size(); ++k)
       points.push_back({T_frame_map * cloud.points[k].cast<double>(),
                         intensities.empty() ? std::uint16_t{0} : intensities[k],
-                        static_cast<std::uint16_t>(map.maps[i]->id.value + 1)});
+                        number_in_files(*map.maps[i])});
   }
   return points;
 }
@@ -134,15 +134,26 @@ std::string comment_on(const OutputFrame& frame) {
              : format("{}; add the offset {} {} {}", frame.name, offset.x(), offset.y(), offset.z());
 }
 
+/// Comments for the header of a cloud: its frame, and which robots the numbers of points mean. Each is a line
+/// of its own, as `extension` has them: some readers of .ply take no long ones.
+std::string comments_on(const OutputFrame& frame, const JointMap& map, const std::string& extension) {
+  std::vector<std::string> lines;
+  if (!frame.name.empty()) lines.push_back(comment_on(frame));
+  for (const auto& robot : map.maps)
+    lines.push_back(format("robot {} {}", number_in_files(*robot), robot->name));
+  return format("{}", fmt::join(lines, extension == ".ply" ? "\ncomment " : "\n# "));
+}
+
 Result<> write_joint_cloud(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config,
                            const OutputFrame& frame) {
   MapCloud cloud = map_cloud(map, config.voxel_m, config.normals);
-  if (frame.name.empty()) return write_map_cloud(path, cloud);
+  const std::string comments = comments_on(frame, map, lower_case(path.extension().string()));
+  if (frame.name.empty()) return write_map_cloud(path, cloud, comments);
   const Pose T_shifted_map = shifted_from_map(frame);
   cloud.cloud = transformed(T_shifted_map, std::move(cloud.cloud));
   const Eigen::Matrix3f R = T_shifted_map.rotation_matrix().cast<float>();
   for (Eigen::Vector3f& normal : cloud.normals) normal = R * normal;
-  return write_map_cloud(path, cloud, comment_on(frame));
+  return write_map_cloud(path, cloud, comments);
 }
 
 std::vector<PlacedScan> scans_of(const JointMap& map) {
@@ -232,6 +243,8 @@ Vector3 float_offset(const OutputFrame& frame) {
     return std::abs(coordinate) < kFar ? 0.0 : 1000.0 * std::round(coordinate / 1000.0);
   });
 }
+
+std::uint16_t number_in_files(const RobotMap& map) { return static_cast<std::uint16_t>(map.id.value + 1); }
 
 bool is_for_robots(const std::filesystem::path& path) {
   const std::string extension = lower_case(path.extension().string());

@@ -67,13 +67,16 @@ struct JointMap {
 /// where the map is further than 4 km from zero along an axis, so that millimetres stay.
 [[nodiscard]] Vector3 float_offset(const OutputFrame& frame);
 
+/// Of the robot in .las, .pcd and .ply, from 1 on.
+[[nodiscard]] std::uint16_t number_in_files(const RobotMap& map);
+
 /// Whether maps of that ending are for robots, which know the map by its own frame: .pgm and .bt.
 [[nodiscard]] bool is_for_robots(const std::filesystem::path& path);
 
 /// Writes .las (the source ID is the number of the robot; intensities of each robot are scaled to 16 bits, so
 /// that all but the strongest hundredth fit), .pcd or .ply (write_map_cloud; less
-/// `float_offset`, which their header states), .bt (write_octomap) or .pgm with its .yaml (occupancy_of). The
-/// last two are always in the map's own frame. Fails on other endings.
+/// `float_offset`, which their header states, as it does whom each number means), .bt (write_octomap) or .pgm
+/// with its .yaml (occupancy_of). The last two are always in the map's own frame. Fails on other endings.
 Result<> write_joint_map(const std::filesystem::path& path, const JointMap& map, const MapsConfig& config,
                          const OutputFrame& frame = {});
 

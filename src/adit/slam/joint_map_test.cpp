@@ -69,6 +69,25 @@ TEST(JointMap, FacesOfThinWallsLookToWhereTheyWereSeenFrom) {
   }
 }
 
+TEST(JointMap, HeadersOfCloudsSayWhomTheNumbersMean) {
+  JointMap both = both_faces();
+  auto second = std::make_shared<RobotMap>(*both.maps[0]);
+  second->id = {2};
+  second->name = "eve";
+  auto first = std::make_shared<RobotMap>(*both.maps[0]);
+  first->name = "ada";
+  both.maps = {first, second};
+  both.T_world_keyframe.push_back(both.T_world_keyframe[0]);
+  const test::TemporaryFolder folder;
+  for (const auto& [name, lines] :
+       {std::pair{"map.ply", "\ncomment robot 1 ada\ncomment robot 3 eve\nelement"},
+        std::pair{"map.pcd", "\n# robot 1 ada\n# robot 3 eve\nVERSION"}}) {
+    ASSERT_TRUE(write_joint_map(folder / name, both, {}));
+    EXPECT_NE(test::get_file(folder / name).find(lines), std::string::npos) << name;
+    EXPECT_TRUE(read_cloud(folder / name)) << name;
+  }
+}
+
 TEST(JointMap, IntensitiesStayWithTheRobotThatHasThem) {
   const auto with_wall = [](std::uint8_t robot, double wall_x, const std::vector<float>& intensities) {
     auto map = std::make_shared<RobotMap>();

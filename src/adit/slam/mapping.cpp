@@ -113,6 +113,12 @@ Result<RobotMap> map_one(const Recording& recording, RobotId id, const RobotSlam
 
 }  // namespace
 
+std::string reasons_of(const std::vector<FailedRobot>& failed) {
+  std::vector<std::string> reasons;
+  for (const FailedRobot& robot : failed) reasons.push_back(robot.reason);
+  return format("{}", fmt::join(reasons, "; "));
+}
+
 std::size_t num_scans(const std::vector<Recording>& recordings) {
   std::size_t sum = 0;
   for (const Recording& recording : recordings) sum += recording.num_scans();
@@ -155,7 +161,7 @@ Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig
   }
   if (!mapping.robots.empty()) return mapping;
   if (mapping.failed.empty()) return fail("no recording was given");
-  return fail(mapping.failed.front().reason);
+  return fail(reasons_of(mapping.failed));
 }
 
 }  // namespace adit

@@ -25,6 +25,9 @@ struct FailedRobot {
   std::string reason;  ///< One line that names the robot.
 };
 
+/// Their reasons, apart by semicolons.
+[[nodiscard]] std::string reasons_of(const std::vector<FailedRobot>& failed);
+
 /// What became of all recordings.
 struct Mapping {
   std::vector<MappedRobot> robots;  ///< In the order of the recordings, and so are the ids.
@@ -36,7 +39,8 @@ struct Mapping {
 /// (core/progress.hpp). A recording without wheel odometry is mapped by kiss-icp, with a note. Wheels and
 /// IMUs are checked first (robot/sensor_checks.hpp); what is found is noted. A robot whose
 /// recording cannot be mapped stops no other: it is reported in `failed`. Fails on more than 256 recordings
-/// (ids are one byte) and where no robot is left. `num_before`: robots that have ids already, from 0 on.
+/// (ids are one byte) and, with all reasons, where no robot is left. `num_before`: robots that have ids
+/// already, from 0 on.
 [[nodiscard]] Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig& config,
                                          std::size_t num_before = 0);
 

@@ -40,8 +40,9 @@ constexpr std::array kSettings = {
                    "`adit doctor` again; floors are level, and each wall is mapped once"},
     SettingToWatch{"recording.point_times", "`adit info` shows another unit than the driver has",
                    "corners that stay sharp where the robot turns"},
-    SettingToWatch{"recording.stamp_at", "the driver stamps the end of a sweep",
-                   "the time offset that `adit doctor` finds"},
+    SettingToWatch{
+        "recording.stamp_at", "the driver stamps the end of a sweep",
+        "the offset between the clocks of wheels and scans that `adit doctor` finds where the robot turns"},
     SettingToWatch{
         "maps.voxel_m",
         "a denser or lighter cloud; below `robot.cloud_voxel` further points come only from keyframes that "

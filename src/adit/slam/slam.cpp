@@ -71,12 +71,18 @@ std::string with_names(const std::string& text, const std::map<std::string, std:
   return out;
 }
 
+/// Begins the reasons of all rulings, whatever robots are called.
+constexpr std::string_view kByAPerson = "a person ";
+
 /// The sentences of merge checks name robots.
 void rename_in(std::vector<MessageBody>& findings, const std::map<std::string, std::string>& new_names) {
   if (new_names.empty()) return;
   for (MessageBody& finding : findings)
     if (auto* part = std::get_if<MergeChecks>(&finding))
-      for (MergeCheck& check : part->checks) check.reason = with_names(check.reason, new_names);
+      for (MergeCheck& check : part->checks) {
+        const std::size_t begin = check.reason.starts_with(kByAPerson) ? kByAPerson.size() : 0;
+        check.reason = check.reason.substr(0, begin) + with_names(check.reason.substr(begin), new_names);
+      }
 }
 
 /// Georeferences name robots.
@@ -271,10 +277,35 @@ Result<MergeCheck> confirmed(MergeCheck check, const Ruling& ruling, const Ruled
   return check;
 }
 
-/// The verdict that takes the place of the test's.
-Result<MergeCheck> verdict_by(const Ruling& ruling, const FleetGraph& fleet) {
+/// The last verdict of the test itself, among all that were found.
+Result<MergeCheck> of_the_test(const Ruling& ruling, const RobotPair& robots,
+                               const std::vector<MessageBody>& findings) {
+  std::optional<MergeCheck> tested;
+  bool is_ruled = false;
+  for (const MessageBody& finding : findings) {
+    const auto* part = std::get_if<MergeChecks>(&finding);
+    if (part == nullptr) continue;
+    for (const MergeCheck& check : part->checks) {
+      if (RobotPair(check.a, check.b) != robots) continue;
+      is_ruled = check.reason.starts_with(kByAPerson);
+      if (!is_ruled) tested = check;
+    }
+  }
+  if (!is_ruled)
+    return fail(
+        format("{} and {}: nobody has ruled over them; there is nothing to withdraw", ruling.a, ruling.b));
+  if (!tested)
+    return fail(format("{} and {}: the test has said nothing of them that could count in place of the ruling",
+                       ruling.a, ruling.b));
+  return *tested;
+}
+
+/// The verdict that takes the place of the test's, or of a ruling.
+Result<MergeCheck> verdict_by(const Ruling& ruling, const Agent& agent) {
+  const FleetGraph& fleet = agent.known();
   const Result<RuledOver> over = ruled_over(ruling, fleet);
   if (!over) return tl::unexpected(over.error());
+  if (ruling.kind == Ruling::Kind::withdraw) return of_the_test(ruling, over->robots, agent.findings());
   const auto tested = fleet.checks.find(over->robots);
   MergeCheck check;
   if (tested != fleet.checks.end()) check = tested->second;
@@ -291,7 +322,7 @@ Result<> rule(Agent& agent, const std::vector<Ruling>& rulings) {
         "a person rules over merge checks, and this session's keyframe policy makes none; map it with "
         "--keyframes adaptive");
   for (const Ruling& ruling : rulings) {
-    Result<MergeCheck> verdict = verdict_by(ruling, agent.known());
+    Result<MergeCheck> verdict = verdict_by(ruling, agent);
     if (!verdict) return tl::unexpected(verdict.error());
     agent.overrule(std::move(*verdict));
   }
@@ -362,7 +393,7 @@ Result<SlamRun> slam_on(std::vector<SavedFleet> saved, std::vector<Recording> re
   std::vector<MetBefore> met_before;
   for (SavedFleet& fleet : saved) {
     append(run.notes, fleet.notes);
-    std::ranges::move(fleet.georeferences, std::back_inserter(run.georeferences));
+    run.georeferences.push_back({fleet.read_from, std::move(fleet.georeferences)});
     maps.insert(maps.end(), fleet.maps.begin(), fleet.maps.end());
     if (fleet.findings.empty()) continue;  // its pairs are tested anew
     met_before.push_back({{}, std::move(fleet.findings)});

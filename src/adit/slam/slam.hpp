@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "adit/io/session_dir.hpp"
+#include "adit/slam/kept_control.hpp"
 #include "adit/slam/mapping.hpp"
 #include "adit/slam/repeated_robots.hpp"
 #include "adit/slam/saved_fleet.hpp"
@@ -35,18 +36,19 @@ struct SlamRun {
   std::vector<std::string>
       notes;  ///< Fallbacks, changed names, what messages could not bring, one line each.
   std::vector<MessageBody> findings;  ///< All loops and merge checks, for a later session.
-  /// Of the maps of earlier sessions, with their robots' names in this one. Those maps may have moved: the
-  /// control points have to be fitted anew (georeference.hpp).
-  std::vector<Georeference> georeferences;
+  /// Of the maps of earlier sessions. Those maps may have moved: the control points have to be fitted anew
+  /// (kept_control.hpp, georeference.hpp).
+  std::vector<EarlierGeoreferences> georeferences;
 };
 
 /// What a person says of two robots, by name, or of one loop between them, against the test.
 struct Ruling {
   /// Which of the two.
   enum class Kind : std::uint8_t {
-    veto,     ///< Their loops, or that one, join nothing; others may still join their maps.
-    confirm,  ///< They are joined by the best alignment that was found, or by that of the loop, as long as
-              ///< cycles with others close.
+    veto,      ///< Their loops, or that one, join nothing; others may still join their maps.
+    confirm,   ///< They are joined by the best alignment that was found, or by that of the loop, as long as
+               ///< cycles with others close.
+    withdraw,  ///< What the test said last counts again, in place of all rulings.
   };
   /// The keyframes that a loop joins.
   struct Loop {
@@ -74,8 +76,8 @@ struct Ruling {
 /// number, with a note; of robots with the same drive the first one counts, with a note. `rulings` come last
 /// and are kept as the reason of the pair. Fails, too, where there are more than 256 robots, where sessions
 /// described places in different ways, on a ruling about a robot that does not exist, under a policy without
-/// merge checks, and where no alignment was found that could be confirmed, or a loop is in none or not in
-/// use.
+/// merge checks, where no alignment was found that could be confirmed, or a loop is in none or not in use,
+/// and where there is no ruling to withdraw, or no test before it.
 [[nodiscard]] Result<SlamRun> slam_on(std::vector<SavedFleet> saved, std::vector<Recording> recordings,
                                       const SlamConfig& config, const std::vector<Ruling>& rulings = {});
 
