@@ -33,11 +33,12 @@ inline MergeCheckConfig by_places() {
 
 inline MergeChecker checker_of(const std::vector<PcmLoop>& loops, MeasuredWhenAsked measured,
                                const MergeCheckConfig& config = by_places(),
-                               const OdometryChain& chain = along_x(kNum)) {
+                               const OdometryChain& chain = along_x(kNum),
+                               const MergeCheck* earlier = nullptr) {
   AdaptiveConfig all;
   all.merge_check = config;
   const OdometryChain other = chain;  // another robot: the same chain twice would mean revisits
-  return {{chain, other, loops}, {50.0, std::move(measured)}, all};
+  return {{chain, other, loops, {}, earlier}, {50.0, std::move(measured)}, all};
 }
 
 inline MergeChecker a_check(const std::vector<PcmLoop>& loops, double chance_to_go_on = 0.5,

@@ -300,8 +300,10 @@ Agent::Replies Agent::begin_check(RobotId peer) {
   while (!theirs.nodes.empty() &&
          !sessions_[peer].exists(static_cast<std::uint32_t>(theirs.nodes.size() - 1)))
     theirs.nodes.pop_back();
-  checks_.insert_or_assign(
-      peer, checker_of(without_sliding(loops_with(peer)), chain_by(map_->id), chain_of(theirs)));
+  const auto earlier = known().checks.find({map_->id, peer});
+  checks_.insert_or_assign(peer,
+                           checker_of(without_sliding(loops_with(peer)), chain_by(map_->id), chain_of(theirs),
+                                      earlier == known().checks.end() ? nullptr : &earlier->second));
   sessions_[peer].await_comparison_of({});  // the peer's map may have grown since a check that was broken off
   for (auto& [robot, session] : sessions_) session.forget_views();
   return go_on_checking(peer);
@@ -430,8 +432,8 @@ Discernment& Agent::discernment() {
 }
 
 MergeChecker Agent::checker_of(const std::vector<LoopClosure>& loops, const OdometryChain& own,
-                               const OdometryChain& theirs) {
-  LoopsBetween between{own, theirs, {}, {}};
+                               const OdometryChain& theirs, const MergeCheck* earlier) {
+  LoopsBetween between{own, theirs, {}, {}, earlier};
   for (const LoopClosure& loop : loops) {
     between.loops.push_back(pcm_loop_of(loop));
     if (loop.from.robot == loop.to.robot)

@@ -168,7 +168,7 @@ class Agent {
   [[nodiscard]] OdometryChain chain_by(RobotId robot) const;
   [[nodiscard]] Discernment& discernment();
   [[nodiscard]] MergeChecker checker_of(const std::vector<LoopClosure>& loops, const OdometryChain& own,
-                                        const OdometryChain& theirs);
+                                        const OdometryChain& theirs, const MergeCheck* earlier = nullptr);
 
   std::shared_ptr<const RobotMap> map_;
   AgentConfig config_;

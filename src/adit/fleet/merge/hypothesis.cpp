@@ -262,4 +262,29 @@ std::vector<Hypothesis> hypotheses_of(const LoopsBetween& between, double reach_
   return hypotheses;
 }
 
+double spent_priors(const std::vector<Hypothesis>& hypotheses, const std::vector<PcmLoop>& loops,
+                    const MergeCheck* earlier, double error_rate) {
+  if (earlier == nullptr) return 1.0;
+  const auto num_loops = [](const auto& alignments) {
+    std::size_t num = 0;
+    for (const auto& alignment : alignments) num += alignment.loops.size();
+    return std::max(static_cast<double>(num), 1.0);
+  };
+  double spent = std::max(1.0, error_rate * std::exp(earlier->needed));
+  for (const Hypothesis& h : hypotheses) {
+    const auto is_of_it = [&](const std::pair<std::uint32_t, std::uint32_t>& keyframes) {
+      return std::ranges::any_of(h.loops, [&](std::size_t l) {
+        return loops[l].a == keyframes.first && loops[l].b == keyframes.second;
+      });
+    };
+    double before = 0.0;
+    for (const MergeHypothesis& other : earlier->hypotheses)
+      if (std::ranges::any_of(other.loops, is_of_it))
+        before += static_cast<double>(other.loops.size()) / num_loops(earlier->hypotheses);
+    const double now = static_cast<double>(h.loops.size()) / num_loops(hypotheses);
+    spent += std::max(0.0, now - before);
+  }
+  return spent;
+}
+
 }  // namespace adit

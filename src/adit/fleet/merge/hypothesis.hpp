@@ -143,6 +143,7 @@ struct LoopsBetween {
   std::vector<PcmLoop> loops;   ///< All that registration accepted.
   std::vector<double> known_before =
       {};  ///< Evidence of each that does not come from comparing scans; or empty.
+  const MergeCheck* earlier = nullptr;  ///< The last one of these robots, if any; read and not kept.
 };
 
 /// Disjoint sets of loops that agree, the largest first, without loops that most of their neighbours
@@ -150,5 +151,14 @@ struct LoopsBetween {
 /// `reach_m` along the path from the nearest loop.
 [[nodiscard]] std::vector<Hypothesis> hypotheses_of(const LoopsBetween& between, double reach_m,
                                                     const AdaptiveConfig& config);
+
+/// By how many times the error rate that is stated for two robots their checks would exceed it, if each took
+/// the shares of loops as the prior of its alignments and none knew of those before: the largest share that
+/// each alignment has ever had, summed over all alignments that were put forward. 1 in a first check, where
+/// shares add up to one, and for as long as the same alignments are checked again. An alignment is one of the
+/// check before if they have a loop in common.
+[[nodiscard]] double spent_priors(const std::vector<Hypothesis>& hypotheses,
+                                  const std::vector<PcmLoop>& loops, const MergeCheck* earlier,
+                                  double error_rate);
 
 }  // namespace adit

@@ -31,7 +31,9 @@ MergeChecker::MergeChecker(LoopsBetween between, OwnMeasurements own, const Adap
     : hypotheses_(hypotheses_of(between, own.reach_m, config)),
       own_(std::move(own)),
       config_(config.merge_check),
-      place_keyframes_(static_cast<std::size_t>(config.search.place_keyframes)) {
+      place_keyframes_(static_cast<std::size_t>(config.search.place_keyframes)),
+      spent_priors_(
+          adit::spent_priors(hypotheses_, between.loops, between.earlier, config_.evidence.error_rate)) {
   loops_ = std::move(between.loops);
 }
 
@@ -90,7 +92,7 @@ bool MergeChecker::are_rivals(const Hypothesis& best, const Hypothesis& other) c
   return !differs_too_often(other) && !(lead >= least_lead());
 }
 
-double MergeChecker::needed() const { return std::log(1.0 / config_.evidence.error_rate); }
+double MergeChecker::needed() const { return std::log(spent_priors_ / config_.evidence.error_rate); }
 
 double MergeChecker::least_lead() const { return std::log(1.0 / config_.evidence.rival_rate); }
 

@@ -11,10 +11,10 @@
 /// The decision is Wald's sequential probability ratio test ("Sequential tests of statistical hypotheses",
 /// 1945): log likelihood ratios add up over the distinctive places and have to reach log(1 / error_rate),
 /// together with those of the relief of walls (WallOffsets) and the prior, the share of all loops that
-/// speak for this alignment. It is one-sided against copies: scans that differ may not be more than true
-/// places would leave. And every other
-/// hypothesis has to stay behind by log(1 / rival_rate). `MergeChecker::decide` reads in that order;
-/// docs/decisions/0010 tells why.
+/// speak for this alignment. Checks that are repeated share that rate: where later ones put forward further
+/// alignments, all have to reach more (`spent_priors`). It is one-sided against copies: scans that differ may
+/// not be more than true places would leave. And every other hypothesis has to stay behind by
+/// log(1 / rival_rate). `MergeChecker::decide` reads in that order; docs/decisions/0010 tells why.
 #pragma once
 
 #include <cstdint>
@@ -53,8 +53,8 @@ enum class MergeDecision : std::uint8_t {
 /// Asks for comparisons until it knows.
 class MergeChecker {
  public:
-  /// The chains of `between` are read here and not kept; what `own.measured` refers to must outlive the
-  /// checker.
+  /// The chains of `between` and its earlier check are read here and not kept; what `own.measured` refers to
+  /// must outlive the checker.
   MergeChecker(LoopsBetween between, OwnMeasurements own, const AdaptiveConfig& config);
 
   /// The next comparisons, at most `num`, each with another keyframe of theirs; none when the check is over.
@@ -149,6 +149,7 @@ class MergeChecker {
   OwnMeasurements own_;
   MergeCheckConfig config_;
   std::size_t place_keyframes_;  ///< Nearer than this, keyframes are of one place (SearchConfig).
+  double spent_priors_;          ///< By all checks of both robots, this one included.
 };
 
 }  // namespace adit
