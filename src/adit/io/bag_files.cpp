@@ -105,6 +105,16 @@ Result<> check_kind(const fs::path& path) {
                      shell_quoted(fs::path(path).replace_extension(kind->ending).string())));
 }
 
+/// Fails on a file that is too short to be of any kind, as of a recorder that was ended before it wrote.
+Result<> check_not_empty(const fs::path& path) {
+  constexpr std::uint64_t kShortest = 8;  // bytes: the magic of MCAP, the shortest that there is
+  const Result<ByteSource> source = open_source(path);
+  if (!source || source->size >= kShortest) return {};
+  return fail(format("{}: {}: nothing was recorded, or it was not copied to its end; copy it again",
+                     path.string(),
+                     source->size == 0 ? "is empty" : format("has only {} bytes", source->size)));
+}
+
 /// A name that no file can have is of none.
 bool is_there(const fs::path& path) {
   std::error_code ignored;
@@ -177,6 +187,7 @@ Result<Bag> open_file(const fs::path& path) {
   if (!is_bag_file(path))
     return fail(
         format("{}: not a file of a bag that adit knows; .mcap, .db3 and .bag are known", path.string()));
+  if (const Result<> content = check_not_empty(path); !content) return tl::unexpected(content.error());
   if (const Result<> kind = check_kind(path); !kind) return tl::unexpected(kind.error());
   if (extension_of(path) == ".db3") return open_sqlite_bag(path);
   const Result<ByteSource> source = open_source(path);

@@ -9,8 +9,8 @@
 
 #include "adit/core/format.hpp"
 #include "adit/core/left_out.hpp"
-#include "adit/core/progress.hpp"
 #include "adit/io/ascending.hpp"
+#include "adit/io/bag_clouds.hpp"
 #include "adit/io/bag_mounts.hpp"
 #include "adit/io/bag_pass.hpp"
 #include "adit/io/bag_topics.hpp"
@@ -98,39 +98,6 @@ Result<> leave_scans_with_pose(Recording& recording, Tracks& tracks, const Movin
   return {};
 }
 
-Result<ros::CloudMessage> read_cloud_message(const Bag& bag, const BagMessage& message,
-                                             std::optional<TimeUnit> time_unit) {
-  const bool from_livox = ros::is_livox(bag.topics[message.topic].type);
-  return decoded(bag, message, [&](std::string_view content, MessageEncoding encoding) {
-    return from_livox ? ros::decode_livox(content, encoding)
-                      : ros::decode_cloud(content, encoding, time_unit);
-  });
-}
-
-/// The first cloud that has points: what it shows of fields, times and frames holds for all.
-Result<ros::CloudMessage> first_cloud(const Bag& bag, const TopicIndices& topics,
-                                      std::optional<TimeUnit> time_unit) {
-  std::size_t num = 0;
-  std::string first_fault;
-  for (const BagMessage& message : bag.messages) {
-    if (std::ranges::find(topics, message.topic) == topics.end()) continue;
-    throw_if_cancelled();
-    Result<ros::CloudMessage> cloud = read_cloud_message(bag, message, time_unit);
-    if (cloud && !cloud->scan.cloud.empty()) return cloud;
-    if (!cloud && first_fault.empty()) first_fault = format("scan {}: {}", num, cloud.error().message);
-    ++num;
-  }
-  if (!first_fault.empty()) return fail(names_of(bag, topics) + ", " + first_fault);
-  if (num == 0) return fail(format("{}: no message; there are no scans to read", names_of(bag, topics)));
-  return fail(format("{}: none of {} clouds has a point; look at the driver", names_of(bag, topics), num));
-}
-
-/// adit's own times are nanoseconds.
-Result<std::optional<TimeUnit>> time_unit_of(const Bag& bag, const RecordingConfig& config) {
-  if (bag.own && config.point_times.empty()) return std::optional(TimeUnit::nanoseconds);
-  return parse_time_unit(config.point_times);
-}
-
 /// Name, sensor and assumptions: adit's own metadata say them. Elsewhere "/robot_0/points" is of robot_0.
 void take_metadata(Recording& recording, const Bag& bag, const std::string& topic) {
   recording.name = topic.substr(topic.starts_with('/') ? 1 : 0);
@@ -151,7 +118,7 @@ void take_metadata(Recording& recording, const Bag& bag, const std::string& topi
 /// How the messages of clouds become scans.
 struct ScanReading {
   std::shared_ptr<const Bag> bag;
-  std::optional<TimeUnit> time_unit;
+  KnownTimes times;
   bool stamp_at_end = false;
   std::optional<MovingPose> T_base_moving;  ///< Of a LiDAR that moves on the robot.
   Pose T_base_lidar;
@@ -162,7 +129,7 @@ std::function<Result<Scan>(std::size_t)> scan_reader(ScanReading reading, std::v
   return [reading = std::move(reading), scans = std::move(scans),
           stamps = std::move(stamps)](std::size_t i) -> Result<Scan> {
     ADIT_CHECK(i < scans.size(), "no scan of that index");
-    Result<ros::CloudMessage> message = read_cloud_message(*reading.bag, scans[i], reading.time_unit);
+    Result<ros::CloudMessage> message = read_cloud_message(*reading.bag, scans[i], reading.times);
     if (!message) return fail(format("scan {}", i), message.error());
     Scan& scan = message->scan;
     if (scan.stamp != stamps[i]) return fail(format("scan {}: its stamp differs from the index", i));
@@ -172,66 +139,6 @@ std::function<Result<Scan>(std::size_t)> scan_reader(ScanReading reading, std::v
     if (reading.T_base_moving) hold_still(scan, *reading.T_base_moving, reading.T_base_lidar);
     return std::move(scan);
   };
-}
-
-/// What is to be said of the times of points; of adit's own files only what the user stated.
-void note_point_times(Recording& recording, const ros::CloudMessage& first, const Bag& bag,
-                      const RecordingConfig& config) {
-  const PointCloud& cloud = first.scan.cloud;
-  // Messages of Livox have their own unit, whatever is stated.
-  const bool is_stated = first.time_unit && to_string(*first.time_unit) == config.point_times;
-  const UnitSource source = is_stated ? UnitSource::stated : UnitSource::found;
-  if (is_stated)
-    if (auto warning = stated_unit_warning(*first.time_unit, cloud))
-      recording.warnings.push_back(std::move(*warning));
-  if (bag.own && source == UnitSource::found) return;
-  if (!cloud.has_times())
-    recording.assumptions.push_back(
-        "point times: none, so that scans are not corrected for the motion during a sweep");
-  else if (!first.has_usual_time_unit)
-    recording.assumptions.push_back(point_times_note(*first.time_unit, source));
-  if (first.clock_apart_s)
-    recording.assumptions.push_back(format(
-        "point times: they are {:.3f} s from the stamps, as by another clock, and count from the first "
-        "point of the sweep; recording.stamp_at says whether the stamp is of its start or its end",
-        *first.clock_apart_s));
-}
-
-/// The latest time of a point, seconds after the stamp; none where times do not count from the stamp.
-std::optional<double> sweep_after_stamp(const Scan& scan) {
-  constexpr double kShortest = 0.01;  // seconds; less is within the jitter of clocks
-  if (!scan.cloud.has_times()) return std::nullopt;
-  const auto [earliest, latest] = std::ranges::minmax(scan.cloud.time_offsets_ns);
-  const double sweep = to_seconds(Duration(latest));
-  return earliest >= 0 && sweep >= kShortest ? std::optional(sweep) : std::nullopt;
-}
-
-/// Whether sweeps were recorded before they could have ended, did their times count from the stamp; looked at
-/// in the first, the middle and the last scan. The time of recording has to lie within the sweep, as clocks
-/// may differ, and behind the stamp, which programs that convert recordings write as the time of recording.
-bool is_stamped_at_end(const Bag& bag, const Tracks& tracks, std::optional<TimeUnit> time_unit) {
-  bool any = false;
-  for (const std::size_t i : {std::size_t{0}, tracks.scans.size() / 2, tracks.scans.size() - 1}) {
-    const Result<ros::CloudMessage> message = read_cloud_message(bag, tracks.scans[i], time_unit);
-    if (!message || message->scan.cloud.empty()) continue;
-    any = true;
-    const std::optional<double> sweep = sweep_after_stamp(message->scan);
-    const double recorded_after = to_seconds(tracks.scans[i].log_time - message->scan.stamp);
-    if (!sweep || recorded_after <= 0.0 || recorded_after > 0.5 * *sweep) return false;
-  }
-  return any;
-}
-
-/// What the configuration says or, without a word, the recording shows.
-bool stamp_at_end(Recording& recording, const Bag& bag, const Tracks& tracks,
-                  std::optional<TimeUnit> time_unit, const RecordingConfig& config) {
-  if (config.stamp_at != "auto" || bag.own) return config.stamp_at == "end";
-  const bool at_end = is_stamped_at_end(bag, tracks, time_unit);
-  if (at_end)
-    recording.assumptions.emplace_back(
-        "point times: they count from the start of the sweep and the stamp is of its end, as scans were "
-        "recorded before they could have ended otherwise; if that is wrong, --set recording.stamp_at=start");
-  return at_end;
 }
 
 /// What nobody has asked for and may be wheels.
@@ -394,15 +301,17 @@ Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, RecordingC
   if (Result<> checked = check_stamp_at(config); !checked) return tl::unexpected(checked.error());
   const Result<BagTopics> topics = choose_topics(*bag, config);
   if (!topics) return tl::unexpected(topics.error());
-  const Result<std::optional<TimeUnit>> time_unit = time_unit_of(*bag, config);
-  if (!time_unit) return tl::unexpected(time_unit.error());
-  const Result<ros::CloudMessage> first = first_cloud(*bag, topics->points, *time_unit);
+  const Result<KnownTimes> stated = stated_times(*bag, config);
+  if (!stated) return tl::unexpected(stated.error());
+  const Result<ros::CloudMessage> first = first_cloud(*bag, topics->points, *stated);
   if (!first) return tl::unexpected(first.error());
   const FrameNames names = frame_names(*bag, *topics, first->frame);
   Result<Tracks> tracks = read_tracks(*bag, *topics, config, names);
   if (!tracks) return tl::unexpected(tracks.error());
   Recording recording = recording_of(*tracks, *bag, *topics, config);
-  note_point_times(recording, *first, *bag, config);
+  const KnownTimes times = known_after(first->times, *stated);
+  const bool at_end = stamp_at_end(*bag, tracks->scans, times, config);
+  note_point_times(recording, *bag, *first, at_end, config);
   const Result<std::optional<MovingPose>> moving = take_lidar_mount(recording, tracks->frames, names, config);
   if (!moving) return tl::unexpected(moving.error());
   if (*moving) {
@@ -413,9 +322,7 @@ Result<Recording> recording_in(const std::shared_ptr<const Bag>& bag, RecordingC
     return tl::unexpected(taken.error());
   recording.scan_stamps = tracks->stamps;
   if (Result<> checked = check_fits_mcap(recording); !checked) return tl::unexpected(checked.error());
-  // What the first scan has shown of the times holds for all.
-  const bool at_end = stamp_at_end(recording, *bag, *tracks, first->time_unit, config);
-  recording.read_scan = scan_reader({bag, first->time_unit, at_end, *moving, recording.T_base_lidar},
+  recording.read_scan = scan_reader({bag, times, at_end, *moving, recording.T_base_lidar},
                                     std::move(tracks->scans), std::move(tracks->stamps));
   return recording;
 }

@@ -10,6 +10,7 @@
 #include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/io/bag_recording.hpp"
+#include "adit/io/bag_topics.hpp"
 #include "adit/io/compression.hpp"
 #include "adit/io/file_info.hpp"
 #include "adit/io/recording_files.hpp"
@@ -210,6 +211,86 @@ TEST(Bag, AFileOfAnotherKindThanItsEndingIsNamed) {
   EXPECT_ERROR(open_bag(folder / "g.mcap"), "> UNPACKED.mcap");
   test::put_file(folder / "g.bag.gz", "packed");
   EXPECT_ERROR(open_recording((folder / "g.bag.gz").string()), "unpack it: gzip -d ");
+}
+
+enum class Log { taken_in, left };
+
+/// Turns it into a file of WAL mode, as rosbag2's preset "resilient" writes them. `left`: every message a
+/// second time, in the log alone.
+void put_in_wal_mode(const fs::path& path, Log log) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(database, "PRAGMA journal_mode = WAL", nullptr, nullptr, nullptr), SQLITE_OK);
+  if (log == Log::left) {
+    sqlite3_db_config(database, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
+    constexpr const char* kAgain =
+        "INSERT INTO messages(topic_id, timestamp, data) SELECT topic_id, timestamp, data FROM messages";
+    ASSERT_EQ(sqlite3_exec(database, kAgain, nullptr, nullptr, nullptr), SQLITE_OK);
+  }
+  sqlite3_close(database);
+}
+
+TEST(Bag, ASqliteFileInWalModeIsReadWithItsLogAndNothingIsWritten) {
+  const test::TemporaryFolder folder;
+  const Bag bag = a_bag();
+  const std::string name = "a b?#%41.db3";  // has to be spelled in a URI
+  const auto expect_read = [&](std::size_t num_messages, std::size_t num_files) {
+    fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);  // does not bind root
+    {
+      const Result<Bag> read = open_bag(folder / name);
+      fs::permissions(folder.path(), fs::perms::owner_all);
+      ASSERT_TRUE(read) << read.error().message;
+      EXPECT_EQ(read->messages.size(), num_messages);
+      EXPECT_TRUE(read->warnings.empty());
+      EXPECT_EQ(read->read(read->messages.back()).value(), bag.read(bag.messages.back()).value());
+    }
+    EXPECT_EQ(test::num_entries(folder.path()), num_files);
+  };
+  write_db3(folder / name, bag, bag.messages);
+  put_in_wal_mode(folder / name, Log::taken_in);
+  expect_read(bag.messages.size(), 1);
+  put_in_wal_mode(folder / name, Log::left);
+  const std::string log = test::get_file(folder / (name + "-wal"));
+  expect_read(2 * bag.messages.size(), 3);  // with the index of a recorder that was ended
+  fs::remove(folder / (name + "-shm"));
+  expect_read(2 * bag.messages.size(), 2);
+  EXPECT_TRUE(test::get_file(folder / (name + "-wal")) == log);
+}
+
+TEST(Bag, ASqliteFileThatLacksItsLogIsToldOf) {
+  const test::TemporaryFolder folder;
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open((folder / "a.db3").c_str(), &database), SQLITE_OK);
+  sqlite3_exec(database, "PRAGMA journal_mode = WAL; CREATE TABLE topics(id)", nullptr, nullptr, nullptr);
+  fs::copy_file(folder / "a.db3", folder / "copied.db3");
+  sqlite3_close(database);
+  EXPECT_ERROR(open_bag(folder / "copied.db3"), "no such table: topics; is copied.db3-wal missing?");
+}
+
+TEST(Bag, AFileOfNothingIsSaidToBeEmpty) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.mcap", "a.bag", "a.db3"}) {
+    test::put_file(folder / name, "");
+    EXPECT_ERROR(open_bag(folder / name), std::string(name) + ": is empty: nothing was recorded");
+    test::put_file(folder / name, "abc");
+    EXPECT_ERROR(open_bag(folder / name),
+                 "has only 3 bytes: nothing was recorded, or it was not copied to its end");
+  }
+}
+
+TEST(Bag, WithoutCloudsItIsSaidWhatToDoWithWhatIsThere) {
+  const auto refused = [](const std::string& topic, const std::string& type) {
+    Bag bag;
+    bag.topics = {{"/tf", "tf2_msgs/msg/TFMessage", "cdr"}, {topic, type, "cdr"}};
+    return choose_topics(bag, {});
+  };
+  for (const char* type : {"velodyne_msgs/msg/VelodyneScan", "ouster_sensor_msgs/msg/PacketMsg",
+                           "hesai_ros_driver/msg/UdpFrame", "rslidar_msg/msg/RslidarPacket"})
+    EXPECT_ERROR(refused("/packets", type), "play it through the driver of the sensor and record its points");
+  EXPECT_ERROR(refused("/scan", "sensor_msgs/msg/LaserScan"), "/scan is of a scanner of one plane");
+  EXPECT_ERROR(refused("/points/draco", "point_cloud_interfaces/msg/CompressedPointCloud2"),
+               "with in_transport as its name ends (draco) and out_transport raw");
+  EXPECT_ERROR(refused("/chat", "std_msgs/msg/String"), "there are no scans to read");
 }
 
 TEST(Bag, OfASqliteFileWithoutAWholeMessageTheErrorSaysWhatMayHelp) {

@@ -129,11 +129,11 @@ Result<> keep_named(const Bag& bag, TopicIndices& topics, const TopicChoice& cho
   return no_such_topic(bag, choice.type, choice.topic, known);
 }
 
-/// Leaves the topic asked for, or the only one, if there is any.
-Result<> choose_one(const Bag& bag, TopicIndices& topics, const TopicChoice& choice) {
-  if (Result<> kept = keep_named(bag, topics, choice); !kept || topics.size() < 2) return kept;
-  return fail(format("several topics of {}; give one of them, the likeliest first: {}{}", choice.type,
-                     choices(bag, topics, choice), choice.otherwise));
+/// What there is to choose from; empty where there is one topic or none.
+std::string several(const Bag& bag, const TopicIndices& topics, const TopicChoice& choice) {
+  if (topics.size() < 2) return {};
+  return format("several topics of {}; give one of them, the likeliest first: {}{}", choice.type,
+                choices(bag, topics, choice), choice.otherwise);
 }
 
 /// What people call ground truth is no wheel odometry, whatever its name says.
@@ -237,6 +237,29 @@ RecordingConfig without_last_slash(RecordingConfig config) {
   return config;
 }
 
+/// What may have been meant by scans in a bag without clouds: the remedy for the first topic that has one.
+std::string instead_of_clouds(const Bag& bag, const std::string& under) {
+  for (const auto& [name, full_type, encoding] : bag.topics) {
+    if (!is_under(name, under)) continue;
+    const std::string type = lower_case(full_type.substr(full_type.rfind('/') + 1));
+    const auto has = [&](const char* word) { return type.find(word) != std::string::npos; };
+    if (has("laserscan"))
+      return format(
+          "{} is of a scanner of one plane ({}), of which adit maps nothing; it takes the clouds of a "
+          "LiDAR with several rings",
+          name, full_type);
+    if (has("compressedpointcloud"))
+      return format(
+          "{0} is compressed ({1}): record what 'ros2 run point_cloud_transport republish' makes of it, "
+          "with in_transport as its name ends ({2}) and out_transport raw",
+          name, full_type, name.substr(name.rfind('/') + 1));
+    if (has("packet") || has("udpframe") || has("velodynescan") || has("pandarscan") || has("rslidarscan"))
+      return format("{} has raw packets ({}): play it through the driver of the sensor and record its points",
+                    name, full_type);
+  }
+  return "there are no scans to read";
+}
+
 }  // namespace
 
 std::string names_of(const Bag& bag, const TopicIndices& topics) {
@@ -248,15 +271,19 @@ std::string names_of(const Bag& bag, const TopicIndices& topics) {
 Result<BagTopics> choose_topics(const Bag& bag, const RecordingConfig& given) {
   const RecordingConfig config = without_last_slash(given);
   if (find_topics(bag, config.topics_under).points.empty())
-    return fail(format(
-        "no topic of sensor_msgs/msg/PointCloud2 or of Livox's CustomMsg{}; there are no scans to read",
-        config.topics_under.empty() ? "" : " under " + config.topics_under));
+    return fail(format("no topic of sensor_msgs/msg/PointCloud2 or of Livox's CustomMsg{}; {}",
+                       config.topics_under.empty() ? "" : " under " + config.topics_under,
+                       instead_of_clouds(bag, config.topics_under)));
   Result<BagTopics> topics = candidates(bag, config);
   if (!topics) return topics;
-  for (const auto& [kind, choice] : choices_in(bag, *topics, config))
-    if (Result<> chosen = choose_one(bag, *topics.*kind, choice); !chosen)
-      return tl::unexpected(chosen.error());
-  return topics;
+  std::vector<std::string> open;
+  for (const auto& [kind, choice] : choices_in(bag, *topics, config)) {
+    if (Result<> kept = keep_named(bag, *topics.*kind, choice); !kept) return tl::unexpected(kept.error());
+    if (std::string choose = several(bag, *topics.*kind, choice); !choose.empty())
+      open.push_back(std::move(choose));
+  }
+  if (open.empty()) return topics;
+  return fail(format("{}; adit info prints the whole command", fmt::join(open, "; ")));
 }
 
 Result<> check_named_topics(const Bag& bag, const RecordingConfig& given) {

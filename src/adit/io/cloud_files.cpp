@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "adit/io/cloud_files.hpp"
 
-#include <algorithm>
-
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/kitti.hpp"
@@ -22,16 +20,16 @@ Result<CloudFormat> format_of(const std::filesystem::path& path) {
                      extension));
 }
 
-Result<CloudFile> parse(CloudFormat format, std::string_view bytes, std::optional<TimeUnit> time_unit) {
+Result<CloudFile> parse(CloudFormat format, std::string_view bytes, const CloudReading& known) {
   switch (format) {
     case CloudFormat::pcd:
-      return read_pcd(bytes, time_unit);
+      return read_pcd(bytes, known.times);
     case CloudFormat::ply:
-      return read_ply(bytes, time_unit);
+      return read_ply(bytes, known.times);
     case CloudFormat::kitti:
       break;
   }
-  return read_kitti(bytes);
+  return read_kitti(bytes, known.bin_columns);
 }
 
 std::string bytes_of(CloudFormat format, const PointCloud& cloud, const Pose& viewpoint,
@@ -49,51 +47,6 @@ std::string bytes_of(CloudFormat format, const PointCloud& cloud, const Pose& vi
 
 }  // namespace
 
-std::string_view to_string(TimeUnit unit) {
-  switch (unit) {
-    case TimeUnit::seconds:
-      return "s";
-    case TimeUnit::milliseconds:
-      return "ms";
-    case TimeUnit::microseconds:
-      return "us";
-    case TimeUnit::nanoseconds:
-      break;
-  }
-  return "ns";
-}
-
-std::string point_times_note(TimeUnit unit, UnitSource source) {
-  if (source == UnitSource::stated)
-    return format("point times: in {}, as stated by --point-times", to_string(unit));
-  return format(
-      "point times: in {}, in which a sweep lasts as long as sweeps do; if that is wrong, give "
-      "--point-times",
-      to_string(unit));
-}
-
-std::optional<std::string> stated_unit_warning(TimeUnit unit, const PointCloud& sweep) {
-  constexpr std::int64_t kShortest = 1'000'000;  // nanoseconds; LiDARs take 50 to 200 ms
-  constexpr std::int64_t kLongest = 1'000'000'000;
-  if (!sweep.has_times()) return std::nullopt;
-  const auto [first, last] = std::ranges::minmax(sweep.time_offsets_ns);
-  const std::int64_t lasts = std::int64_t{last} - first;
-  if (lasts >= kShortest && lasts <= kLongest) return std::nullopt;
-  return format(
-      "point times: in {}, as stated by --point-times, the first sweep lasts {:.3g} s, where LiDARs take "
-      "0.05 to 0.2 s; state the unit in which the driver writes them (s, ms, us or ns), or leave the option "
-      "out",
-      to_string(unit), 1e-9 * static_cast<double>(lasts));
-}
-
-Result<std::optional<TimeUnit>> parse_time_unit(std::string_view text) {
-  using enum TimeUnit;
-  if (text.empty()) return std::optional<TimeUnit>();
-  for (const TimeUnit unit : {seconds, milliseconds, microseconds, nanoseconds})
-    if (text == to_string(unit)) return std::optional(unit);
-  return fail(format("'{}' is not a unit of point times; s, ms, us and ns are", text));
-}
-
 std::string_view extension_of(CloudFormat format) {
   switch (format) {
     case CloudFormat::pcd:
@@ -106,12 +59,12 @@ std::string_view extension_of(CloudFormat format) {
   return ".bin";
 }
 
-Result<CloudFile> read_cloud_file(const std::filesystem::path& path, std::optional<TimeUnit> time_unit) {
+Result<CloudFile> read_cloud_file(const std::filesystem::path& path, const CloudReading& known) {
   const Result<CloudFormat> format = format_of(path);
   if (!format) return tl::unexpected(format.error());
   const Result<std::string> bytes = read_bytes(path);
   if (!bytes) return tl::unexpected(bytes.error());
-  Result<CloudFile> file = parse(*format, *bytes, time_unit);
+  Result<CloudFile> file = parse(*format, *bytes, known);
   if (!file) return fail(path.string(), file.error());
   return file;
 }

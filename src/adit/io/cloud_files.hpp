@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,6 +11,7 @@
 
 #include "adit/core/point_cloud.hpp"
 #include "adit/core/result.hpp"
+#include "adit/io/point_times.hpp"
 
 namespace adit {
 
@@ -20,20 +20,11 @@ enum class CloudFormat { pcd, ply, kitti };
 /// With its point: ".bin" for KITTI.
 [[nodiscard]] std::string_view extension_of(CloudFormat format);
 
-/// Of the times of points.
-enum class TimeUnit : std::uint8_t { seconds, milliseconds, microseconds, nanoseconds };
-/// "s", "ms", "us" or "ns".
-[[nodiscard]] std::string_view to_string(TimeUnit unit);
-/// None for "", as RecordingConfig::point_times has it.
-Result<std::optional<TimeUnit>> parse_time_unit(std::string_view text);
-
-/// Whether somebody stated the unit of the times of points, or it was found (packed_cloud.hpp).
-enum class UnitSource : std::uint8_t { stated, found };
-/// What to say of times that are not in seconds as floats or nanoseconds as integers.
-[[nodiscard]] std::string point_times_note(TimeUnit unit, UnitSource source);
-/// A warning where the sweep that these times make, in a unit that was stated, is shorter than 1 ms or longer
-/// than 1 s. Without times none.
-[[nodiscard]] std::optional<std::string> stated_unit_warning(TimeUnit unit, const PointCloud& sweep);
+/// What is known of a cloud before it is read; none: as the cloud shows it.
+struct CloudReading {
+  KnownTimes times = {};                        ///< Of its points.
+  std::optional<std::size_t> bin_columns = {};  ///< Of .bin, 4 or 5 (kitti.hpp).
+};
 
 /// What a cloud reader found. Points with a NaN or infinite coordinate are left out and counted.
 struct CloudFile {
@@ -42,18 +33,12 @@ struct CloudFile {
   /// PCD's VIEWPOINT, the pose of the sensor: p_world = viewpoint * p. None for the identity, which is what
   /// writers put there that do not know it, and for formats without one.
   std::optional<Pose> viewpoint;
-  /// Of the times as they are stored: given, or found; none where there are no times or too few to tell.
-  std::optional<TimeUnit> time_unit = {};
-  bool has_usual_time_unit = true;  ///< Seconds of floats, nanoseconds of integers.
-  /// By how many seconds the earliest point is after the scan's stamp, where times are of another clock than
-  /// the stamp and count from the earliest point therefore.
-  std::optional<double> clock_apart_s = {};
+  PointTimes times = {};  ///< What the file shows of them; the times themselves are in `cloud`.
 };
 
 /// Reads a cloud, in the frame and unit of the file. A missing, truncated or empty file, an unknown extension
 /// and a cloud without any finite point are errors that name the file and the place.
-/// `time_unit`: of point times, where it is known (packed_cloud.hpp says how it is found else).
-Result<CloudFile> read_cloud_file(const std::filesystem::path& path, std::optional<TimeUnit> time_unit = {});
+Result<CloudFile> read_cloud_file(const std::filesystem::path& path, const CloudReading& known = {});
 
 /// The same without the count.
 Result<PointCloud> read_cloud(const std::filesystem::path& path);

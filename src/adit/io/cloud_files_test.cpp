@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -130,6 +131,7 @@ TEST_P(CloudFormats, DamagedBytesAreAnErrorOrACloudOfFinitePoints) {
 }
 
 Result<CloudFile> read_any_pcd(std::string_view bytes) { return read_pcd(bytes); }
+Result<CloudFile> read_any_bin(std::string_view bytes) { return read_kitti(bytes); }
 Result<CloudFile> read_any_ply(std::string_view bytes) { return read_ply(bytes); }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -152,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(
                     with_intensity.intensities.resize(c.size(), 0.0F);
                     return write_kitti(with_intensity);
                   },
-                  read_kitti, false, false}),
+                  read_any_bin, false, false}),
     [](const auto& item) { return item.param.name; });
 
 // Formats by hand.
@@ -215,11 +217,11 @@ TEST(Pcd, TimesAreInTheUnitThatMakesASweepLastAsLongAsSweepsDo) {
     return read_pcd(
         pcd_header("x y z t", "4 4 4 " + std::string(size), "F F F " + std::string(type), kNum + 1, "ascii") +
             rows,
-        unit);
+        {.unit = unit});
   };
   const auto expect = [](const Result<CloudFile>& file, TimeUnit unit, int tolerance_ns) {
     ASSERT_TRUE(file) << file.error().message;
-    EXPECT_EQ(to_string(*file->time_unit), to_string(unit));
+    EXPECT_EQ(to_string(*file->times.unit), to_string(unit));
     const std::vector<std::int32_t>& offsets = file->cloud.time_offsets_ns;
     ASSERT_EQ(offsets.size(), static_cast<std::size_t>(kNum));
     for (int i = 0; i < kNum; ++i)
@@ -232,15 +234,15 @@ TEST(Pcd, TimesAreInTheUnitThatMakesASweepLastAsLongAsSweepsDo) {
   expect(sweep("F", "8", Int{500'000}, Int{1'700'000'000'000'000'000}), TimeUnit::nanoseconds, 300);  // Livox
   expect(sweep("U", "4", Int{500}, Int{0}), TimeUnit::microseconds, 0);
   expect(sweep("F", "4", 0.5, 0.0), TimeUnit::milliseconds, 10);
-  EXPECT_FALSE(sweep("U", "4", Int{500}, Int{0})->has_usual_time_unit);
-  EXPECT_TRUE(sweep("U", "4", Int{500'000}, Int{0})->has_usual_time_unit);
+  EXPECT_FALSE(sweep("U", "4", Int{500}, Int{0})->times.has_usual_unit);
+  EXPECT_TRUE(sweep("U", "4", Int{500'000}, Int{0})->times.has_usual_unit);
   // What is given counts; signed times, as adit writes them, are nanoseconds, and so is a sweep like no
   // other.
   const Result<CloudFile> given = sweep("U", "4", Int{500}, Int{0}, TimeUnit::nanoseconds);
   EXPECT_EQ(given->cloud.time_offsets_ns.back(), 100'000);
   EXPECT_EQ(sweep("I", "4", Int{500}, Int{0})->cloud.time_offsets_ns.back(), 100'000);
-  EXPECT_EQ(sweep("U", "4", Int{5'000'000}, Int{0})->time_unit, TimeUnit::nanoseconds);
-  EXPECT_EQ(sweep("U", "4", Int{5}, Int{0})->time_unit, std::nullopt);
+  EXPECT_EQ(sweep("U", "4", Int{5'000'000}, Int{0})->times.unit, TimeUnit::nanoseconds);
+  EXPECT_EQ(sweep("U", "4", Int{5}, Int{0})->times.unit, std::nullopt);
   EXPECT_EQ(sweep("U", "4", Int{5}, Int{0})->cloud.time_offsets_ns.back(), 1000);
 }
 
@@ -350,9 +352,25 @@ TEST(Kitti, AFifthColumnOfWholeNumbersIsTheRing) {
     EXPECT_EQ(file->cloud.points.back(), Eigen::Vector3f(static_cast<float>(num) - 0.5F, 2.25F, -1.5F));
     EXPECT_EQ(file->cloud.intensities.back(), 0.75F);
   }
-  EXPECT_EQ(read_kitti(rows(200, 1))->cloud.size(), 250U) << "one ring alone is no ring";
-  EXPECT_EQ(read_kitti(rows(8, 4))->cloud.size(), 10U);
+  EXPECT_EQ(read_kitti(rows(8, 4))->cloud.size(), 10U) << "too few to tell";
+  EXPECT_EQ(read_kitti(rows(8, 4), 5)->cloud.size(), 8U);
   EXPECT_ERROR(read_kitti(std::string_view(rows(8, 4)).substr(0, 150)), "not a whole number of points");
+}
+
+TEST(Kitti, AFifthColumnIsKnownByIntensitiesThatAreNotNegative) {
+  const auto rows = [](int num, int num_columns, float y) {
+    std::string bytes;
+    for (int i = 0; i < num; ++i) {
+      const float time = 0.001F * static_cast<float>(i) - 0.05F;
+      const std::array row = {1.5F + static_cast<float>(i), y, 1.25F, 0.75F, time};
+      for (int k = 0; k < num_columns; ++k) append_little_endian(bytes, row.at(static_cast<std::size_t>(k)));
+    }
+    return bytes;
+  };
+  for (const int num : {201, 200})  // the latter have a size of whole rows of four columns, too
+    EXPECT_EQ(read_kitti(rows(num, 5, -2.0F))->cloud.size(), static_cast<std::size_t>(num));
+  EXPECT_EQ(read_kitti(rows(200, 4, -2.0F))->cloud.size(), 200U);
+  EXPECT_ERROR(read_kitti(rows(126, 4, -2.0F).substr(0, 2000 - 20)), "the last whole one ends at byte 1968");
 }
 
 TEST(CloudFiles, FormatFollowsTheExtension) {

@@ -79,12 +79,12 @@ void put_value(std::string& bytes, std::size_t at, Datatype type, double value, 
   }
 }
 
-/// A PointCloud2 of kNum points; bytes that no field covers are filled with rubbish.
-std::string message_of(const Layout& layout, Stamp stamp = kStamp) {
-  const auto width = static_cast<std::uint32_t>(kNum / layout.height);
+/// A PointCloud2 of `num` points; bytes that no field covers are filled with rubbish.
+std::string message_of(const Layout& layout, Stamp stamp = kStamp, std::size_t num = kNum) {
+  const auto width = static_cast<std::uint32_t>(num / layout.height);
   const std::uint32_t row_step = width * layout.point_step + layout.row_padding;
   std::string data(std::size_t{row_step} * layout.height, '\xAB');
-  for (std::size_t i = 0; i < kNum; ++i)
+  for (std::size_t i = 0; i < num; ++i)
     for (const LaidField& field : layout.fields)
       put_value(data, i / width * row_step + i % width * layout.point_step + field.offset, field.type,
                 field.value(i), layout.is_big_endian);
@@ -123,6 +123,7 @@ double microseconds_from_start(std::size_t i) { return std::round(1e6 * time_of(
 double absolute_seconds(std::size_t i) { return 1'700'000'000.123456789 + time_of(i); }
 double seconds_of_atoms(std::size_t i) { return absolute_seconds(i) + 37.0; }  // as PTP counts them
 double seconds_since_switched_on(std::size_t i) { return 7200.0 + time_of(i); }
+double seconds_of_one_packet(std::size_t i) { return 77.0 + 1e-3 * time_of(i); }
 double absolute_nanoseconds(std::size_t i) { return 1'700'000'000'123'456'789.0 + 1e9 * time_of(i); }
 
 std::vector<LaidField> with_xyz(std::vector<LaidField> further, Datatype type = Datatype::float32) {
@@ -190,6 +191,14 @@ TEST(CloudLayouts, OfTheDriversThatPeopleUse) {
                            {"timestamp", 18, float64, absolute_nanoseconds}}),
                  26},
                 0.0, 5e-7);
+  expect_layout({"nebula",
+                 with_xyz({{"intensity", 12, uint8, shine_of},
+                           {"return_type", 13, uint8, noise_of},
+                           {"channel", 14, uint16, ring_of},
+                           {"distance", 16, float32, noise_of},
+                           {"time_stamp", 20, uint32, nanoseconds_from_start}}),
+                 24},
+                0.0, 1e-9);
   expect_layout(
       {"microseconds",
        with_xyz({{"intensity", 12, float32, shine_of}, {"t", 16, uint32, microseconds_from_start}}), 20},
@@ -251,29 +260,103 @@ TEST(CloudLayouts, PixelsOfAnOrganisedCloudThatSawNothingAreLeftOut) {
   EXPECT_EQ(at, cloud.size());
 }
 
-TEST(CloudLayouts, AbsoluteTimesOfAnotherClockCountFromTheStartOfTheSweep) {
-  const auto layout = [](double (*time)(std::size_t)) {
-    return Layout{"another clock",
-                  with_xyz({{"intensity", 16, float32, shine_of}, {"timestamp", 24, float64, time}}), 32};
-  };
-  expect_layout(layout(seconds_of_atoms), 0.0, 5e-7);
-  expect_layout(layout(seconds_since_switched_on), 0.0, 5e-7);
-  std::vector<std::pair<Stamp, std::string>> clouds;
-  for (int k = 0; k < 3; ++k) {
-    const Stamp stamp = kStamp + std::chrono::milliseconds(100 * k);
-    clouds.emplace_back(stamp, message_of(layout(seconds_of_atoms), stamp));
-  }
+Layout timed(double (*time)(std::size_t)) {
+  return {"timed", with_xyz({{"intensity", 16, float32, shine_of}, {"timestamp", 24, float64, time}}), 32};
+}
+
+/// One cloud every 0.1 s, recorded some time after their stamps.
+Result<Recording> recorded(const std::vector<std::string>& clouds, Duration delay,
+                           const RecordingConfig& config = {}) {
+  std::vector<std::pair<Stamp, std::string>> stamped;
+  for (const std::string& cloud : clouds) stamped.emplace_back(ros::decode_stamp(cloud).value(), cloud);
   test::ForeignFile file;
-  file.cloud_messages("/points", clouds, std::chrono::milliseconds(110))
-      .links({test::link("base_link", "lidar", Pose())});
-  const Result<Recording> recording = file.read();
+  file.cloud_messages("/points", stamped, delay).links({test::link("base_link", "lidar", Pose())});
+  return file.read(config);
+}
+
+Stamp stamp_of(int k) { return kStamp + std::chrono::milliseconds(100 * k); }
+
+std::vector<std::string> three_of(const Layout& layout) {
+  return {message_of(layout, stamp_of(0)), message_of(layout, stamp_of(1)), message_of(layout, stamp_of(2))};
+}
+
+std::pair<std::int32_t, std::int32_t> times_of(const Result<Recording>& recording, std::size_t i) {
+  const Scan scan = recording->read_scan(i).value();
+  const auto [earliest, latest] = std::ranges::minmax(scan.cloud.time_offsets_ns);
+  return {earliest, latest};
+}
+
+TEST(CloudLayouts, AbsoluteTimesOfAnotherClockCountFromTheStartOfTheSweep) {
+  expect_layout(timed(seconds_of_atoms), 0.0, 5e-7);
+  expect_layout(timed(seconds_since_switched_on), 0.0, 5e-7);
+  const std::vector<std::string> clouds = three_of(timed(seconds_of_atoms));
+  constexpr const char* kApart =
+      "point times: they are 37.000 s from the stamps, as by another clock, and count from the first point "
+      "of "
+      "the sweep";
+  constexpr const char* kRemedy =
+      ", taken for the time of the stamp; if that is of the sweep's end, --set recording.stamp_at=end";
+  const Result<Recording> late = recorded(clouds, std::chrono::milliseconds(110));
+  ASSERT_TRUE(late) << late.error().message;
+  EXPECT_EQ(late->assumptions, std::vector{std::string(kApart) + kRemedy});
+  // What is found or stated of the stamp is not contradicted.
+  const Result<Recording> early = recorded(clouds, std::chrono::milliseconds(5));
+  ASSERT_EQ(early->assumptions.size(), 2U);
+  EXPECT_EQ(early->assumptions[0], kApart);
+  EXPECT_NE(early->assumptions[1].find("the stamp is of its end"), std::string::npos);
+  EXPECT_EQ(recorded(clouds, std::chrono::milliseconds(110), {.stamp_at = "end"})->assumptions,
+            std::vector<std::string>{kApart});
+}
+
+TEST(CloudLayouts, TimesOfAnotherClockThatSpanNoSweepAreNoTimes) {
+  EXPECT_ERROR(ros::decode_cloud(message_of(timed(seconds_of_one_packet))),
+               "s and lie -1699999923.123 s from the scan's stamp");
+  // In a recording the first scan has shown the unit, and sparse ones follow it.
+  const Layout layout = timed(seconds_of_atoms);
+  const Result<Recording> sparse = recorded(
+      {message_of(layout, stamp_of(0)), message_of(layout, stamp_of(1), 1)}, std::chrono::seconds(1));
+  ASSERT_TRUE(sparse) << sparse.error().message;
+  EXPECT_EQ(sparse->read_scan(1).value().cloud.time_offsets_ns, std::vector<std::int32_t>{0});
+}
+
+/// Of a clock of 32 bits, which begins anew every 4.29 s; a sweep that begins after so many tenths of a
+/// second.
+template <int Tenths>
+double nanoseconds_of_32_bits(std::size_t i) {
+  return std::fmod(1e8 * Tenths + nanoseconds_from_start(i), 4294967296.0);
+}
+
+TEST(CloudLayouts, TheFirstScanDecidesWhatTheTimesOfAllCountFrom) {
+  const auto cloud = [](int k, double (*time)(std::size_t)) {
+    return message_of({"wraps", with_xyz({{"t", 12, uint32, time}}), 16}, stamp_of(k));
+  };
+  const Result<Recording> wraps =
+      recorded({cloud(0, nanoseconds_of_32_bits<30>), cloud(1, nanoseconds_of_32_bits<41>),
+                cloud(2, nanoseconds_of_32_bits<43>), cloud(3, nanoseconds_of_32_bits<50>)},
+               std::chrono::milliseconds(110));
+  ASSERT_TRUE(wraps) << wraps.error().message;
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(times_of(wraps, i), std::pair(0, static_cast<std::int32_t>(nanoseconds_from_start(kNum - 1))))
+        << i;
+  // All are looked at as they are read, also for when they were recorded.
+  const Result<Recording> early =
+      recorded({cloud(0, nanoseconds_of_32_bits<30>), cloud(1, nanoseconds_of_32_bits<44>)},
+               std::chrono::milliseconds(5));
+  EXPECT_EQ(times_of(early, 1).second, 0) << "the stamps are of the end";
+  const Result<Recording> set =
+      recorded({cloud(0, nanoseconds_from_start), cloud(1, nanoseconds_of_32_bits<30>)}, Duration(0));
+  ASSERT_TRUE(set) << set.error().message;
+  EXPECT_ERROR(set->read_scan(1), "s from its stamp, those of the first scan do not; was a clock set?");
+}
+
+TEST(CloudLayouts, OneTimeForAllPointsIsNone) {
+  const Result<Recording> recording = recorded(three_of(timed(noise_of)), Duration(0));
   ASSERT_TRUE(recording) << recording.error().message;
-  ASSERT_EQ(recording->assumptions.size(), 1U);
-  EXPECT_NE(recording->assumptions[0].find("they are 37.000 s from the stamps"), std::string::npos)
-      << recording->assumptions[0];
-  // All points at one time is no sweep.
-  EXPECT_ERROR(ros::decode_cloud(message_of(layout(noise_of))),
-               "the point times span 0 s and lie -1699999923.123 s from");
+  EXPECT_EQ(
+      recording->assumptions,
+      std::vector<std::string>{"point times: field 'timestamp' is the same for every point, so that scans "
+                               "are not corrected for the motion during a sweep"});
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(recording->read_scan(i).value().cloud.has_times());
 }
 
 /// Three sweeps whose times count from their start, recorded some time after their stamps.
@@ -290,30 +373,24 @@ Result<Recording> recorded_after(Duration delay, const RecordingConfig& config =
   return file.read(config);
 }
 
-std::pair<std::int32_t, std::int32_t> times_of_first(const Result<Recording>& recording) {
-  const Scan scan = recording->read_scan(0).value();
-  const auto [earliest, latest] = std::ranges::minmax(scan.cloud.time_offsets_ns);
-  return {earliest, latest};
-}
-
 TEST(CloudLayouts, AStampOfTheEndIsFoundByWhenTheScanWasRecorded) {
   constexpr std::int32_t kLast = 500'000 * 199;
   const std::pair from_start{0, kLast};
   const std::pair to_end{-kLast, 0};
   const Result<Recording> late = recorded_after(std::chrono::milliseconds(110));
   ASSERT_TRUE(late) << late.error().message;
-  EXPECT_EQ(times_of_first(late), from_start);
+  EXPECT_EQ(times_of(late, 0), from_start);
   EXPECT_TRUE(late->assumptions.empty());
   const Result<Recording> early = recorded_after(std::chrono::milliseconds(5));
   ASSERT_TRUE(early) << early.error().message;
-  EXPECT_EQ(times_of_first(early), to_end);
+  EXPECT_EQ(times_of(early, 0), to_end);
   ASSERT_EQ(early->assumptions.size(), 1U);
   EXPECT_NE(early->assumptions[0].find("the stamp is of its end"), std::string::npos);
   // Clocks that differ tell nothing.
-  EXPECT_EQ(times_of_first(recorded_after(std::chrono::seconds(-40))), from_start);
+  EXPECT_EQ(times_of(recorded_after(std::chrono::seconds(-40)), 0), from_start);
   // What people say holds.
-  EXPECT_EQ(times_of_first(recorded_after(std::chrono::milliseconds(5), {.stamp_at = "start"})), from_start);
-  EXPECT_EQ(times_of_first(recorded_after(std::chrono::milliseconds(110), {.stamp_at = "end"})), to_end);
+  EXPECT_EQ(times_of(recorded_after(std::chrono::milliseconds(5), {.stamp_at = "start"}), 0), from_start);
+  EXPECT_EQ(times_of(recorded_after(std::chrono::milliseconds(110), {.stamp_at = "end"}), 0), to_end);
   EXPECT_ERROR(recorded_after(Duration(0), {.stamp_at = "middle"}), "'middle' is not start, end or auto");
 }
 
@@ -342,7 +419,7 @@ TEST(CloudLayouts, AUnitThatIsStatedIsSaidToBe) {
 TEST(CloudLayouts, ScansThatAClockCostAreCounted) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   const std::string cloud_frame = "lidar";
-  const auto recorded = [&](const std::vector<std::int64_t>& tenths) {
+  const auto recorded_at = [&](const std::vector<std::int64_t>& tenths) {
     test::ForeignFile file;
     Stamp arrived = test::make_scan(0, 0).stamp;
     for (std::size_t k = 0; k < tenths.size(); ++k) {
@@ -355,14 +432,14 @@ TEST(CloudLayouts, ScansThatAClockCostAreCounted) {
     file.links({test::link("base_link", cloud_frame, Pose())});
     return file.read().value();
   };
-  const Recording set_back = recorded({0, 1, 2, 3, 4, 5, -40, -39, -38});
+  const Recording set_back = recorded_at({0, 1, 2, 3, 4, 5, -40, -39, -38});
   EXPECT_EQ(set_back.num_scans(), 6U);
   EXPECT_EQ(set_back.num_scans_left_out, 3U);
-  EXPECT_EQ(recorded({0, 1, 900, 3, 4}).num_scans_left_out, 1U);
-  const Recording repeated = recorded({0, 0, 1, 1, 2, 2});
+  EXPECT_EQ(recorded_at({0, 1, 900, 3, 4}).num_scans_left_out, 1U);
+  const Recording repeated = recorded_at({0, 0, 1, 1, 2, 2});
   EXPECT_EQ(repeated.num_scans(), 3U);
   EXPECT_EQ(repeated.num_scans_left_out, 0U) << "sent twice, none is lost";
-  EXPECT_EQ(recorded({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 0, 1, 2}).num_scans_left_out, 3U)
+  EXPECT_EQ(recorded_at({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 0, 1, 2}).num_scans_left_out, 3U)
       << "of the same stamps, and not the same scans";
 }
 

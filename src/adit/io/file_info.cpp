@@ -51,13 +51,15 @@ Result<Json> cloud_info(const fs::path& path) {
   return read_cloud_file(path).map([](const CloudFile& file) {
     Eigen::AlignedBox3f box;
     for (const Eigen::Vector3f& point : file.cloud.points) box.extend(point);
-    return Json{{"kind", "cloud"},
-                {"points", file.cloud.size()},
-                {"skipped_nan", file.num_skipped_nan},
-                {"intensities", !file.cloud.intensities.empty()},
-                {"times", file.cloud.has_times()},
-                {"viewpoint", file.viewpoint ? mount_text(*file.viewpoint) : ""},
-                {"bounding_box_m", box_json(box)}};
+    Json info{{"kind", "cloud"},
+              {"points", file.cloud.size()},
+              {"skipped_nan", file.num_skipped_nan},
+              {"intensities", !file.cloud.intensities.empty()},
+              {"times", file.cloud.has_times()},
+              {"viewpoint", file.viewpoint ? mount_text(*file.viewpoint) : ""},
+              {"bounding_box_m", box_json(box)}};
+    if (const std::string from = point_times_text(file.times); !from.empty()) info["point_times_from"] = from;
+    return info;
   });
 }
 
@@ -207,6 +209,7 @@ Json topic_json(const BagTopic& topic, const TopicInfo& info) {
   if (info.rate_by_stamps_hz) json["rate_by_stamps_hz"] = *info.rate_by_stamps_hz;
   json["recorded_after_stamp_s"] = {info.recorded_after_stamp_s.first, info.recorded_after_stamp_s.second};
   if (!info.fields.empty()) json["fields"] = info.fields;
+  if (!info.point_times_from.empty()) json["point_times_from"] = info.point_times_from;
   return json;
 }
 

@@ -26,14 +26,13 @@ FolderMount stated(const Pose& T_base_lidar, CloudFrame frame, std::string sourc
 }
 
 /// The first cloud, the last, and some between, without those that cannot be read; fails where none can.
-Result<std::vector<CloudFile>> read_samples(const std::vector<fs::path>& clouds,
-                                            std::optional<TimeUnit> time_unit) {
+Result<std::vector<CloudFile>> read_samples(const std::vector<fs::path>& clouds, const CloudReading& known) {
   std::vector<CloudFile> samples;
   std::optional<Error> failure;
   const std::size_t count = std::min(kNumSamples, clouds.size());
   for (std::size_t k = 0; k < count; ++k) {
     Result<CloudFile> sample =
-        read_cloud_file(clouds[count < 2 ? 0 : k * (clouds.size() - 1) / (count - 1)], time_unit);
+        read_cloud_file(clouds[count < 2 ? 0 : k * (clouds.size() - 1) / (count - 1)], known);
     if (sample)
       samples.push_back(std::move(*sample));
     else if (!failure)
@@ -108,14 +107,14 @@ FolderMount found_or_assumed(const std::vector<CloudFile>& samples) {
 
 Result<FolderMount> mount_of_folder(const std::vector<fs::path>& clouds, const RecordingToml& file,
                                     const std::optional<Pose>& override, Wheels wheels,
-                                    std::optional<TimeUnit> time_unit) {
+                                    const CloudReading& known) {
   if (override) return stated(*override, file.frame, "given by the user");
   if (!file.mount.empty()) {
     return parse_mount(file.mount).map([&](const Pose& T_base_lidar) {
       return stated(T_base_lidar, file.frame, "recording.toml");
     });
   }
-  const Result<std::vector<CloudFile>> samples = read_samples(clouds, time_unit);
+  const Result<std::vector<CloudFile>> samples = read_samples(clouds, known);
   if (!samples) return tl::unexpected(samples.error());
   if (const auto viewpoint = common_viewpoint(*samples))
     return stated(*viewpoint, file.frame, "VIEWPOINT of the clouds");

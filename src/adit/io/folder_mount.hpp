@@ -32,6 +32,6 @@ enum class Wheels { absent, present };
 /// unknown.
 Result<FolderMount> mount_of_folder(const std::vector<std::filesystem::path>& clouds,
                                     const RecordingToml& file, const std::optional<Pose>& override,
-                                    Wheels wheels, std::optional<TimeUnit> time_unit = {});
+                                    Wheels wheels, const CloudReading& known = {});
 
 }  // namespace adit

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "adit/io/kitti.hpp"
 
+#include <bit>
 #include <cmath>
-#include <optional>
+#include <system_error>
 
 #include "adit/core/format.hpp"
+#include "adit/io/atomic_file.hpp"
 #include "adit/io/packed_cloud.hpp"
 #include "adit/io/text.hpp"
 
@@ -16,33 +18,75 @@ namespace {
 constexpr std::size_t kFour = 16;  ///< Bytes of a row of four columns,
 constexpr std::size_t kFive = 20;  ///< and of five.
 
-/// Where the size fits four columns, too, it takes many rows of several rings to tell.
-bool has_rings(std::string_view bytes) {
-  constexpr std::size_t kEnough = 100;  // rows
-  if (bytes.empty() || bytes.size() % kFive != 0) return false;
-  const auto ring_at = [&](std::size_t row) {
-    return load_scalar(ScalarType::float32, bytes.data() + row * kFive + kFour, std::endian::little);
-  };
-  const std::size_t num = bytes.size() / kFive;
-  bool are_several = false;
-  for (std::size_t row = 0; row < num; ++row) {
-    const double ring = ring_at(row);
-    if (!(ring >= 0.0 && ring <= 255.0 && ring == std::floor(ring))) return false;
-    are_several |= ring != ring_at(0);
+/// The number in a column of rows of so many bytes.
+double number_at(std::string_view bytes, std::size_t row_size, std::size_t row, std::size_t column) {
+  return load_scalar(ScalarType::float32, bytes.data() + row * row_size + 4 * column, std::endian::little);
+}
+
+enum class Rings { none, one, several };
+
+/// What the fifth column holds.
+Rings rings_in(std::string_view bytes) {
+  Rings rings = Rings::one;
+  for (std::size_t row = 0; row < bytes.size() / kFive; ++row) {
+    const double ring = number_at(bytes, kFive, row, 4);
+    if (!(ring >= 0.0 && ring <= 255.0 && ring == std::floor(ring))) return Rings::none;
+    if (ring != number_at(bytes, kFive, 0, 4)) rings = Rings::several;
   }
-  return bytes.size() % kFour != 0 || (num >= kEnough && are_several);
+  return rings;
+}
+
+/// Rows of another length put coordinates, which have both signs, where the intensity is.
+bool has_negative_intensity(std::string_view bytes, std::size_t row_size) {
+  for (std::size_t row = 0; row < bytes.size() / row_size; ++row)
+    if (number_at(bytes, row_size, row, 3) < 0.0) return true;
+  return false;
 }
 
 }  // namespace
 
-Result<CloudFile> read_kitti(std::string_view bytes) {
-  const std::size_t row = has_rings(bytes) ? kFive : kFour;
+std::size_t kitti_columns(std::string_view bytes) {
+  constexpr std::size_t kEnough = 100;  // rows
+  if (bytes.empty() || bytes.size() % kFive != 0) return 4;
+  const bool fits_four = bytes.size() % kFour == 0;
+  const bool are_enough = bytes.size() / kFive >= kEnough;
+  const Rings rings = rings_in(bytes);
+  if (fits_four ? are_enough && rings == Rings::several : rings != Rings::none) return 5;
+  if (!are_enough || has_negative_intensity(bytes, kFive)) return 4;
+  return !fits_four || has_negative_intensity(bytes, kFour) ? 5 : 4;
+}
+
+Result<std::size_t> kitti_columns(const std::vector<std::filesystem::path>& files) {
+  std::filesystem::path four;  // the first that fits four columns alone,
+  std::filesystem::path five;  // five alone,
+  std::filesystem::path both;
+  for (const std::filesystem::path& file : files) {
+    std::error_code unknown;
+    const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+    const bool fits_four = size % kFour == 0;
+    const bool fits_five = size % kFive == 0;
+    if (unknown || size == 0 || (!fits_four && !fits_five)) continue;
+    std::filesystem::path& place = fits_four && fits_five ? both : fits_four ? four : five;
+    if (place.empty()) place = file;
+  }
+  if (!four.empty() && !five.empty())
+    return fail(format(
+        "{} has whole rows of x y z intensity (16 bytes), {} of five columns (20 bytes): keep clouds of "
+        "one kind per folder, without those that were cut short",
+        four.filename().string(), five.filename().string()));
+  if (!five.empty()) return 5;
+  if (!four.empty() || both.empty()) return 4;
+  return read_bytes(both).map([](const std::string& bytes) { return kitti_columns(bytes); });
+}
+
+Result<CloudFile> read_kitti(std::string_view bytes, std::optional<std::size_t> columns) {
+  const std::size_t row = columns.value_or(kitti_columns(bytes)) == 5 ? kFive : kFour;
   if (bytes.size() % row != 0) {
     return fail(
-        format("{} bytes are not a whole number of points (x y z intensity, 16 bytes each, or 20 with the "
-               "ring); the last whole one "
-               "ends at byte {}: the file is truncated or not a KITTI file",
-               bytes.size(), bytes.size() / row * row));
+        format("{} bytes are not a whole number of points (x y z intensity, 16 bytes each, or 20 with a "
+               "fifth column; {} were taken); the last whole one ends at byte {}: the file is truncated or "
+               "not a KITTI file",
+               bytes.size(), row, bytes.size() / row * row));
   }
   PackedCloud packed;
   packed.bytes = bytes;

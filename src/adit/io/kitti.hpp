@@ -1,9 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 /// KITTI's velodyne .bin: float32 x, y, z, intensity, one after the other, little-endian, nothing else; and
-/// what others write with a fifth column, the ring. KITTI's files of poses and of the calibration.
+/// what others write with a fifth column, a ring or a time, which is not used. KITTI's files of poses and of
+/// the calibration.
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,10 +17,19 @@
 
 namespace adit {
 
-/// The fifth column is there where the size is a multiple of 20 bytes and every fifth number a whole one from
-/// 0 to 255; where it is a multiple of 16 bytes as well, only if there are a hundred rows of several rings.
-/// Other sizes are those of truncated files: an error that names the last whole point.
-Result<CloudFile> read_kitti(std::string_view bytes);
+/// How many columns each point has in these bytes, 4 or 5. Five where the size is a multiple of 20 bytes, and
+/// the fifth number is a ring (whole, from 0 to 255), or a hundred rows have no negative intensity so. Where
+/// the size is a multiple of 16 bytes as well, only if a hundred rows have several rings, or some intensity
+/// would be negative with four columns.
+[[nodiscard]] std::size_t kitti_columns(std::string_view bytes);
+/// The same of all files of a folder: the number by which all sizes can be divided, and where both fit, what
+/// the first one shows. Files that neither fits are damaged, and left for `read_kitti` to refuse. Fails where
+/// some files have whole rows of four columns alone and others of five.
+[[nodiscard]] Result<std::size_t> kitti_columns(const std::vector<std::filesystem::path>& files);
+
+/// `columns`: of each point, 4 or 5, where that is known. Other sizes are those of truncated files: an error
+/// that names the last whole point.
+Result<CloudFile> read_kitti(std::string_view bytes, std::optional<std::size_t> columns = {});
 
 /// Points without intensity get 0.
 [[nodiscard]] std::string write_kitti(const PointCloud& cloud);

@@ -86,6 +86,12 @@ TEST(McapImu, OneOfSeveralImusCanBeChosenOrNone) {
                "several topics of IMUs; give one of them, the likeliest first: --imu /os/imu (3 messages) or "
                "--imu /camera/imu (2 messages)");
   EXPECT_ERROR(file.read({.imu = "/left"}), "no topic of IMUs '/left'; there are: /os/imu, /camera/imu");
+  // All that is open is asked at once.
+  ForeignFile more = file;
+  more.odometry("/wheels/odom").odometry("/fused/odom");
+  EXPECT_ERROR(more.read(), "several topics of wheel odometry; give one");
+  EXPECT_ERROR(more.read(), "several topics of IMUs; give one");
+  EXPECT_ERROR(more.read(), "; adit info prints the whole command");
   EXPECT_EQ(file.read({.imu = "/os/imu"})->imu.size(), 3U);
   EXPECT_EQ(file.read({.imu = "/camera/imu"})->imu.size(), 2U);
   const Result<Recording> none = file.read({.imu = "none"});

@@ -46,7 +46,7 @@ Result<Pose> parse_mount(std::string_view text) {
   }
   if (numbers.size() != 3 && numbers.size() != 6) {
     return fail(
-        format("mount '{}': {} numbers; 'x y z' or 'x y z roll pitch yaw' in metres and degrees are needed",
+        format("mount '{}': {} numbers; 'x,y,z' or 'x,y,z,roll,pitch,yaw' in metres and degrees are needed",
                text, numbers.size()));
   }
   const Vector3 position(numbers[0], numbers[1], numbers[2]);

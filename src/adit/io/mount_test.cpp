@@ -47,7 +47,7 @@ TEST(Mount, TextReadsBack) {
 }
 
 TEST(Mount, AnythingElseIsRefusedWithTheFormThatIsNeeded) {
-  EXPECT_ERROR(parse_mount(""), "0 numbers; 'x y z' or 'x y z roll pitch yaw'");
+  EXPECT_ERROR(parse_mount(""), "0 numbers; 'x,y,z' or 'x,y,z,roll,pitch,yaw'");
   EXPECT_ERROR(parse_mount("1 2"), "2 numbers");
   EXPECT_ERROR(parse_mount("1 2 3 4"), "4 numbers");
   EXPECT_ERROR(parse_mount("1 2 up"), "'up' is not a finite number");

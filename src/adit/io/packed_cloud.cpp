@@ -120,15 +120,15 @@ std::int64_t nanoseconds_of(T value, std::int64_t in_unit) {
   }
 }
 
-constexpr double kShortestSweep = 0.002;  // seconds; LiDARs take 0.05 to 0.2
+constexpr double kShortestSweep = 0.002;   // seconds; LiDARs take 0.05 to 0.2
+constexpr std::size_t kEnoughTimes = 100;  // to tell what they are
 
 /// What such times usually are.
 TimeUnit usual_unit(ScalarType type) { return is_float(type) ? TimeUnit::seconds : TimeUnit::nanoseconds; }
 
 /// The unit in which the sweep lasts as long as sweeps do; none where too few times are there, or none does.
 std::optional<TimeUnit> unit_of_times(const PackedCloud& packed, const std::vector<Eigen::Vector3f>& points) {
-  constexpr double kLongest = 2.0;      // seconds
-  constexpr std::size_t kEnough = 100;  // times
+  constexpr double kLongest = 2.0;  // seconds
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   std::size_t num = 0;
@@ -140,7 +140,7 @@ std::optional<TimeUnit> unit_of_times(const PackedCloud& packed, const std::vect
     high = std::max(high, time);
     ++num;
   });
-  if (num < kEnough) return {};
+  if (num < kEnoughTimes) return {};
   using enum TimeUnit;
   // Integers are never coarser than microseconds, and signed ones, as adit writes them, are nanoseconds.
   std::vector<TimeUnit> likeliest_first = {nanoseconds};
@@ -188,14 +188,9 @@ Result<> check_layout(const PackedCloud& cloud) {
   return checked;
 }
 
-struct RelativeTimes {
-  std::vector<std::int32_t> offsets_ns;
-  std::optional<double> clock_apart_s;  ///< As in CloudFile.
-};
-
-/// Offsets from the scan's stamp: as they are when they fit, else relative to the stamp, else to the earliest
-/// point.
-Result<RelativeTimes> relative_times(const std::vector<std::int64_t>& times, std::optional<Stamp> stamp) {
+/// Makes them offsets from the scan's stamp: as they are when they fit, else relative to the stamp, else to
+/// the earliest point, which the first cloud decides for all.
+Result<> take_times(CloudFile& file, const std::vector<std::int64_t>& times, const PackedCloud& packed) {
   constexpr std::int64_t kLimit = std::numeric_limits<std::int32_t>::max();
   const auto [low_at, high_at] = std::ranges::minmax_element(times);
   const std::int64_t low = *low_at;
@@ -203,36 +198,51 @@ Result<RelativeTimes> relative_times(const std::vector<std::int64_t>& times, std
   // Absolute times may lie anywhere in 64 bits, so their differences need more.
   __extension__ using Wide = __int128;
   const auto fits = [&](Wide origin) { return low - origin >= -kLimit && high - origin <= kLimit; };
-  const std::int64_t from_stamp = stamp ? stamp->ns : low;
+  const KnownTimes& known = packed.known_times;
   const double span_s = static_cast<double>(Wide{high} - low) * 1e-9;
-  const double from_stamp_s = static_cast<double>(Wide{low} - from_stamp) * 1e-9;
-  std::int64_t origin = fits(0) ? 0 : from_stamp;
-  RelativeTimes relative;
-  if (!fits(origin) && Wide{high} - low <= kLimit) {
-    if (span_s < kShortestSweep)
-      return fail(
-          format("the point times span {:.3g} s and lie {:.3f} s from the scan's stamp: another "
-                 "field, or another unit than was taken (--point-times)",
-                 span_s, from_stamp_s));
-    relative.clock_apart_s = from_stamp_s;
-    origin = low;
-  }
-  if (!fits(origin)) {
+  if (Wide{high} - low > kLimit)
     return fail(
         format("the point times of the sweep span {:.3f} s, more than 2.1 s: another field, or another "
                "unit than was taken (--point-times)",
                span_s));
-  }
-  relative.offsets_ns.resize(times.size());
-  std::ranges::transform(times, relative.offsets_ns.begin(),
+  const std::int64_t absolute = packed.stamp ? packed.stamp->ns : 0;
+  const double from_stamp_s = static_cast<double>(Wide{low} - absolute) * 1e-9;
+  const bool is_apart = !fits(0) && !fits(absolute);
+  if (is_apart && packed.stamp && span_s < kShortestSweep && !known.unit && !known.from_first_point)
+    return fail(
+        format("the point times span {:.3g} s and lie {:.3f} s from the scan's stamp: another "
+               "field, or another unit than was taken (--point-times)",
+               span_s, from_stamp_s));
+  const bool from_first = known.from_first_point.value_or(is_apart);
+  if (is_apart && !from_first)
+    return fail(format(
+        "its point times lie {:.3f} s from its stamp, those of the first scan do not; was a clock set?",
+        from_stamp_s));
+  if (from_first) file.times.clock_apart_s = from_stamp_s;
+  const std::int64_t origin = from_first ? low : fits(0) ? 0 : absolute;
+  file.times.are_absolute = origin != 0;
+  file.cloud.time_offsets_ns.resize(times.size());
+  std::ranges::transform(times, file.cloud.time_offsets_ns.begin(),
                          [&](std::int64_t t) { return static_cast<std::int32_t>(t - origin); });
-  return relative;
+  return {};
+}
+
+/// Whether a first cloud shows that its field of times tells nothing.
+bool are_one_time(const std::vector<std::int64_t>& times, const KnownTimes& known) {
+  return !known.from_first_point && times.size() >= kEnoughTimes &&
+         std::ranges::all_of(times, [&](std::int64_t t) { return t == times.front(); });
 }
 
 }  // namespace
 
 std::size_t size_of(ScalarType type) {
   return with_type(type, [](auto value) { return sizeof(value); });
+}
+
+std::string_view to_string(ScalarType type) {
+  static constexpr std::string_view kNames[] = {"int8",   "uint8", "int16",  "uint16",  "int32",
+                                                "uint32", "int64", "uint64", "float32", "float64"};
+  return kNames[static_cast<std::size_t>(type)];
 }
 
 bool is_float(ScalarType type) { return type == ScalarType::float32 || type == ScalarType::float64; }
@@ -267,7 +277,9 @@ void assign_field(PackedCloud& cloud, std::string_view name, PackedField field) 
   take(cloud.z, {"z"});
   take(cloud.intensity, {"intensity", "intensities", "i", "scalar_Intensity"});
   take(cloud.reflectivity, {"reflectivity"});
-  take(cloud.time, {"t", "time", "time_offset", "offset_time", "timestamp"});
+  const bool had_time = cloud.time.has_value();
+  take(cloud.time, {"t", "time", "time_offset", "offset_time", "timestamp", "time_stamp"});
+  if (!had_time && cloud.time) cloud.time_name = name;
 }
 
 namespace {
@@ -327,19 +339,20 @@ Result<CloudFile> unpack(PackedCloud packed) {
   load_points(packed, file.cloud);
   std::vector<std::int64_t> times;
   if (packed.time) {
-    file.time_unit = packed.time_unit ? packed.time_unit : unit_of_times(packed, file.cloud.points);
+    const std::optional<TimeUnit> known = packed.known_times.unit;
+    file.times.field = packed.time_name;
+    file.times.type = to_string(packed.time->type);
+    file.times.unit = known ? known : unit_of_times(packed, file.cloud.points);
     const TimeUnit usual = usual_unit(packed.time->type);
-    const TimeUnit unit = file.time_unit.value_or(usual);
-    file.has_usual_time_unit = unit == usual;
+    const TimeUnit unit = file.times.unit.value_or(usual);
+    file.times.has_usual_unit = unit == usual;
     times = load_times(packed, unit);
   }
   leave_finite(file, times);
   if (!packed.time || file.cloud.empty()) return file;
-  return relative_times(times, packed.stamp).map([&](RelativeTimes relative) {
-    file.cloud.time_offsets_ns = std::move(relative.offsets_ns);
-    file.clock_apart_s = relative.clock_apart_s;
-    return std::move(file);
-  });
+  file.times.are_one = are_one_time(times, packed.known_times);
+  if (file.times.are_one) return file;
+  return take_times(file, times, packed).map([&] { return std::move(file); });
 }
 
 Result<CloudFile> unpack_file(const PackedCloud& packed) {

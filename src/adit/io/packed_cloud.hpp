@@ -23,6 +23,8 @@ namespace adit {
 enum class ScalarType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 /// In bytes.
 [[nodiscard]] std::size_t size_of(ScalarType type);
+/// "float64"
+[[nodiscard]] std::string_view to_string(ScalarType type);
 /// Whether it is stored as a floating-point number of either size.
 [[nodiscard]] bool is_float(ScalarType type);
 
@@ -57,7 +59,8 @@ struct PackedCloud {
   std::optional<PackedField> intensity;     ///< In any unit, which is kept.
   std::optional<PackedField> reflectivity;  ///< The intensity where there is none.
   std::optional<PackedField> time;          ///< Of each point: from the stamp, or absolute.
-  std::optional<TimeUnit> time_unit = {};   ///< Of point times; none: as `unpack` finds it.
+  std::string time_name = {};               ///< Of the field `time`.
+  KnownTimes known_times = {};              ///< None: as `unpack` finds it.
   std::vector<std::string> names = {};      ///< Of all fields that assign_field was shown, for errors.
 };
 
@@ -65,11 +68,13 @@ struct PackedCloud {
 /// name in any case.
 void assign_field(PackedCloud& cloud, std::string_view name, PackedField field);
 
-/// Where the unit of point times is not given, it is the one that makes the sweep last 2 ms to 2 s; where
+/// Where the unit of point times is not known, it is the one that makes the sweep last 2 ms to 2 s; where
 /// none does, or a hundred times are not there to tell, floats are seconds and integers nanoseconds. Signed
 /// integers are nanoseconds. Times that lie further from the stamp than 2.1 s, as by another clock, count
-/// from the earliest point. Fails when x, y or z is absent, a field reaches past the bytes, or times span
-/// more than 2.1 s. Where no point is finite, the cloud is empty.
+/// from the earliest point, and where the first cloud's did, all do; where the first cloud's did not, they
+/// are an error. A first cloud of a hundred points or more that have one time has no times. Fails when x, y
+/// or z is absent, a field reaches past the bytes, or times span more than 2.1 s. Where no point is finite,
+/// the cloud is empty.
 Result<CloudFile> unpack(PackedCloud packed);
 /// `unpack` of a file: fails where it has no finite point, too.
 Result<CloudFile> unpack_file(const PackedCloud& packed);

@@ -222,9 +222,9 @@ Result<std::string> expand(const PcdHeader& header, std::string_view body, std::
 enum class Order { rows, columns };
 
 Result<CloudFile> unpack_fields(const PcdHeader& header, std::string_view bytes, Order order,
-                                std::optional<TimeUnit> time_unit) {
+                                const KnownTimes& known) {
   PackedCloud packed;
-  packed.time_unit = time_unit;
+  packed.known_times = known;
   packed.bytes = bytes;
   packed.num_points = header.num_points();
   std::size_t offset = 0;
@@ -242,14 +242,14 @@ Result<CloudFile> unpack_fields(const PcdHeader& header, std::string_view bytes,
 
 }  // namespace
 
-Result<CloudFile> read_pcd(std::string_view bytes, std::optional<TimeUnit> time_unit) {
+Result<CloudFile> read_pcd(std::string_view bytes, const KnownTimes& known) {
   LineReader lines(bytes);
   const Result<PcdHeader> header = read_pcd_header(lines);
   if (!header) return tl::unexpected(header.error());
   const std::string_view body = bytes.substr(lines.offset());
   if (header->data == "ascii") {
     return pack_ascii(*header, lines).and_then([&](const std::string& rows) {
-      return unpack_fields(*header, rows, Order::rows, time_unit);
+      return unpack_fields(*header, rows, Order::rows, known);
     });
   }
   if (header->data == "binary") {
@@ -258,11 +258,11 @@ Result<CloudFile> read_pcd(std::string_view bytes, std::optional<TimeUnit> time_
       return fail(format("byte {}: ends after {} of {} points; the file is truncated", bytes.size(),
                          rows_there, header->num_points()));
     }
-    return unpack_fields(*header, body, Order::rows, time_unit);
+    return unpack_fields(*header, body, Order::rows, known);
   }
   if (header->data == "binary_compressed") {
     return expand(*header, body, lines.offset()).and_then([&](const std::string& columns) {
-      return unpack_fields(*header, columns, Order::columns, time_unit);
+      return unpack_fields(*header, columns, Order::columns, known);
     });
   }
   return fail(format("header line {}: DATA {}: ascii, binary and binary_compressed exist", lines.number(),

@@ -4,7 +4,6 @@
 /// binary_compressed.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,12 +14,12 @@ namespace adit {
 /// Reads the bytes of a PCD file. Fields taken:
 ///  - x, y, z (F4 or F8), needed;
 ///  - intensity, intensities or i (any numeric type);
-///  - t, time, time_offset, offset_time or timestamp, in `time_unit`; where that is not given, the unit is
-///    found (packed_cloud.hpp). Times further than 2.1 s from 0 (absolute clocks) are made relative to the
+///  - t, time, time_offset, offset_time, timestamp or time_stamp, in the unit that is `known` or else found
+///    (packed_cloud.hpp). Times further than 2.1 s from 0 (absolute clocks) are made relative to the
 ///    earliest point.
 /// All other fields are skipped. VIEWPOINT (tx ty tz qw qx qy qz) becomes CloudFile::viewpoint. Errors name
 /// the header line or the byte offset.
-Result<CloudFile> read_pcd(std::string_view bytes, std::optional<TimeUnit> time_unit = {});
+Result<CloudFile> read_pcd(std::string_view bytes, const KnownTimes& known = {});
 
 /// How points are written, by the words of the header line DATA.
 enum class PcdData { ascii, binary, binary_compressed };

@@ -236,13 +236,13 @@ constexpr std::string_view kNoVertices = "the header has no element 'vertex'";
 
 /// Reads through the elements up to `vertex` and unpacks that.
 template <class Body>
-Result<CloudFile> read_vertices(Body body, const PlyHeader& header, std::optional<TimeUnit> time_unit) {
+Result<CloudFile> read_vertices(Body body, const PlyHeader& header, const KnownTimes& known) {
   for (const PlyElement& element : header.elements) {
     const Result<std::string> rows = pack_element(body, element, [](const auto&, const auto&) {});
     if (!rows) return tl::unexpected(rows.error());
     if (element.name != "vertex") continue;
     PackedCloud packed = packed_cloud(*rows, element);
-    packed.time_unit = time_unit;
+    packed.known_times = known;
     return unpack_file(packed);
   }
   return fail(std::string(kNoVertices));
@@ -339,9 +339,9 @@ std::string ascii_rows(const PointCloud& cloud) {
 
 }  // namespace
 
-Result<CloudFile> read_ply(std::string_view bytes, std::optional<TimeUnit> time_unit) {
+Result<CloudFile> read_ply(std::string_view bytes, const KnownTimes& known) {
   return read_body<CloudFile>(
-      bytes, [&](auto body, const PlyHeader& header) { return read_vertices(body, header, time_unit); });
+      bytes, [&](auto body, const PlyHeader& header) { return read_vertices(body, header, known); });
 }
 
 Result<TriangleMesh> read_ply_mesh(std::string_view bytes) {

@@ -77,9 +77,7 @@ Result<CloudMessage> unpacked(const PackedCloud& packed, CloudMessage out) {
   if (packed.num_points == 0) return out;  // nothing was in view; drivers then state no fields either
   return unpack(packed).map([&](CloudFile file) {
     out.scan.cloud = std::move(file.cloud);
-    out.time_unit = file.time_unit;
-    out.has_usual_time_unit = file.has_usual_time_unit;
-    out.clock_apart_s = file.clock_apart_s;
+    out.times = std::move(file.times);
     return std::move(out);
   });
 }
@@ -158,7 +156,7 @@ std::string encode_cloud(const Scan& scan, std::string_view frame) {
 }
 
 Result<CloudMessage> decode_cloud(std::string_view message, MessageEncoding encoding,
-                                  std::optional<TimeUnit> time_unit) {
+                                  const KnownTimes& known) {
   MessageReader reader(message, encoding);
   CloudMessage out;
   out.scan.stamp = read_stamp(reader);
@@ -183,7 +181,7 @@ Result<CloudMessage> decode_cloud(std::string_view message, MessageEncoding enco
   packed.num_points = std::size_t{width} * height;
   packed.order = is_big_endian ? std::endian::big : std::endian::little;
   packed.stamp = out.scan.stamp;
-  packed.time_unit = time_unit;
+  packed.known_times = known;
   for (const CloudField& field : fields) {
     if (const auto type = scalar_type(field.datatype))
       assign_field(packed, field.name, {*type, field.offset, point_step});
@@ -216,7 +214,8 @@ bool is_livox(std::string_view type) {
          type == "livox_interfaces/msg/CustomMsg";
 }
 
-Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding encoding) {
+Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding encoding,
+                                  const KnownTimes& known) {
   MessageReader reader(message, encoding);
   CloudMessage out;
   out.scan.stamp = read_stamp(reader);
@@ -235,7 +234,8 @@ Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding enco
   packed.y = {ScalarType::float32, 8, stride};
   packed.z = {ScalarType::float32, 12, stride};
   packed.intensity = {ScalarType::uint8, 16, stride};
-  packed.time_unit = TimeUnit::nanoseconds;
+  packed.time_name = "offset_time";
+  packed.known_times = {TimeUnit::nanoseconds, known.from_first_point};
   packed.stamp = out.scan.stamp;
   if (!reader.ok()) return fail(format("byte {}: the CustomMsg message ends early", reader.offset()));
   return unpacked(packed, std::move(out)).map([&](CloudMessage cloud) {

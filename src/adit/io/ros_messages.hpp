@@ -13,6 +13,7 @@
 #include "adit/core/records.hpp"
 #include "adit/core/result.hpp"
 #include "adit/io/cdr.hpp"
+#include "adit/io/point_times.hpp"
 
 namespace adit::ros {
 
@@ -39,24 +40,23 @@ inline constexpr std::string_view kMarkers = "visualization_msgs/msg/MarkerArray
 
 /// A cloud in the frame named.
 struct CloudMessage {
-  std::string frame;                         ///< Of the points, as the header names it.
-  Scan scan;                                 ///< With the stamp of the header; points in metres.
-  std::optional<TimeUnit> time_unit = {};    ///< As in CloudFile, like the two that follow.
-  bool has_usual_time_unit = true;           ///< Seconds of floats, nanoseconds of integers.
-  std::optional<double> clock_apart_s = {};  ///< Seconds.
+  std::string frame;      ///< Of the points, as the header names it.
+  Scan scan;              ///< With the stamp of the header; points in metres.
+  PointTimes times = {};  ///< As in CloudFile.
 };
 /// The stamp's seconds must fit 32 bits: see `fits_ros`.
 [[nodiscard]] std::string encode_cloud(const Scan& scan, std::string_view frame);
 /// Takes the fields that pcd.hpp lists, of any type and byte order. Points that are not finite are left out.
-/// `time_unit`: of the times of points, where it is known (packed_cloud.hpp).
+/// `known`: of the times of points (packed_cloud.hpp).
 Result<CloudMessage> decode_cloud(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr,
-                                  std::optional<TimeUnit> time_unit = {});
+                                  const KnownTimes& known = {});
 /// What a PointCloud2 holds, as it stands: "x float32, y float32, z float32, t uint32; 1024 x 64 points".
 Result<std::string> describe_cloud(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
 /// The same of Livox's CustomMsg: intensity is the reflectivity, times are nanoseconds from its `timebase`,
 /// the time of the first point. Where that is further from the stamp than two sweeps, as by another clock,
 /// they count from the stamp.
-Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
+Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr,
+                                  const KnownTimes& known = {});
 
 /// T_frame_child at a time.
 struct TransformMessage {

@@ -11,10 +11,10 @@
 #include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/io/atomic_file.hpp"
+#include "adit/io/folder_clouds.hpp"
 #include "adit/io/folder_mount.hpp"
 #include "adit/io/kitti.hpp"
 #include "adit/io/mount.hpp"
-#include "adit/io/packed_cloud.hpp"
 #include "adit/io/recording_toml.hpp"
 #include "adit/io/text.hpp"
 #include "adit/io/tum.hpp"
@@ -161,6 +161,11 @@ fs::path clouds_of(const fs::path& folder) {
   return folder / "velodyne";
 }
 
+bool is_kitti(const fs::path& sequence) {
+  std::error_code ignored;
+  return fs::exists(sequence / "times.txt", ignored);
+}
+
 /// A file beside the clouds, or in their sequence.
 fs::path beside_clouds(const fs::path& folder, const char* name) {
   std::error_code ignored;
@@ -274,8 +279,7 @@ Result<std::vector<Pose>> kitti_truth(const fs::path& file, const fs::path& sequ
 /// Ground truth of a sequence of KITTI, where nothing else is there.
 void take_kitti_truth(Recording& recording, const fs::path& sequence, std::size_t num_scans,
                       ScanSelection selection) {
-  std::error_code ignored;
-  if (!recording.truth.empty() || !fs::exists(sequence / "times.txt", ignored)) return;
+  if (!recording.truth.empty() || !is_kitti(sequence)) return;
   const std::optional<fs::path> file = kitti_poses_of(sequence);
   if (!file) return;
   const Result<std::vector<Pose>> T_world_lidar = kitti_truth(*file, sequence, num_scans);
@@ -289,71 +293,13 @@ void take_kitti_truth(Recording& recording, const fs::path& sequence, std::size_
     recording.truth.push_back({recording.scan_stamps[i], selected[i] * T_lidar_base});
 }
 
-// Point times beside a KITTI .bin.
-
-fs::path offsets_beside(const fs::path& cloud) { return fs::path(cloud).replace_extension(".offsets"); }
-
-std::string offsets_text(const PointCloud& cloud) {
-  std::string bytes;
-  for (const std::int32_t offset : cloud.time_offsets_ns) append_little_endian(bytes, offset);
-  return bytes;
-}
-
-Result<> read_offsets(const fs::path& path, const CloudFile& file, PointCloud& cloud) {
-  const Result<std::string> bytes = read_bytes(path);
-  if (!bytes) return tl::unexpected(bytes.error());
-  if (file.num_skipped_nan > 0 || bytes->size() != sizeof(std::int32_t) * cloud.size()) {
-    return fail(format("{}: {} bytes for {} points ({} more not finite); 4 bytes per point are needed",
-                       path.string(), bytes->size(), cloud.size(), file.num_skipped_nan));
-  }
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    cloud.time_offsets_ns.push_back(static_cast<std::int32_t>(
-        load_scalar(ScalarType::int32, bytes->data() + 4 * i, std::endian::little)));
-  }
-  return {};
-}
-
-Result<PointCloud> read_points(const fs::path& path, std::optional<TimeUnit> time_unit) {
-  Result<CloudFile> file = read_cloud_file(path, time_unit);
-  if (!file) return tl::unexpected(file.error());
-  PointCloud cloud = std::move(file->cloud);
-  // A column of zeros is what KITTI's format makes of clouds without intensities.
-  if (std::ranges::all_of(cloud.intensities, [](float intensity) { return intensity == 0.0F; }))
-    cloud.intensities.clear();
-  std::error_code ignored;
-  const fs::path offsets = offsets_beside(path);
-  if (cloud.has_times() || !fs::exists(offsets, ignored)) return cloud;
-  return read_offsets(offsets, *file, cloud).map([&] { return std::move(cloud); });
-}
-
-/// The first cloud that can be read; fails as the first of all does where none can.
-Result<CloudFile> first_readable(const std::vector<fs::path>& clouds, std::optional<TimeUnit> time_unit) {
-  Result<CloudFile> first = read_cloud_file(clouds.front(), time_unit);
-  for (std::size_t i = 1; !first && i < clouds.size(); ++i) {
-    Result<CloudFile> next = read_cloud_file(clouds[i], time_unit);
-    if (next) return next;
-  }
-  return first;
-}
-
-/// What is to be said of the unit of the times of points.
-void note_point_times(Recording& recording, const CloudFile& first, const FolderReading& reading) {
-  if (!first.time_unit) return;
-  const UnitSource source = reading.time_unit ? UnitSource::stated : UnitSource::found;
-  if (!first.has_usual_time_unit) recording.assumptions.push_back(point_times_note(*first.time_unit, source));
-  if (source == UnitSource::found) return;
-  if (auto warning = stated_unit_warning(*first.time_unit, first.cloud))
-    recording.warnings.push_back(std::move(*warning));
-}
-
 /// Reads scan i in the LiDAR's frame. Clouds that are in it already keep every bit.
 std::function<Result<Scan>(std::size_t)> scan_reader(std::vector<fs::path> files, std::vector<Stamp> stamps,
-                                                     const Pose& T_lidar_cloud,
-                                                     std::optional<TimeUnit> time_unit) {
+                                                     const Pose& T_lidar_cloud, const CloudReading& known) {
   const bool is_moved = T_lidar_cloud.log().norm() > 0.0;
   return [=, files = std::move(files), stamps = std::move(stamps)](std::size_t i) {
     ADIT_CHECK(i < files.size(), "no scan of that index");
-    return read_points(files[i], time_unit).map([&](PointCloud cloud) {
+    return read_points(files[i], known).map([&](PointCloud cloud) {
       return Scan{stamps[i], is_moved ? transformed(T_lidar_cloud, std::move(cloud)) : std::move(cloud)};
     });
   };
@@ -403,9 +349,10 @@ Result<Recording> read_scan_folder(const fs::path& given, ScanSelection selectio
   if (!file) return tl::unexpected(file.error());
   std::vector<fs::path> clouds;
   for (const ScanFile& scan : select(*scans, selection)) clouds.push_back(scan.path);
+  const Result<CloudReading> known = reading_of(clouds, reading.time_unit);
+  if (!known) return fail(folder.string(), known.error());
   const Wheels wheels = recording->wheel.empty() ? Wheels::absent : Wheels::present;
-  const Result<FolderMount> mount =
-      mount_of_folder(clouds, *file, reading.T_base_lidar, wheels, reading.time_unit);
+  const Result<FolderMount> mount = mount_of_folder(clouds, *file, reading.T_base_lidar, wheels, *known);
   if (!mount) return fail(folder.string(), mount.error());
   recording->name = file->robot.empty() ? name_of(given) : file->robot;
   recording->lidar = file->lidar;
@@ -415,12 +362,11 @@ Result<Recording> read_scan_folder(const fs::path& given, ScanSelection selectio
   recording->T_base_lidar = mount->T_base_lidar;
   recording->mount_source = mount->source;
   take_kitti_truth(*recording, sequence_of(folder), scans->size(), selection);
-  // What the first cloud shows of the times holds for all.
-  const Result<CloudFile> first = first_readable(clouds, reading.time_unit);
-  if (!first) return tl::unexpected(first.error());
-  note_point_times(*recording, *first, reading);
+  const Result<CloudReading> as_first =
+      read_as_first(*known, *recording, clouds, is_kitti(sequence_of(folder)));
+  if (!as_first) return tl::unexpected(as_first.error());
   recording->read_scan =
-      scan_reader(std::move(clouds), recording->scan_stamps, mount->T_lidar_cloud, first->time_unit);
+      scan_reader(std::move(clouds), recording->scan_stamps, mount->T_lidar_cloud, *as_first);
   return recording;
 }
 

@@ -16,6 +16,9 @@
 ///  - `NNNNNN.offsets` beside a .bin, which has no room for them: the points' times, int32 nanoseconds from
 ///    the scan's stamp, little-endian.
 ///
+/// What the first cloud that can be read shows of the times of points holds for all, and all .bin have as
+/// many columns (kitti.hpp). `assumptions` say where the first has no times.
+///
 /// The mount comes from, in this order: the caller; recording.toml; the VIEWPOINT that all .pcd files share;
 /// the clouds themselves, when they show clearly where the sensor stood (geometry/sensor_origin.hpp: then the
 /// clouds' frame is the base frame); else the clouds' origin is assumed to be the sensor, the recording's
@@ -42,7 +45,7 @@ struct ScanSelection {
 /// What is known of the clouds of a folder.
 struct FolderReading {
   std::optional<Pose> T_base_lidar = {};   ///< Overrides what the folder says of the mount.
-  std::optional<TimeUnit> time_unit = {};  ///< Of the times of points (packed_cloud.hpp).
+  std::optional<TimeUnit> time_unit = {};  ///< Of the times of points; none: as found (packed_cloud.hpp).
 };
 
 /// Scans are read when asked for, from any thread. Errors: no clouds, clouds of several kinds, two scans of

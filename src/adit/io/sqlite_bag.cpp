@@ -9,6 +9,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "adit/core/format.hpp"
@@ -58,6 +60,7 @@ struct Pages {
   std::uint64_t size = 0;  ///< Of one; 0 where the head does not tell.
   bool are_missing = false;
   bool is_last_cut = false;
+  bool have_log = false;  ///< The file is in WAL mode: what was written last may lie in a log beside it.
 };
 
 Pages pages_of(const std::filesystem::path& path) {
@@ -73,7 +76,41 @@ Pages pages_of(const std::filesystem::path& path) {
   const std::uint64_t stated = big_endian(16, 2);
   const std::uint64_t page_size = stated == 1 ? 65536 : stated;  // which two bytes cannot hold
   if (page_size < 512 || !std::has_single_bit(page_size)) return {};
-  return {page_size, big_endian(28, 4) * page_size > source->size, source->size % page_size != 0};
+  return {page_size, big_endian(28, 4) * page_size > source->size, source->size % page_size != 0,
+          big_endian(18, 1) == 2 && big_endian(19, 1) == 2};
+}
+
+/// How a file is to be opened so that nothing is written, neither into it nor beside it.
+enum class Access : std::uint8_t {
+  plain,      ///< As files without a log are, and those that another program has open or did not close.
+  immutable,  ///< There is no log, and none shall be made.
+  log_alone,  ///< There is a log, but no index of it, which sqlite would write beside it: it goes into
+              ///< memory.
+};
+
+std::filesystem::path with_suffix(std::filesystem::path path, const char* suffix) { return path += suffix; }
+
+Access access_to(const std::filesystem::path& path, const Pages& pages) {
+  if (!pages.have_log) return Access::plain;
+  std::error_code absent;
+  const std::uintmax_t log = std::filesystem::file_size(with_suffix(path, "-wal"), absent);
+  if (absent || log == 0) return Access::immutable;
+  const bool has_index = std::filesystem::exists(with_suffix(path, "-shm"), absent);
+  return has_index ? Access::plain : Access::log_alone;
+}
+
+/// The path as https://sqlite.org/uri.html has it, with what tells sqlite of the access.
+std::string uri_of(const std::filesystem::path& path, Access access) {
+  std::error_code ignored;
+  std::string uri = "file://";
+  for (const char c : std::filesystem::absolute(path, ignored).string()) {
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                          std::string_view("/._-").find(c) != std::string_view::npos;
+    uri +=
+        is_plain ? std::string(1, c) : format("%{:02X}", static_cast<unsigned>(static_cast<std::uint8_t>(c)));
+  }
+  if (access == Access::immutable) return uri + "?immutable=1";
+  return access == Access::log_alone ? uri + "?vfs=unix-none" : uri;
 }
 
 /// Ends a query whose caller wants to stop, however long it goes without a row.
@@ -88,13 +125,18 @@ std::string fault_of(sqlite3* database) {
   return sqlite3_errmsg(database);
 }
 
-Result<Database> open_database(const std::filesystem::path& path, const Pages& pages) {
+Result<Database> open_database(const std::filesystem::path& path, const Pages& pages, Access access) {
   Database database;
   sqlite3* opened = nullptr;
-  const int code =
-      sqlite3_open_v2(path.c_str(), &opened, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX, nullptr);
+  const int code = sqlite3_open_v2(uri_of(path, access).c_str(), &opened,
+                                   SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI, nullptr);
   database.handle.reset(opened);
   if (code != SQLITE_OK) return fail(format("cannot be opened: {}", sqlite3_errstr(code)));
+  // Nobody else has the file open, or there were an index: locks can be done without, and in exclusive mode
+  // the index of the log needs no file. The log stays where it is.
+  if (access == Access::log_alone)
+    sqlite3_exec(opened, "PRAGMA locking_mode = EXCLUSIVE", nullptr, nullptr, nullptr);
+  sqlite3_db_config(opened, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
   sqlite3_file* file = nullptr;
   if (pages.is_last_cut && sqlite3_file_control(opened, "main", SQLITE_FCNTL_FILE_POINTER,
                                                 static_cast<void*>(&file)) == SQLITE_OK) {
@@ -220,20 +262,35 @@ std::string drop_unreadable(Bag& bag, Messages& messages, const Pages& pages, st
   return fault;
 }
 
+/// What may be wrong with the log beside a file whose tables cannot be read; "" where it is not that.
+std::string log_hint(const std::filesystem::path& path, const Pages& pages, Access access,
+                     const std::string& fault) {
+  const auto says = [&](const char* text) { return fault.find(text) != std::string::npos; };
+  const std::string name = path.filename().string();
+  if (access == Access::immutable && says("no such table"))
+    return format("; is {}-wal missing? What was recorded last lies there: copy it with the file", name);
+  if (pages.have_log && (says("unable to open") || says("readonly")))
+    return format("; copy {0} and {0}-wal to a folder you can write to", name);
+  return "";
+}
+
 }  // namespace
 
 Result<Bag> open_sqlite_bag(const std::filesystem::path& path) {
   const Pages pages = pages_of(path);
-  Result<Database> database = open_database(path, pages);
+  const Access access = access_to(path, pages);
+  Result<Database> database = open_database(path, pages, access);
   if (!database) return fail(path.string(), database.error());
   Bag bag;
   bag.storage = "sqlite3";
   std::error_code ignored;
   bag.num_bytes = std::filesystem::file_size(path, ignored);
-  if (const Result<> tables = check_tables(database->get()); !tables)
-    return fail(path.string(), tables.error());
+  const auto failed = [&](const Error& error) {
+    return fail(path.string(), {error.message + log_hint(path, pages, access, error.message)});
+  };
+  if (const Result<> tables = check_tables(database->get()); !tables) return failed(tables.error());
   const Result<std::map<std::int64_t, BagTopic>> topics = read_topics(database->get());
-  if (!topics) return fail(path.string(), topics.error());
+  if (!topics) return failed(topics.error());
   std::map<std::int64_t, std::size_t> topic_of_id;
   for (const auto& [id, topic] : *topics) {
     topic_of_id[id] = bag.topics.size();

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "adit/core/format.hpp"
+#include "adit/io/bag_clouds.hpp"
 #include "adit/io/bag_topics.hpp"
 #include "adit/io/joint_odometry.hpp"
 #include "adit/io/ros_messages.hpp"
@@ -62,7 +63,7 @@ std::string clock_finding(const std::string& topic, const std::vector<Sighting>&
 
 /// What the headers say.
 void add_headers(TopicInfo& info, const Bag& bag, std::size_t topic,
-                 const std::vector<const BagMessage*>& messages) {
+                 const std::vector<const BagMessage*>& messages, const RecordingConfig& config) {
   const std::string& type = bag.topics[topic].type;
   if (!ros::is_cloud(type) && type != ros::kOdometry && type != ros::kImu) return;
   const auto header = decoded(bag, *messages.front(), ros::decode_header);
@@ -73,6 +74,10 @@ void add_headers(TopicInfo& info, const Bag& bag, std::size_t topic,
   info.rate_by_stamps_hz =
       rate_of(messages.size() - 1, seconds_between(sightings.front().stamp, sightings.back().stamp));
   info.clock_finding = clock_finding(bag.topics[topic].name, sightings);
+  if (!ros::is_cloud(type)) return;
+  const Result<KnownTimes> stated = stated_times(bag, config);
+  if (const auto cloud = read_cloud_message(bag, *messages.front(), stated.value_or(KnownTimes())))
+    info.point_times_from = point_times_text(cloud->times);
   if (type != ros::kPointCloud2) return;
   if (const auto fields = decoded(bag, *messages.front(), ros::describe_cloud)) info.fields = *fields;
 }
@@ -122,7 +127,7 @@ std::vector<TopicInfo> topics_of(const Bag& bag, const RecordingConfig& config) 
     info.rhythm = rhythm_of(recorded);
     info.used_as = std::move(uses[topic]);
     if (bag.topics[topic].type == ros::kJointState) info.joints = first_joints(bag, topic);
-    if (!messages[topic].empty()) add_headers(info, bag, topic, messages[topic]);
+    if (!messages[topic].empty()) add_headers(info, bag, topic, messages[topic], config);
     all.push_back(std::move(info));
   }
   return all;

@@ -39,7 +39,8 @@ struct TopicInfo {
   std::optional<double> rate_by_stamps_hz;  ///< As `rhythm`, by the stamps of the first and the last message.
   /// How long after its stamp a message was recorded: the first, and the last.
   std::pair<double, double> recorded_after_stamp_s;
-  std::string fields;  ///< Of PointCloud2, and how many points.
+  std::string fields;            ///< Of PointCloud2, and how many points.
+  std::string point_times_from;  ///< Of clouds: "timestamp, float64 s, absolute", as in the first; "": none.
   /// How the clock of the stamps went against that of the recorder, one sentence with the remedy; "" where
   /// they agree to half a second.
   std::string clock_finding;

@@ -51,5 +51,13 @@ TEST(TopicInfo, AClockThatWasSetBetweenIsFound) {
       << "the first and the last message agree";
 }
 
+TEST(TopicInfo, OfCloudsItSaysWhereTheTimesOfPointsAreFrom) {
+  test::ForeignFile file;
+  file.clouds("/points");
+  const Bag bag = open_mcap_bag(memory_source(file.bytes())).value();
+  EXPECT_EQ(topics_of(bag, {}).front().point_times_from, "t, int32 ns, from the stamp");
+  EXPECT_EQ(topics_of(bag, {.point_times = "us"}).front().point_times_from, "");
+}
+
 }  // namespace
 }  // namespace adit

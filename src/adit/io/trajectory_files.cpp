@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 
+#include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/kitti.hpp"
 #include "adit/io/text.hpp"
@@ -21,14 +23,30 @@ std::string csv_text(const Trajectory& trajectory) {
   return text;
 }
 
+/// What a file is that begins with this line and is no trajectory; "" where that is not known.
+std::string_view other_kind(std::string_view heading) {
+  const auto has = [&](std::string_view columns) { return heading.find(columns) != std::string_view::npos; };
+  if (has("from_robot,from_keyframe"))
+    return "is the loops.csv of a session, not a trajectory; 'adit info SESSION' says what the session holds";
+  if (has("stamp_s,x_x,x_y"))
+    return "has the covariances of poses (adit convert --covariance), not the poses; these are in the file "
+           "beside it";
+  if (has("sigma"))
+    return "has control points, not a trajectory; 'adit georeference SESSION --control FILE' takes them";
+  return "";
+}
+
 Result<Trajectory> read_csv(const std::filesystem::path& path) {
   return read_bytes(path).and_then([&](std::string text) -> Result<Trajectory> {
+    const std::string heading = text.substr(0, text.find('\n'));
     // The heading becomes a comment, the rest is TUM with commas.
     if (!text.empty() && (text[0] < '0' || text[0] > '9') && text[0] != '-') text[0] = '#';
     std::ranges::replace(text, ',', ' ');
     Result<Trajectory> trajectory = parse_tum(text);
-    if (!trajectory) return fail(path.string(), trajectory.error());
-    return trajectory;
+    if (trajectory) return trajectory;
+    if (const std::string_view kind = other_kind(heading); !kind.empty())
+      return fail(format("{}: {}", path.string(), kind));
+    return fail(path.string(), trajectory.error());
   });
 }
 

@@ -52,6 +52,18 @@ TEST(TrajectoryFiles, KittiIsWrittenAndNotRead) {
   EXPECT_ERROR(read_trajectory(folder / "a.kitti"), "KITTI poses have no stamps");
 }
 
+TEST(TrajectoryFiles, TablesOfAnotherKindAreNamed) {
+  const test::TemporaryFolder folder;
+  const auto read = [&](const char* text) {
+    test::put_file(folder / "a.csv", text);
+    return read_trajectory(folder / "a.csv");
+  };
+  EXPECT_ERROR(read("name,x,y,z,sigma\nA,1,2,3,0.01\n"),
+               "a.csv: has control points, not a trajectory; 'adit geo");
+  EXPECT_ERROR(read("from_robot,from_keyframe,from_stamp\na,1,2\n"), "a.csv: is the loops.csv of a session");
+  EXPECT_ERROR(read("stamp_s,x_x,x_y\n1,2,3\n"), "a.csv: has the covariances of poses");
+}
+
 TEST(TrajectoryFiles, ErrorsNameFileAndLine) {
   const test::TemporaryFolder folder;
   test::put_file(folder / "bad.csv", "stamp_s,x,y,z,qx,qy,qz,qw\n1.5,1,2,3,0,0,0\n");
