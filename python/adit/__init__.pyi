@@ -298,8 +298,10 @@ def merge(
     *,
     veto: Sequence[tuple[str, str]] = ...,
     confirm: Sequence[tuple[str, str]] = ...,
+    withdraw: Sequence[tuple[str, str]] = ...,
 ) -> Session:
-    """Goes on from saved sessions: joins them, and adds robots or later visits. veto and confirm overrule the test."""
+    """Goes on from saved sessions: joins them, and adds robots or later visits. veto and confirm overrule the test,
+    until withdraw lets its own verdict count again."""
 
 def read_session(path: _StrPath) -> SavedSession: ...
 

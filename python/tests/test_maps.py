@@ -213,12 +213,17 @@ class Maps(unittest.TestCase):
         quarter = (end - begin) / 4
         self.assertTrue(any(begin + quarter < tick < end - quarter for tick in ticks))
 
-    def test_a_veto_keeps_them_apart(self):
-        apart = adit.merge([self.path], veto=[tuple(self.session.robots)])
+    def test_a_veto_keeps_them_apart_until_it_is_withdrawn(self):
+        robots = tuple(self.session.robots)
+        apart = adit.merge([self.path], veto=[robots])
         self.assertEqual(len(apart.components), 2)
         (pair,) = apart.pairs
         self.assertFalse(pair.merged)
         self.assertIn("a person keeps these maps apart", pair.reason)
+        path = Path(self.folder.name) / "apart"
+        apart.save(path)
+        (again,) = adit.merge([path], withdraw=[robots]).pairs
+        self.assertTrue(again.merged)
 
     def test_what_went_wrong_is_said(self):
         with self.assertRaises(adit.Error):

@@ -40,9 +40,8 @@ bool is_stamped_at_end(const Bag& bag, const std::vector<BagMessage>& scans, con
 /// Of times of another clock than the stamps.
 std::string clock_note(double apart_s, bool at_end, bool is_stated) {
   return format(
-      "point times: they are {:.3f} s from the stamps, as by another clock, and count from the first point "
-      "of "
-      "the sweep{}{}",
+      "point times: they are {:.3f} s from the stamps, as by another clock, and count from the first "
+      "point of the sweep{}{}",
       apart_s, at_end ? "" : ", taken for the time of the stamp",
       at_end || is_stated ? "" : "; if that is of the sweep's end, --set recording.stamp_at=end");
 }

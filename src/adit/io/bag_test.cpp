@@ -213,15 +213,15 @@ TEST(Bag, AFileOfAnotherKindThanItsEndingIsNamed) {
   EXPECT_ERROR(open_recording((folder / "g.bag.gz").string()), "unpack it: gzip -d ");
 }
 
-enum class Log { taken_in, left };
+enum class WalLog { taken_in, left };
 
 /// Turns it into a file of WAL mode, as rosbag2's preset "resilient" writes them. `left`: every message a
 /// second time, in the log alone.
-void put_in_wal_mode(const fs::path& path, Log log) {
+void put_in_wal_mode(const fs::path& path, WalLog log) {
   sqlite3* database = nullptr;
   ASSERT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
   ASSERT_EQ(sqlite3_exec(database, "PRAGMA journal_mode = WAL", nullptr, nullptr, nullptr), SQLITE_OK);
-  if (log == Log::left) {
+  if (log == WalLog::left) {
     sqlite3_db_config(database, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
     constexpr const char* kAgain =
         "INSERT INTO messages(topic_id, timestamp, data) SELECT topic_id, timestamp, data FROM messages";
@@ -247,9 +247,9 @@ TEST(Bag, ASqliteFileInWalModeIsReadWithItsLogAndNothingIsWritten) {
     EXPECT_EQ(test::num_entries(folder.path()), num_files);
   };
   write_db3(folder / name, bag, bag.messages);
-  put_in_wal_mode(folder / name, Log::taken_in);
+  put_in_wal_mode(folder / name, WalLog::taken_in);
   expect_read(bag.messages.size(), 1);
-  put_in_wal_mode(folder / name, Log::left);
+  put_in_wal_mode(folder / name, WalLog::left);
   const std::string log = test::get_file(folder / (name + "-wal"));
   expect_read(2 * bag.messages.size(), 3);  // with the index of a recorder that was ended
   fs::remove(folder / (name + "-shm"));
