@@ -127,20 +127,20 @@ RunSession slam_of(const std::vector<Recording>& recordings, const py::object& c
   return without_gil([&] { return RunSession{value_of(slam(recordings, job.config.slam)), job}; });
 }
 
-using RobotNames = std::vector<std::pair<std::string, std::string>>;
+using RobotPairs = std::vector<std::pair<std::string, std::string>>;
 
-/// What is withdrawn comes first, as of the command.
-std::vector<Ruling> rulings_of(const RobotNames& veto, const RobotNames& confirm,
-                               const RobotNames& withdraw) {
+/// In the order of the command: the last one counts.
+std::vector<Ruling> rulings_of(const RobotPairs& veto, const RobotPairs& confirm,
+                               const RobotPairs& withdraw) {
   std::vector<Ruling> rulings;
   for (const auto& [a, b] : withdraw) rulings.push_back({Ruling::Kind::withdraw, a, b});
-  for (const auto& [a, b] : veto) rulings.push_back({Ruling::Kind::veto, a, b});
   for (const auto& [a, b] : confirm) rulings.push_back({Ruling::Kind::confirm, a, b});
+  for (const auto& [a, b] : veto) rulings.push_back({Ruling::Kind::veto, a, b});
   return rulings;
 }
 
 RunSession merge(const std::vector<std::filesystem::path>& sessions, const std::vector<Recording>& recordings,
-                 const RobotNames& veto, const RobotNames& confirm, const RobotNames& withdraw) {
+                 const RobotPairs& veto, const RobotPairs& confirm, const RobotPairs& withdraw) {
   if (sessions.empty()) throw py::value_error("give one session or more to go on from");
   std::vector<std::string> paths;
   for (const std::filesystem::path& session : sessions) paths.push_back(session.string());
@@ -254,7 +254,7 @@ void add_sessions(py::module_& m) {
         py::arg("profile") = "default",
         "Maps every robot, lets each meet every other, and merges what tested evidence joins.");
   m.def("merge", &merge, py::arg("sessions"), py::arg("recordings") = std::vector<Recording>{}, py::kw_only(),
-        py::arg("veto") = RobotNames{}, py::arg("confirm") = RobotNames{}, py::arg("withdraw") = RobotNames{},
+        py::arg("veto") = RobotPairs{}, py::arg("confirm") = RobotPairs{}, py::arg("withdraw") = RobotPairs{},
         "Goes on from saved sessions: joins them, and adds robots or later visits.");
 }
 

@@ -350,14 +350,15 @@ MergeCheck Agent::with_advice(MergeCheck verdict, const MergeChecker& checker) {
   if (undecided)
     advice =
         where_to_drive(*undecided, own, chain_by(verdict.b), spacing_m, what_own_map_knows(discernment()));
-  if (!advice)
+  // Elsewhere more places bring evidence, and neither metres without a change nor a lead before a rival.
+  if (!advice && (!undecided || undecided->lacks_evidence_alone()))
     advice = where_to_be_recognised(own, undecided ? undecided->shared : std::vector<std::uint32_t>(),
                                     undecided ? undecided->missing : verdict.needed, spacing_m,
                                     landmarks_of(search_->self_distances(), discernment()));
   const std::string& name_a = known().robots.at(verdict.a).name;
   const std::string& name_b = known().robots.at(verdict.b).name;
   if (!advice) {
-    verdict.reason += format(", but {} has been to no place that would tell", name_a);
+    verdict.reason += format(", but no place was found on the path of {} that would tell", name_a);
     return verdict;
   }
   verdict = checker.verdict(verdict.a, verdict.b, in_words(*advice, name_a, name_b));
@@ -441,7 +442,7 @@ MergeChecker Agent::checker_of(const std::vector<LoopClosure>& loops, const Odom
           odometry_evidence(own, between.loops.back(), config_.adaptive.search.revisit));
   }
   OwnMeasurements measurements;
-  if (!loops.empty()) {  // without one there is nothing to check
+  if (!loops.empty()) {  // without one nothing is compared
     measurements.reach_m = discernment().reach_m();
     measurements.measured = [&on_own_map = discernment()]() -> const Measured& {
       return on_own_map.measured();

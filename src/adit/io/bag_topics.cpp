@@ -237,27 +237,33 @@ RecordingConfig without_last_slash(RecordingConfig config) {
   return config;
 }
 
-/// What may have been meant by scans in a bag without clouds: the remedy for the first topic that has one.
+/// What makes clouds of a topic that has none; empty where nothing does.
+std::string remedy_of(const std::string& name, const std::string& full_type) {
+  const std::string type = lower_case(full_type.substr(full_type.rfind('/') + 1));
+  const auto has = [&](const char* word) { return type.find(word) != std::string::npos; };
+  if (has("compressedpointcloud"))
+    return format(
+        "{0} is compressed ({1}): record what 'ros2 run point_cloud_transport republish' makes of it, "
+        "with in_transport as its name ends ({2}) and out_transport raw",
+        name, full_type, name.substr(name.rfind('/') + 1));
+  if (has("packet") || has("udpframe") || has("velodynescan") || has("pandarscan") || has("rslidarscan"))
+    return format("{} has raw packets ({}): play it through the driver of the sensor and record its points",
+                  name, full_type);
+  return "";
+}
+
+/// What may have been meant by scans in a bag without clouds: clouds that can be made, else scans of a plane.
 std::string instead_of_clouds(const Bag& bag, const std::string& under) {
-  for (const auto& [name, full_type, encoding] : bag.topics) {
+  std::string of_one_plane;
+  for (const auto& [name, type, encoding] : bag.topics) {
     if (!is_under(name, under)) continue;
-    const std::string type = lower_case(full_type.substr(full_type.rfind('/') + 1));
-    const auto has = [&](const char* word) { return type.find(word) != std::string::npos; };
-    if (has("laserscan"))
-      return format(
-          "{} is of a scanner of one plane ({}), of which adit maps nothing; it takes the clouds of a "
-          "LiDAR with several rings",
-          name, full_type);
-    if (has("compressedpointcloud"))
-      return format(
-          "{0} is compressed ({1}): record what 'ros2 run point_cloud_transport republish' makes of it, "
-          "with in_transport as its name ends ({2}) and out_transport raw",
-          name, full_type, name.substr(name.rfind('/') + 1));
-    if (has("packet") || has("udpframe") || has("velodynescan") || has("pandarscan") || has("rslidarscan"))
-      return format("{} has raw packets ({}): play it through the driver of the sensor and record its points",
-                    name, full_type);
+    if (std::string remedy = remedy_of(name, type); !remedy.empty()) return remedy;
+    if (of_one_plane.empty() && type.ends_with("/LaserScan"))
+      of_one_plane = format(
+          "{} is of a scanner of one plane ({}), of which adit maps nothing; it takes clouds of a 3-D LiDAR",
+          name, type);
   }
-  return "there are no scans to read";
+  return of_one_plane.empty() ? "there are no scans to read" : of_one_plane;
 }
 
 }  // namespace

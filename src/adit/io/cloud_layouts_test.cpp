@@ -338,6 +338,11 @@ TEST(CloudLayouts, TheFirstScanDecidesWhatTheTimesOfAllCountFrom) {
   for (std::size_t i = 0; i < 4; ++i)
     EXPECT_EQ(times_of(wraps, i), std::pair(0, static_cast<std::int32_t>(nanoseconds_from_start(kNum - 1))))
         << i;
+  // Also where the first sweep begins soon after the clock began anew.
+  const Result<Recording> soon =
+      recorded({cloud(0, nanoseconds_of_32_bits<50>), cloud(1, nanoseconds_of_32_bits<30>)},
+               std::chrono::milliseconds(110));
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(times_of(soon, i).first, 0) << i;
   // All are looked at as they are read, also for when they were recorded.
   const Result<Recording> early =
       recorded({cloud(0, nanoseconds_of_32_bits<30>), cloud(1, nanoseconds_of_32_bits<44>)},

@@ -26,7 +26,7 @@ struct ControlMark {
 
 /// A point with surveyed coordinates that was found in a map or a scan.
 struct ControlPoint {
-  std::string name;                  ///< No other point has it.
+  std::string name;                  ///< No other point of one file of control points has it.
   Vector3 target = Vector3::Zero();  ///< Surveyed: metres in the target frame, z up.
   double sigma_xy = 0.0;             ///< Standard deviations, metres: along x and along y,
   double sigma_z = 0.0;              ///< and along z.

@@ -188,10 +188,11 @@ Result<> check_layout(const PackedCloud& cloud) {
   return checked;
 }
 
-/// Makes them offsets from the scan's stamp: as they are when they fit, else relative to the stamp, else to
-/// the earliest point, which the first cloud decides for all.
+/// Makes them offsets from the scan's stamp: as they are when they lie about zero as those of a sweep do,
+/// else relative to the stamp, else to the earliest point. Under stamps the first cloud decides for all.
 Result<> take_times(CloudFile& file, const std::vector<std::int64_t>& times, const PackedCloud& packed) {
   constexpr std::int64_t kLimit = std::numeric_limits<std::int32_t>::max();
+  constexpr double kNear = 0.25;  // seconds from zero: a sweep, stamped at its start, middle or end
   const auto [low_at, high_at] = std::ranges::minmax_element(times);
   const std::int64_t low = *low_at;
   const std::int64_t high = *high_at;
@@ -207,19 +208,24 @@ Result<> take_times(CloudFile& file, const std::vector<std::int64_t>& times, con
                span_s));
   const std::int64_t absolute = packed.stamp ? packed.stamp->ns : 0;
   const double from_stamp_s = static_cast<double>(Wide{low} - absolute) * 1e-9;
-  const bool is_apart = !fits(0) && !fits(absolute);
+  const bool is_known = packed.stamp && known.from_first_point;
+  const double farthest_s =
+      1e-9 * std::max(std::abs(static_cast<double>(low)), std::abs(static_cast<double>(high)));
+  const bool is_relative = fits(0) && (is_known || farthest_s <= std::max(kNear, 2.0 * span_s));
+  const bool is_apart = !is_relative && !(packed.stamp && fits(absolute));
   if (is_apart && packed.stamp && span_s < kShortestSweep && !known.unit && !known.from_first_point)
     return fail(
         format("the point times span {:.3g} s and lie {:.3f} s from the scan's stamp: another "
                "field, or another unit than was taken (--point-times)",
                span_s, from_stamp_s));
-  const bool from_first = known.from_first_point.value_or(is_apart);
+  const bool from_first = is_known ? *known.from_first_point : is_apart;
   if (is_apart && !from_first)
     return fail(format(
         "its point times lie {:.3f} s from its stamp, those of the first scan do not; was a clock set?",
         from_stamp_s));
-  if (from_first) file.times.clock_apart_s = from_stamp_s;
-  const std::int64_t origin = from_first ? low : fits(0) ? 0 : absolute;
+  file.times.from_first_point = from_first;
+  if (from_first && packed.stamp) file.times.clock_apart_s = from_stamp_s;
+  const std::int64_t origin = from_first ? low : is_relative ? 0 : absolute;
   file.times.are_absolute = origin != 0;
   file.cloud.time_offsets_ns.resize(times.size());
   std::ranges::transform(times, file.cloud.time_offsets_ns.begin(),
@@ -338,7 +344,8 @@ Result<CloudFile> unpack(PackedCloud packed) {
   CloudFile file;
   load_points(packed, file.cloud);
   std::vector<std::int64_t> times;
-  if (packed.time) {
+  const bool has_times = packed.time && !packed.known_times.none;
+  if (has_times) {
     const std::optional<TimeUnit> known = packed.known_times.unit;
     file.times.field = packed.time_name;
     file.times.type = to_string(packed.time->type);
@@ -349,7 +356,7 @@ Result<CloudFile> unpack(PackedCloud packed) {
     times = load_times(packed, unit);
   }
   leave_finite(file, times);
-  if (!packed.time || file.cloud.empty()) return file;
+  if (!has_times || file.cloud.empty()) return file;
   file.times.are_one = are_one_time(times, packed.known_times);
   if (file.times.are_one) return file;
   return take_times(file, times, packed).map([&] { return std::move(file); });

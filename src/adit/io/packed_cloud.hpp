@@ -70,11 +70,13 @@ void assign_field(PackedCloud& cloud, std::string_view name, PackedField field);
 
 /// Where the unit of point times is not known, it is the one that makes the sweep last 2 ms to 2 s; where
 /// none does, or a hundred times are not there to tell, floats are seconds and integers nanoseconds. Signed
-/// integers are nanoseconds. Times that lie further from the stamp than 2.1 s, as by another clock, count
-/// from the earliest point, and where the first cloud's did, all do; where the first cloud's did not, they
-/// are an error. A first cloud of a hundred points or more that have one time has no times. Fails when x, y
-/// or z is absent, a field reaches past the bytes, or times span more than 2.1 s. Where no point is finite,
-/// the cloud is empty.
+/// integers are nanoseconds. Times count from the stamp where they lie within two sweeps, or a quarter of a
+/// second, of zero; else they are absolute. Absolute ones that lie further from the stamp than 2.1 s, as by
+/// another clock, or have no stamp, count from the earliest point. Under stamps that holds for all clouds if
+/// it does for the first; where the first one's did not, later ones that are so far away are an error. A
+/// first cloud of a hundred points or more that have one time has no times, nor have those after it. Fails
+/// when x, y or z is absent, a field reaches past the bytes, or times span more than 2.1 s. Where no point is
+/// finite, the cloud is empty.
 Result<CloudFile> unpack(PackedCloud packed);
 /// `unpack` of a file: fails where it has no finite point, too.
 Result<CloudFile> unpack_file(const PackedCloud& packed);

@@ -8,6 +8,11 @@
 #include "adit/core/robot_name.hpp"
 
 namespace adit {
+namespace {
+
+constexpr std::string_view kOneTime = "is the same for every point";
+
+}  // namespace
 
 std::string_view to_string(TimeUnit unit) {
   switch (unit) {
@@ -32,9 +37,10 @@ Result<std::optional<TimeUnit>> parse_time_unit(std::string_view text) {
 }
 
 KnownTimes known_after(const PointTimes& first, KnownTimes stated) {
+  stated.none = first.are_one;
   if (first.field.empty() || first.are_one) return stated;
   if (first.unit) stated.unit = first.unit;
-  stated.from_first_point = first.clock_apart_s.has_value();
+  stated.from_first_point = first.from_first_point;
   return stated;
 }
 
@@ -60,10 +66,11 @@ std::string point_times_note(TimeUnit unit, UnitSource source) {
 }
 
 std::string no_point_times_note(const PointTimes& times) {
-  return format(
-      "point times: {}, so that scans are not corrected for the motion during a sweep",
-      times.are_one ? format("field '{}' is the same for every point", printable(times.field)) : "none");
+  return format("point times: {}, so that scans are not corrected for the motion during a sweep",
+                times.are_one ? format("field '{}' {}", printable(times.field), kOneTime) : "none");
 }
+
+bool says_times_are_one(std::string_view note) { return note.find(kOneTime) != std::string_view::npos; }
 
 std::optional<std::string> stated_unit_warning(TimeUnit unit, const PointCloud& sweep) {
   constexpr std::int64_t kShortest = 1'000'000;  // nanoseconds; LiDARs take 50 to 200 ms

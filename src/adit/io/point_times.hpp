@@ -25,6 +25,7 @@ struct KnownTimes {
   std::optional<TimeUnit> unit = {};  ///< As stated, or as the first cloud of the recording shows it.
   /// Whether the times of the recording's first cloud are of another clock than its stamp.
   std::optional<bool> from_first_point = {};
+  bool none = false;  ///< The first cloud has one time for all its points: the field tells nothing.
 };
 
 /// What a cloud shows of the times of its points.
@@ -34,9 +35,10 @@ struct PointTimes {
   std::optional<TimeUnit> unit = {};  ///< Given, or found; none where there are too few times to tell.
   bool has_usual_unit = true;         ///< Seconds of floats, nanoseconds of integers.
   bool are_absolute = false;          ///< Rather than counted from the scan's stamp.
+  bool from_first_point = false;      ///< So that they count from the earliest point.
   bool are_one = false;               ///< All points have one time, which is as none: the cloud has no times.
-  /// By how many seconds the earliest point is after the scan's stamp, where times are of another clock than
-  /// the stamp, so that they count from the earliest point.
+  /// By how many seconds the earliest point is after the scan's stamp, where there is one and times are of
+  /// another clock.
   std::optional<double> clock_apart_s = {};
 };
 
@@ -52,6 +54,8 @@ enum class UnitSource : std::uint8_t { stated, found };
 [[nodiscard]] std::string point_times_note(TimeUnit unit, UnitSource source);
 /// What to say of a first cloud without times: that there are none, or that all are one.
 [[nodiscard]] std::string no_point_times_note(const PointTimes& times);
+/// Whether a note says the latter.
+[[nodiscard]] bool says_times_are_one(std::string_view note);
 /// A warning where the sweep that these times make, in a unit that was stated, is shorter than 1 ms or longer
 /// than 1 s. Without times none.
 [[nodiscard]] std::optional<std::string> stated_unit_warning(TimeUnit unit, const PointCloud& sweep);

@@ -132,8 +132,8 @@ Result<Database> open_database(const std::filesystem::path& path, const Pages& p
                                    SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI, nullptr);
   database.handle.reset(opened);
   if (code != SQLITE_OK) return fail(format("cannot be opened: {}", sqlite3_errstr(code)));
-  // Nobody else has the file open, or there were an index: locks can be done without, and in exclusive mode
-  // the index of the log needs no file. The log stays where it is.
+  // Nobody else has the file open, or there would be an index: locks can be done without, and in exclusive
+  // mode the index of the log needs no file. The log stays where it is.
   if (access == Access::log_alone)
     sqlite3_exec(opened, "PRAGMA locking_mode = EXCLUSIVE", nullptr, nullptr, nullptr);
   sqlite3_db_config(opened, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);

@@ -6,7 +6,6 @@
 
 #include "adit/core/check.hpp"
 #include "adit/odometry/imu_integral.hpp"
-#include "adit/odometry/scan_to_map.hpp"
 
 namespace adit {
 namespace {
@@ -40,7 +39,10 @@ OdometryStep LevelledOdometry::register_scan(const Scan& scan, const SensedMotio
 bool LevelledOdometry::add_moment(const OdometryStep& step, const SensedMotion& motion) {
   const Pose& T_drifted_base = step.T_odom_base;
   driven_m_ += (T_drifted_base.translation() - last_->T_world_body.translation()).norm();
-  const bool is_registered = enters_map(step.status);
+  const bool is_aligned = step.status == StepStatus::ok || step.status == StepStatus::degenerate;
+  has_map_ = has_map_ || is_aligned;
+  // Scans that begin a map are no jump at the start alone: later the robot has left its map behind.
+  const bool is_registered = is_aligned || (step.status == StepStatus::no_map && !has_map_);
   if (!is_registered) tilt_.expect_jump();
   if (motion.imu.empty() || !is_registered) {
     moments_.clear();

@@ -52,7 +52,8 @@ class LevelledOdometry : public Odometry {
   std::optional<Pose> T_odom_drifted_;  ///< From the frame of what is wrapped; none before it is known.
   std::optional<StampedPose> last_;     ///< In the frame of what is wrapped.
   std::deque<Moment> moments_;          ///< At the last scans, all registered and with an IMU.
-  std::optional<End> begin_;            ///< Of what has been felt since the filter measured.
+  std::optional<End> begin_;            ///< Of the stretch that is measured.
+  bool has_map_ = false;                ///< A scan was aligned with one.
   double driven_m_ = 0.0;
   double driven_before_m_ = 0.0;  ///< When the filter measured last.
 };

@@ -11,6 +11,7 @@
 #include "adit/core/angles.hpp"
 #include "adit/core/format.hpp"
 #include "adit/io/mount.hpp"
+#include "adit/io/point_times.hpp"
 #include "adit/io/topic_info.hpp"
 #include "adit/robot/mount_by_motion.hpp"
 #include "adit/robot/scan_checks.hpp"
@@ -81,16 +82,17 @@ Diagnosis scans_missing(const Recording& recording) {
 Diagnosis point_times(const Recording& recording, const ScansSeen& seen) {
   const std::string check = "scans: times of points";
   const double interval = timing_of(recording.scan_stamps).interval_s;
+  const bool are_one = std::ranges::any_of(recording.assumptions, says_times_are_one);
+  if (are_one || (seen.has_times && seen.sweep_s == 0.0))
+    return {
+        check, Health::spoils, "all points of a sweep have the same time",
+        "let the driver write when each point was measured; that of the whole sweep is no time of a point"};
   if (!seen.has_times)
     return {check, Health::noted,
             "points have no times, so that the robot's motion within a sweep bends the scans",
             "let the driver write a time for each point (Ouster t, Velodyne time, Hesai timestamp)"};
   const std::string sentence =
       format("from {:.3f} s of a sweep, of which one comes every {:.3f} s", seen.sweep_s, interval);
-  if (seen.sweep_s == 0.0)
-    return {
-        check, Health::spoils, "all points of a sweep have the same time",
-        "let the driver write when each point was measured; that of the whole sweep is no time of a point"};
   constexpr double kLeast = 0.2;  // of the interval; some drivers send a part of a turn
   constexpr double kMost = 1.2;
   if (interval > 0.0 && (seen.sweep_s < kLeast * interval || seen.sweep_s > kMost * interval))
@@ -308,10 +310,11 @@ void add_missing_sensors(const Recording& recording, RecordedAs recorded_as, std
 }
 
 /// Where wheels and IMU share a clock that is not the LiDAR's, only the scans tell.
-Diagnosis clock_apart(double late_s) {
+Diagnosis clock_apart(double late_s, bool is_with_imu) {
   return {"wheels and IMU", Health::noted,
-          format("the stamps of wheels and IMU, which go together, are {:.2f} s too {} by the scans",
-                 std::abs(late_s), late_s > 0.0 ? "late" : "early"),
+          format("the stamps of {} are {:.2f} s too {} by the scans",
+                 is_with_imu ? "wheels and IMU, which go together," : "wheels", std::abs(late_s),
+                 late_s > 0.0 ? "late" : "early"),
           "make the LiDAR's driver use the clock of the others; where it stamps the other end of a sweep, "
           "--set recording.stamp_at=start or =end"};
 }
@@ -353,7 +356,7 @@ void add_sensors(const Recording& recording, const Recording& sound, const Senso
   // Without an IMU the wheels were compared with the scans already.
   const std::optional<double> late_s = sound.imu.empty() ? std::nullopt : wheels_late_by_scans(sound);
   if (late_s.value_or(0.0) != 0.0)
-    out.push_back(clock_apart(*late_s));
+    out.push_back(clock_apart(*late_s, checked.with_imu));
   else if (checked.findings.empty() && (!recording.wheel.empty() || !recording.imu.empty()))
     out.push_back(sound_sensors(sound, checked, late_s));
 }

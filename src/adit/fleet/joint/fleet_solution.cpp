@@ -110,10 +110,9 @@ Refusal without_loops(const FleetGraph& fleet, const PairOutcome& pair, const Tr
     return {RefusalKind::no_loop, unsearched->second};
   if (tried.num_rejected == 0) {
     return {RefusalKind::no_loop,
-            format("no keyframe of {} resembled one of {}; {}", fleet.robots.at(pair.a).name,
-                   fleet.robots.at(pair.b).name,
-                   where_to_drive_for(fleet, pair,
-                                      "drive on until both have passed the same place, none is known yet"))};
+            format("no keyframe of {} resembled one of {}; drive on until both have passed the same place, "
+                   "none is known yet",
+                   fleet.robots.at(pair.a).name, fleet.robots.at(pair.b).name)};
   }
   const auto most = std::ranges::max_element(tried.reasons, {}, &decltype(tried.reasons)::value_type::second);
   return {

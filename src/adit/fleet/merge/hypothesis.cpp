@@ -236,12 +236,12 @@ std::vector<TestedPlace> Hypothesis::places_at_best() const {
 std::vector<Hypothesis> hypotheses_of(const LoopsBetween& between, double reach_m,
                                       const AdaptiveConfig& config) {
   const MergeCheckConfig& check = config.merge_check;
+  const PcmConfig agreeing{.probability = check.loops_agree};
   std::vector<Hypothesis> hypotheses;
   std::vector<std::size_t> rest(between.loops.size());
   std::iota(rest.begin(), rest.end(), std::size_t{0});
   while (!rest.empty() && hypotheses.size() < static_cast<std::size_t>(check.max_hypotheses)) {
     Hypothesis hypothesis(config);
-    const PcmConfig agreeing{.probability = check.loops_agree};
     for (const std::size_t l :
          pcm(between.own, between.theirs, picked(between.loops, rest), agreeing).largest)
       hypothesis.loops.push_back(rest[l]);
@@ -264,7 +264,7 @@ std::vector<Hypothesis> hypotheses_of(const LoopsBetween& between, double reach_
 
 double spent_priors(const std::vector<Hypothesis>& hypotheses, const std::vector<PcmLoop>& loops,
                     const MergeCheck* earlier, double error_rate) {
-  if (earlier == nullptr) return 1.0;
+  if (earlier == nullptr || earlier->hypotheses.empty()) return 1.0;  // loops stay: there were none
   const auto num_loops = [](const auto& alignments) {
     std::size_t num = 0;
     for (const auto& alignment : alignments) num += alignment.loops.size();

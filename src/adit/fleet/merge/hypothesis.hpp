@@ -152,11 +152,11 @@ struct LoopsBetween {
 [[nodiscard]] std::vector<Hypothesis> hypotheses_of(const LoopsBetween& between, double reach_m,
                                                     const AdaptiveConfig& config);
 
-/// By how many times the error rate that is stated for two robots their checks would exceed it, if each took
-/// the shares of loops as the prior of its alignments and none knew of those before: the largest share that
-/// each alignment has ever had, summed over all alignments that were put forward. 1 in a first check, where
-/// shares add up to one, and for as long as the same alignments are checked again. An alignment is one of the
-/// check before if they have a loop in common.
+/// Factor by which the checks of two robots together could exceed the stated error rate, if each shared out a
+/// prior of one among its alignments anew: what the earlier checks came to, and of each alignment the share
+/// of the loops by which it has more than in the check before. 1 in a first check; alignments that are
+/// checked again with the same shares add nothing. An alignment is one of the check before if they have a
+/// loop in common.
 [[nodiscard]] double spent_priors(const std::vector<Hypothesis>& hypotheses,
                                   const std::vector<PcmLoop>& loops, const MergeCheck* earlier,
                                   double error_rate);

@@ -18,7 +18,7 @@ constexpr double kFarthest = 100.0;      // metres along the path that a drive i
 constexpr std::size_t kMostPlaces = 70;  // that are asked about: 33 beyond each end, and what rounding adds
 constexpr double kBeen = 5.0;            // metres, a tunnel's width: a robot this near has been there
 constexpr double kOnePart = 20.0;        // metres: places of one stretch are not farther apart along the path
-constexpr std::size_t kOfALandmark = 20;  // places that a robot is asked to pass to be recognised
+constexpr double kLandmark = 60.0;       // metres that a robot is asked to drive to be recognised
 
 /// Own keyframes beyond an end of what both drove, in the order in which they would be passed.
 struct Way {
@@ -190,37 +190,43 @@ bool is_better(const MergeAdvice& one, const MergeAdvice& other, const DriveSear
 std::vector<std::vector<std::uint32_t>> stretches_apart_from(const std::vector<std::uint32_t>& shared,
                                                              const OdometryChain& own, double spacing_m) {
   const std::vector<double>& path_m = own.path_m();
-  std::vector<std::vector<std::uint32_t>> out;
-  double last_m = -std::numeric_limits<double>::infinity();
-  for (std::uint32_t k = 0; k < own.size(); ++k) {
-    if (path_m[k] - last_m < spacing_m) continue;
+  const auto is_shared = [&](std::uint32_t k) {
     const Vector3 position = own.pose(k).translation();
-    if (std::ranges::any_of(shared, [&](std::uint32_t other) {
-          return (own.pose(other).translation() - position).norm() < kBeen;
-        }))
+    return std::ranges::any_of(shared, [&](std::uint32_t other) {
+      return (own.pose(other).translation() - position).norm() < kBeen;
+    });
+  };
+  std::vector<std::vector<std::uint32_t>> out(1);
+  for (std::uint32_t k = 0; k < own.size(); ++k) {
+    const bool is_on = !out.back().empty();
+    if (is_on && path_m[k] - path_m[out.back().back()] < spacing_m) continue;
+    if (is_shared(k)) {
+      if (is_on) out.emplace_back();
       continue;
-    if (path_m[k] - last_m > kOnePart) out.emplace_back();
+    }
+    if (is_on && path_m[k] - path_m[out.back().back()] > kOnePart) out.emplace_back();
     out.back().push_back(k);
-    last_m = path_m[k];
   }
   return out;
 }
 
-/// At most `kOfALandmark` places in a row whose distances from look-alikes sum up to most.
+/// Places in a row along at most `kLandmark` whose distances from look-alikes sum up to most; at least two.
 std::vector<std::uint32_t> most_outstanding(const std::vector<std::vector<std::uint32_t>>& stretches,
+                                            const std::vector<double>& path_m,
                                             const std::vector<double>& distances) {
   std::vector<std::uint32_t> best;
   double most = 0.0;
   for (const std::vector<std::uint32_t>& stretch : stretches) {
     double sum = 0.0;
-    for (std::size_t end = 1; end <= stretch.size(); ++end) {
-      const std::size_t begin = end - std::min(end, kOfALandmark);
-      sum += distances[stretch[end - 1]];
-      if (begin > 0) sum -= distances[stretch[begin - 1]];
-      if (sum <= most) continue;
+    std::size_t begin = 0;
+    for (std::size_t last = 0; last < stretch.size(); ++last) {
+      sum += distances[stretch[last]];
+      for (; path_m[stretch[last]] - path_m[stretch[begin]] > kLandmark; ++begin)
+        sum -= distances[stretch[begin]];
+      if (sum <= most || begin == last) continue;
       most = sum;
       best.assign(stretch.begin() + static_cast<std::ptrdiff_t>(begin),
-                  stretch.begin() + static_cast<std::ptrdiff_t>(end));
+                  stretch.begin() + static_cast<std::ptrdiff_t>(last) + 1);
     }
   }
   return best;
@@ -269,7 +275,7 @@ std::optional<MergeAdvice> where_to_be_recognised(const OdometryChain& own,
                                                   const std::vector<std::uint32_t>& shared, double missing,
                                                   double spacing_m, const OwnLandmarks& landmarks) {
   const std::vector<std::uint32_t> places =
-      most_outstanding(stretches_apart_from(shared, own, spacing_m), landmarks.distances);
+      most_outstanding(stretches_apart_from(shared, own, spacing_m), own.path_m(), landmarks.distances);
   if (places.empty()) return {};
   const std::vector<bool> distinctive = landmarks.distinctive(places);
   MergeAdvice out;
@@ -277,7 +283,8 @@ std::optional<MergeAdvice> where_to_be_recognised(const OdometryChain& own,
   out.from = own.pose(places.front()).translation();
   out.missing = missing;
   std::size_t num_agreed = 0;
-  for (std::size_t i = 0; i < places.size() && out.gain < missing; ++i) {
+  // From one place to another, at least.
+  for (std::size_t i = 0; i < places.size() && (i < 2 || out.gain < missing); ++i) {
     out.to_m = own.path_m()[places[i]];
     if (distinctive[i]) out.gain += evidence_of_agreement(landmarks.chances, num_agreed++);
   }

@@ -30,6 +30,10 @@ struct UndecidedStretch {
   std::vector<PcmLoop> rival_loops = {};  ///< Of the hypothesis that explains as much; empty without one.
   double missing = 0.0;                   ///< Evidence, or lead before the rival.
   double least_m = 0.0;                   ///< So much has to be driven, whatever it is worth.
+  /// Rather than metres without a change, or a lead before a rival.
+  [[nodiscard]] bool lacks_evidence_alone() const {
+    return missing > 0.0 && least_m == 0.0 && rival_loops.empty();
+  }
 };
 
 /// What is asked of the own map, for each end of what both drove.
@@ -63,7 +67,7 @@ struct OwnLandmarks {
 /// Where nothing beyond the own keyframes `shared`, if any, is known to be shared: of all stretches of the
 /// own path, up to 60 m each, the one whose places stand out most from the rest of the map, up to where they
 /// are worth `missing`. Their worth is that of their scans; walls are not known before they are met. None
-/// where no place there would be evidence. Asks about at most 20 keyframes, `spacing_m` apart.
+/// where no place there would be evidence. Asks about keyframes `spacing_m` apart.
 [[nodiscard]] std::optional<MergeAdvice> where_to_be_recognised(const OdometryChain& own,
                                                                 const std::vector<std::uint32_t>& shared,
                                                                 double missing, double spacing_m,

@@ -218,8 +218,9 @@ TEST(MergeAdvice, WhereNothingIsSharedItLeadsToWhatStandsOutMost) {
   EXPECT_LE(advice->from_m, 100.0 + kSpacing);
   EXPECT_GE(advice->to_m, 140.0 - kSpacing);
   EXPECT_NEAR(advice->from.x(), advice->from_m, 1e-9);
-  EXPECT_EQ(own.num_asked, 20U);
-  EXPECT_NEAR(advice->gain, gain_of(20, 0), 1e-12);
+  EXPECT_LE(advice->to_m - advice->from_m, 60.0);
+  EXPECT_EQ(own.num_asked, 21U);
+  EXPECT_NEAR(advice->gain, gain_of(21, 0), 1e-12);
   EXPECT_EQ(advice->missing, 100.0);
 }
 
@@ -231,6 +232,16 @@ TEST(MergeAdvice, WhereNothingIsSharedItEndsWhereEnoughIsToBeExpected) {
   EXPECT_LT(advice->gain, 1.0 + gain_of(1, 0));
   EXPECT_GT(advice->to_m, 110.0);
   EXPECT_LT(advice->to_m, 125.0);
+}
+
+TEST(MergeAdvice, ItLeadsFromOnePlaceToAnotherAtLeast) {
+  Own own;
+  const std::optional<MergeAdvice> advice = own.advice(1e-3, kEverywhere);
+  ASSERT_TRUE(advice);
+  EXPECT_NEAR(advice->to_m - advice->from_m, kSpacing, 1e-9);
+  Own hardly_driven;
+  hardly_driven.chain = along_x(4);
+  EXPECT_FALSE(hardly_driven.advice(1.0, kEverywhere));
 }
 
 TEST(MergeAdvice, ItLeadsToNoPlaceThatIsSharedOrWouldTellNothing) {

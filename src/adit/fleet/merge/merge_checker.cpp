@@ -32,8 +32,9 @@ MergeChecker::MergeChecker(LoopsBetween between, OwnMeasurements own, const Adap
       own_(std::move(own)),
       config_(config.merge_check),
       place_keyframes_(static_cast<std::size_t>(config.search.place_keyframes)),
-      spent_priors_(
-          adit::spent_priors(hypotheses_, between.loops, between.earlier, config_.evidence.error_rate)) {
+      needed_(
+          std::log(spent_priors(hypotheses_, between.loops, between.earlier, config_.evidence.error_rate) /
+                   config_.evidence.error_rate)) {
   loops_ = std::move(between.loops);
 }
 
@@ -49,8 +50,8 @@ MergeDecision MergeChecker::decide(const std::vector<std::size_t>& best_first, d
 
   // Against chance. Only places where a displacement along the tunnel would show are evidence, by how seldom
   // look-alikes of the own map agree for as long (Wald's test).
-  if (!(evidence(best) + forgiven >= needed())) {  // NaN refuses, here and among rivals
-    if (evidence(best) - evidence_of_walls(best) >= needed()) return MergeDecision::other_walls;
+  if (!(evidence(best) + forgiven >= needed_)) {  // NaN refuses, here and among rivals
+    if (evidence(best) - evidence_of_walls(best) >= needed_) return MergeDecision::other_walls;
     return best.num_distinctive() == 0 ? MergeDecision::nothing_distinctive
                                        : MergeDecision::too_little_evidence;
   }
@@ -91,8 +92,6 @@ bool MergeChecker::are_rivals(const Hypothesis& best, const Hypothesis& other) c
   const double lead = evidence_among_rivals(best) - evidence_among_rivals(other);
   return !differs_too_often(other) && !(lead >= least_lead());
 }
-
-double MergeChecker::needed() const { return std::log(spent_priors_ / config_.evidence.error_rate); }
 
 double MergeChecker::least_lead() const { return std::log(1.0 / config_.evidence.rival_rate); }
 
@@ -218,7 +217,7 @@ std::optional<std::size_t> MergeChecker::whose_walls_to_compare(const std::vecto
   const bool may_decide = decision == MergeDecision::too_little_evidence ||
                           (decision == MergeDecision::other_walls && forgivable > 0.0);
   if (!may_decide) return {};
-  const double missing = needed() - evidence(best) - forgivable;
+  const double missing = needed_ - evidence(best) - forgivable;
   const double possible =
       own_.measured().walls.most_evidence(walls_elsewhere(best)) - evidence_of_walls(best);
   if (best.num_walls_compared < best.wall_plan.size() && possible >= missing) return order.front();
@@ -411,7 +410,7 @@ MergeCheck MergeChecker::verdict(RobotId a, RobotId b, const std::string& remedy
   MergeCheck out;
   out.a = a;
   out.b = b;
-  out.needed = needed();
+  out.needed = needed_;
   out.accepted = decision == MergeDecision::accepted;
   out.refused_kind = refused_kind(decision, order);
   out.reason = why(decision, order);

@@ -86,7 +86,6 @@ class MergeChecker {
   [[nodiscard]] double compared_km(const Hypothesis& hypothesis) const;
   [[nodiscard]] bool are_rivals(const Hypothesis& best, const Hypothesis& other) const;
 
-  [[nodiscard]] double needed() const;
   /// Evidence by which a hypothesis has to lead every other one.
   [[nodiscard]] double least_lead() const;
   [[nodiscard]] double evidence(const Hypothesis& hypothesis) const;
@@ -149,7 +148,7 @@ class MergeChecker {
   OwnMeasurements own_;
   MergeCheckConfig config_;
   std::size_t place_keyframes_;  ///< Nearer than this, keyframes are of one place (SearchConfig).
-  double spent_priors_;          ///< By all checks of both robots, this one included.
+  double needed_;                ///< Evidence that joins maps.
 };
 
 }  // namespace adit

@@ -51,7 +51,7 @@ std::string MergeChecker::what_is_missing(const Hypothesis& h) const {
   const double share = static_cast<double>(h.num_distinctive()) / static_cast<double>(h.compared.size());
   std::vector<TestedPlace> places = h.places();
   const double copies = share_of_copies_if_true(h);
-  const double wanted = evidence_of_places(places, copies) + needed() - evidence(h);
+  const double wanted = evidence_of_places(places, copies) + needed_ - evidence(h);
   double drive_m = 0.0;
   while (drive_m <= kFarthestDrive && !(evidence_of_places(places, copies) >= wanted)) {
     places.push_back({0, 0, PlaceOutcome::distinctive});
@@ -81,7 +81,7 @@ std::string MergeChecker::why(MergeDecision decision, const std::vector<std::siz
           num_agreeing);
     case MergeDecision::too_little_evidence:
       return format("evidence {:.1f} of {:.1f}: {} of {} places agree, {} of them distinctive{}", evidence(h),
-                    needed(), num_agreeing, h.compared.size(), h.num_distinctive(),
+                    needed_, num_agreeing, h.compared.size(), h.num_distinctive(),
                     what_else(refused_kind(decision, best_first)));
     case MergeDecision::nothing_compared:
       return format(
@@ -101,7 +101,7 @@ std::string MergeChecker::why(MergeDecision decision, const std::vector<std::siz
   return format(
       "{} of {} places along the shared stretch agree, {} of them distinctive: evidence {:.1f}, needed "
       "{:.1f}",
-      num_agreeing, h.compared.size(), h.num_distinctive(), evidence(h), needed());
+      num_agreeing, h.compared.size(), h.num_distinctive(), evidence(h), needed_);
 }
 
 std::string MergeChecker::remedy(MergeDecision decision, const std::vector<std::size_t>& best_first) const {

@@ -54,7 +54,7 @@ RefusalKind MergeChecker::refused_kind(MergeDecision decision,
 /// A place has changed where what was changed is all that keeps the evidence below what is needed. Where
 /// places differ and look-alikes are likelier than one tunnel, it is not just too little.
 RefusalKind MergeChecker::kind_where_evidence_is_missing(const Hypothesis& h) const {
-  if (evidence_of_changes(h.places(), chances()) >= needed()) return RefusalKind::changed_place;
+  if (evidence_of_changes(h.places(), chances()) >= needed_) return RefusalKind::changed_place;
   if (h.num_differing() == 0 || evidence(h) >= 0.0) return RefusalKind::too_little;
   return 2 * h.num_differing() > h.compared.size() ? RefusalKind::other_tunnel
                                                    : RefusalKind::changed_or_other;
@@ -68,8 +68,8 @@ RefusalKind MergeChecker::kind_where_scans_differ(const Hypothesis& h) const {
   if (2 * h.num_differing() > h.compared.size()) return RefusalKind::other_tunnel;
   const LookAlikes before(config_.evidence);
   const std::vector<TestedPlace> places = h.places();
-  return evidence_of_changes(places, before.chances()) >= needed() &&
-                 evidence_of_changes(places, chances()) >= needed()
+  return evidence_of_changes(places, before.chances()) >= needed_ &&
+                 evidence_of_changes(places, chances()) >= needed_
              ? RefusalKind::changed_place
              : RefusalKind::changed_or_other;
 }
@@ -115,7 +115,7 @@ std::optional<UndecidedStretch> MergeChecker::undecided() const {
            evidence_of_walls(best, static_cast<double>(places.size()) / num);
   };
   out.loops = loops_of(best);
-  out.missing = std::max(needed() - evidence(best), 0.0);
+  out.missing = std::max(needed_ - evidence(best), 0.0);
   if (decision == MergeDecision::scans_differ) out.least_m = metres_for_changes(best);
   if (kind == RefusalKind::rival) {
     const Hypothesis& rival = hypotheses_[order[1]];

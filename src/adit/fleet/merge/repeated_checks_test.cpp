@@ -54,8 +54,18 @@ TEST(RepeatedChecks, OfTheSameAlignmentNeedNoMore) {
 TEST(RepeatedChecks, WhereNothingWasFoundBeforeNeedNoMore) {
   const MergeCheck first = checked({}, nullptr);
   EXPECT_TRUE(first.hypotheses.empty());
-  MergeCheck second = checked(kTrueLoops, &first);
-  EXPECT_NEAR(second.needed, std::log(2.0) + kNeeded, 1e-12);
+  EXPECT_EQ(checked(kTrueLoops, &first).needed, kNeeded);
+}
+
+TEST(RepeatedChecks, OfTwoAlignmentsCountWhatOneOfThemHasMoreThanBefore) {
+  const std::vector<PcmLoop> other = moved(kTrueLoops, 30.0);
+  std::vector<PcmLoop> loops = kTrueLoops;
+  loops.insert(loops.end(), other.begin(), other.begin() + 2);
+  const MergeCheck first = checked(loops, nullptr);  // 3 of 5 and 2 of 5
+  ASSERT_EQ(first.hypotheses.size(), 2U);
+  EXPECT_EQ(checked(loops, &first).needed, kNeeded);
+  loops.push_back(other[2]);  // 3 of 6 each
+  EXPECT_NEAR(checked(loops, &first).needed, std::log(1.1) + kNeeded, 1e-12);
 }
 
 TEST(RepeatedChecks, OfFurtherAlignmentsNeedMoreForEach) {

@@ -188,10 +188,10 @@ struct MergeHypothesis {
   [[nodiscard]] std::uint32_t num_differing() const { return num_checked - num_passed; }
 };
 
-/// Where robot b of a MergeCheck should drive to decide it: along the path of robot a, beyond the stretch
-/// that both drove, where b has not been yet.
+/// Where robot b of a MergeCheck should drive to decide it: along the path of robot a, where b has not been
+/// yet; beyond the stretch that both drove, or where nothing is shared, where a would recognise it best.
 struct MergeAdvice {
-  double from_m = 0.0;  ///< Along a's path: where what both drove ends,
+  double from_m = 0.0;  ///< Along a's path: where b begins,
   double to_m = 0.0;    ///< and where b may stop; less than `from_m` against a's direction of driving.
   Vector3 from = Vector3::Zero();  ///< Position at `from_m`, metres, in the odometry frame of a.
   double gain = 0.0;               ///< Evidence from there, if a and b are in one tunnel.
