@@ -135,6 +135,9 @@ void add_ruling_options(const Command& command, RulingOptions& options, const st
       "Robots A,B whose maps are joined by the best alignment that was found, or by that of the loop "
       "A:12,B:40, whatever the test says " +
           repeatable);
+  command.add_option(
+      "--withdraw", options.withdrawn,
+      "Robots A,B over whom no ruling counts any more: what the test said last does " + repeatable);
 }
 
 std::vector<Ruling> rulings_of(const RulingOptions& options) {
