@@ -72,7 +72,9 @@ TEST_F(Doctor, FindsNothingWrongWithAGoodRecording) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const nlohmann::json found = nlohmann::json::parse(run.out);
   EXPECT_GE(found["checks"].size(), 9U);
-  for (const nlohmann::json& check : found["checks"]) EXPECT_EQ(check["health"], "good") << check;
+  // One corner is too little to compare wheels with scans.
+  for (const nlohmann::json& check : found["checks"])
+    EXPECT_EQ(check["health"], check["check"] == "wheels and IMU" ? "unknown" : "good") << check;
   test::expect_refused("doctor " + (folder_ / "world.ply").string(), 1, "world.ply");
 }
 
