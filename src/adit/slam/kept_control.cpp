@@ -35,7 +35,9 @@ KeptControl kept_control(const std::vector<EarlierGeoreferences>& earlier) {
     for (const Georeference& map : session.maps) {
       for (const auto& [point, use, residual, misfit] : map.points) {
         if (marked.contains(point.mark.robot)) {
-          const auto is_this = [&](const ControlPoint& other) { return is_same_control(point, other); };
+          const auto is_this = [&point = point](const ControlPoint& other) {
+            return is_same_control(point, other);
+          };
           if (std::ranges::none_of(kept.points, is_this)) left_out.push_back(point.name);
           continue;
         }
