@@ -80,7 +80,7 @@ Result<std::size_t> kitti_columns(const std::vector<std::filesystem::path>& file
 }
 
 Result<CloudFile> read_kitti(std::string_view bytes, std::optional<std::size_t> columns) {
-  const std::size_t row = columns.value_or(kitti_columns(bytes)) == 5 ? kFive : kFour;
+  const std::size_t row = (columns ? *columns : kitti_columns(bytes)) == 5 ? kFive : kFour;
   if (bytes.size() % row != 0) {
     return fail(
         format("{} bytes are not a whole number of points (x y z intensity, 16 bytes each, or 20 with a "

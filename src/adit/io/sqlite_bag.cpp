@@ -84,7 +84,7 @@ Pages pages_of(const std::filesystem::path& path) {
 enum class Access : std::uint8_t {
   plain,      ///< As files without a log are, and those that another program has open or did not close.
   immutable,  ///< There is no log, and none shall be made.
-  log_alone,  ///< There is a log, but no index of it, which sqlite would write beside it: it goes into
+  log_alone,  ///< There is a log without its index, which sqlite would write beside it and here keeps in
               ///< memory.
 };
 

@@ -61,7 +61,7 @@ std::string remedy_of_no_map(const Recording& recording, const ScansSeen& seen,
         "points are in metres: where these are not, scale them where the clouds are made; in a place this "
         "small --set {}voxel_size={:.2f}",
         keys, std::max(0.01, seen.farthest_m / (2.0 * kFewVoxels)));
-  return format("mend what the lines above name first; if it is none of that, --set {}voxel_size={:.2f}",
+  return format("repair first what the other checks found; if they found nothing, --set {}voxel_size={:.2f}",
                 keys, std::max(0.01, 0.5 * used.voxel_size));
 }
 

@@ -270,6 +270,8 @@ double spent_priors(const std::vector<Hypothesis>& hypotheses, const std::vector
     for (const auto& alignment : alignments) num += alignment.loops.size();
     return std::max(static_cast<double>(num), 1.0);
   };
+  const double num_now = num_loops(hypotheses);
+  const double num_before = num_loops(earlier->hypotheses);
   double spent = std::max(1.0, error_rate * std::exp(earlier->needed));
   for (const Hypothesis& h : hypotheses) {
     const auto is_of_it = [&](const std::pair<std::uint32_t, std::uint32_t>& keyframes) {
@@ -280,8 +282,8 @@ double spent_priors(const std::vector<Hypothesis>& hypotheses, const std::vector
     double before = 0.0;
     for (const MergeHypothesis& other : earlier->hypotheses)
       if (std::ranges::any_of(other.loops, is_of_it))
-        before += static_cast<double>(other.loops.size()) / num_loops(earlier->hypotheses);
-    const double now = static_cast<double>(h.loops.size()) / num_loops(hypotheses);
+        before += static_cast<double>(other.loops.size()) / num_before;
+    const double now = static_cast<double>(h.loops.size()) / num_now;
     spent += std::max(0.0, now - before);
   }
   return spent;

@@ -54,7 +54,7 @@ struct OwnMapKnows {
                                                         const OdometryChain& own, const OdometryChain& theirs,
                                                         double spacing_m, const OwnMapKnows& own_map);
 
-/// What of the own map a robot would be recognised by that drives there.
+/// What the own map knows of places at which another robot could be recognised.
 struct OwnLandmarks {
   std::vector<double> distances;  ///< Of each keyframe's descriptor to the most similar other place (0 to 1).
   ChancesToGoOn chances{};        ///< Of look-alikes.
