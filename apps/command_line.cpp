@@ -32,6 +32,9 @@ Option Option::check(const std::function<std::string(const std::string&)>& fault
 Option Command::add_option(const std::string& name, std::string& value, const std::string& help) const {
   return Option(*app_->add_option(name, value, help));
 }
+Option Command::add_option(const std::string& name, int& value, const std::string& help) const {
+  return Option(*app_->add_option(name, value, help));
+}
 Option Command::add_option(const std::string& name, std::vector<std::string>& values,
                            const std::string& help) const {
   return Option(*app_->add_option(name, values, help));

@@ -43,6 +43,7 @@ class Command {
  public:
   explicit Command(CLI::App& app) : app_(&app) {}
   Option add_option(const std::string& name, std::string& value, const std::string& help) const;
+  Option add_option(const std::string& name, int& value, const std::string& help) const;
   Option add_option(const std::string& name, std::vector<std::string>& values, const std::string& help) const;
   Option add_option(const std::string& name, std::vector<int>& values, const std::string& help) const;
   Option add_option(const std::string& name, std::optional<std::uint64_t>& value,

@@ -72,10 +72,13 @@ Result<> convert_mesh(const fs::path& in, const fs::path& out) {
 
 /// A PLY with faces is a mesh and stays one where the output can hold it; elsewhere its vertices are the
 /// cloud.
-Result<> convert_cloud(const fs::path& in, const fs::path& out) {
+Result<> convert_cloud(const fs::path& in, const fs::path& out, const RecordingConfig& how) {
   if (is_ply_mesh(in) && extension_of(out) == ".ply") return convert_mesh(in, out);
-  return read_cloud_file(in).and_then(
-      [&](const CloudFile& file) { return write_cloud(out, file.cloud, file.viewpoint.value_or(Pose())); });
+  return stated_reading(how)
+      .and_then([&](const CloudReading& stated) { return read_cloud_file(in, stated); })
+      .and_then([&](const CloudFile& file) {
+        return write_cloud(out, file.cloud, file.viewpoint.value_or(Pose()));
+      });
 }
 
 Result<> write_graph(const fs::path& out, const std::variant<PoseGraph, PoseGraph2>& graph) {
@@ -362,13 +365,13 @@ Result<> convert(const ConvertOptions& options, const Common& common) {
   if (!options.frame.empty() || options.covariance || options.mesh || !options.robot.empty())
     usage_error("--frame, --covariance, --mesh and --robot are for what is written of a session, and " + in +
                 " is none");
-  if (from == Kind::recording && (to == Kind::recording || to == Kind::trajectory)) {
-    const Result<RunConfig> config = configured(common);
-    if (!config) return tl::unexpected(config.error());
-    return convert_recording(options, recording_config(config->recording, options.recording));
-  }
+  const Result<RunConfig> config = configured(common);
+  if (!config) return tl::unexpected(config.error());
+  const RecordingConfig how = recording_config(config->recording, options.recording);
+  if (from == Kind::recording && (to == Kind::recording || to == Kind::trajectory))
+    return convert_recording(options, how);
   if (from == Kind::mesh && extension_of(out) == ".ply") return convert_mesh(in, out);
-  if (from == Kind::cloud && to == Kind::cloud) return convert_cloud(in, out);
+  if (from == Kind::cloud && to == Kind::cloud) return convert_cloud(in, out, how);
   if (from == Kind::trajectory && to == Kind::trajectory) return convert_trajectory(in, out);
   if (from == Kind::graph && to == Kind::graph) return convert_graph(in, fs::path(in).stem().string(), out);
   usage_error(format("{} cannot become {}: {}", in, out, outputs_of(from)));

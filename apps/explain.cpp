@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "adit/core/format.hpp"
 #include "adit/core/json_text.hpp"
 #include "adit/fleet/joint/merge_accuracy.hpp"
+#include "adit/fleet/merge/scan_quality.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/session_toml.hpp"
 #include "adit/report/text_tables.hpp"
@@ -84,8 +86,15 @@ Table hypotheses_of(const SavedMerge& merge) {
 
 void print_text(const SavedMerge& merge) {
   std::printf("%s\n  %s\n", title_of(merge).c_str(), why(merge).c_str());
+  const std::string quality =
+      merge.a == merge.b ? "" : what_was_unconfirmed(merge.check.unconfirmed, merge.a, merge.b);
+  if (!quality.empty()) std::printf("  %s\n", quality.c_str());
   if (!merge.check.hypotheses.empty()) std::printf("%s", text_of(hypotheses_of(merge)).c_str());
   std::printf("\n");
+}
+
+nlohmann::ordered_json unconfirmed_json(const std::optional<double>& share) {
+  return share ? nlohmann::ordered_json(*share) : nlohmann::ordered_json(nullptr);
 }
 
 nlohmann::ordered_json json_of(const SavedMerge& merge) {
@@ -111,6 +120,8 @@ nlohmann::ordered_json json_of(const SavedMerge& merge) {
       {"robots", {merge.a, merge.b}},     {"merged", merge.merged}, {"share_a_map", merge.share_a_map},
       {"accepted", merge.check.accepted}, {"why", why(merge)},      {"evidence_needed", merge.check.needed},
       {"hypotheses", hypotheses}};
+  out["unconfirmed"] = {unconfirmed_json(merge.check.unconfirmed.a),
+                        unconfirmed_json(merge.check.unconfirmed.b)};
   if (!merge.merged && !merge.check.accepted && merge.a != merge.b)
     out["refused_kind"] = to_string(merge.check.refused_kind);
   if (const auto& advice = merge.check.advice)

@@ -97,6 +97,12 @@ void add_recording_options(const Command& command, RecordingConfig& config) {
       .add_option("--point-times", config.point_times,
                   "Unit of the times of points, s, ms, us or ns (default: as found)")
       .one_of({"s", "ms", "us", "ns"});
+  command.add_option("--point-time-field", config.point_time_field,
+                     "Field with the times of points (default: as found)");
+  command
+      .add_option("--bin-columns", config.bin_columns,
+                  "Columns of .bin clouds, 3 to 8 (default: four or five, as found)")
+      .in_range(3, 8);
 }
 
 void add_truth_topic(const Command& command, RecordingConfig& config) {
@@ -120,6 +126,8 @@ RecordingConfig recording_config(RecordingConfig config, const RecordingConfig& 
   if (!options.tf.empty()) config.tf = options.tf;
   if (!options.truth.empty()) config.truth = options.truth;
   if (!options.point_times.empty()) config.point_times = options.point_times;
+  if (!options.point_time_field.empty()) config.point_time_field = options.point_time_field;
+  if (options.bin_columns != 0) config.bin_columns = options.bin_columns;
   config.namespaces |= options.namespaces;
   return config;
 }

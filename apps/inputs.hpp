@@ -16,8 +16,8 @@
 
 namespace adit::app {
 
-/// The options --mount, --points, --wheel, --imu, --imu-mount, --tf and --point-times of a command that opens
-/// recordings.
+/// The options --mount, --points, --wheel, --imu, --imu-mount, --tf, --point-times, --point-time-field and
+/// --bin-columns of a command that opens recordings.
 void add_recording_options(const Command& command, RecordingConfig& config);
 /// --truth TOPIC, where --truth is no file.
 void add_truth_topic(const Command& command, RecordingConfig& config);

@@ -6,8 +6,9 @@
 
 namespace adit::app {
 
-void add_listed_worlds_options(const Command& command, ListedWorldsOptions& options) {
-  command.add_option("--worlds", options.list, "The list (TOML, as bench/merge/worlds.toml)").required();
+Option add_listed_worlds_options(const Command& command, ListedWorldsOptions& options) {
+  const Option worlds =
+      command.add_option("--worlds", options.list, "The list (TOML, as bench/merge/worlds.toml)");
   WorldChoice& choice = options.choice;
   const bool has_groups = !choice.groups.empty();
   if (has_groups)
@@ -22,6 +23,7 @@ void add_listed_worlds_options(const Command& command, ListedWorldsOptions& opti
                                                  : "The worlds with these names")
                           .separated_by_commas();
   if (!choice.only.empty()) only.default_shown();
+  return worlds;
 }
 
 Result<ListedWorlds> listed_worlds(const ListedWorldsOptions& options, const std::string& command) {

@@ -16,8 +16,8 @@ struct ListedWorldsOptions {
   std::string list;
   WorldChoice choice{{"tuning", "check"}, {}};
 };
-/// --worlds, --groups and --only; without --groups where `choice` has none.
-void add_listed_worlds_options(const Command& command, ListedWorldsOptions& options);
+/// --worlds, which it returns, --groups and --only; without --groups where `choice` has none.
+Option add_listed_worlds_options(const Command& command, ListedWorldsOptions& options);
 
 struct ListedWorlds {
   std::vector<ListedWorld> all;

@@ -19,9 +19,11 @@ namespace {
 
 constexpr const char* kCalibrationSection = "merge-calibration";
 constexpr const char* kPartName = "calibration.part.json";
+constexpr const char* kFigureName = "merge_calibration.svg";
 
 struct CalibrationOptions {
   ListedWorldsOptions worlds;
+  std::vector<std::string> join;
   std::string out;
   std::string page;
   SimulationOptions simulation{.lidar = "os2-32", .conditions = "field"};
@@ -48,29 +50,53 @@ Result<std::vector<JudgedHypothesis>> measure(const CalibrationStudy& study,
   return all;
 }
 
-Result<> merge_calibration(const CalibrationOptions& options, const Common& common) {
-  const Result<RunConfig> config = configured(common, options.simulation);
-  if (!config) return tl::unexpected(config.error());
+Result<std::vector<JudgedHypothesis>> measured_worlds(const CalibrationOptions& options,
+                                                      const RunConfig& config) {
+  if (options.worlds.list.empty())
+    usage_error("--worlds is required: the list of worlds; or --join, what runs over parts of it wrote");
   const Result<ListedWorlds> worlds = listed_worlds(options.worlds, "merge-calibration");
   if (!worlds) return tl::unexpected(worlds.error());
   const std::filesystem::path folder = options.out;
-  if (const Result<> made = make_folder(folder / "maps"); !made) return made;
-  const Result<std::vector<JudgedHypothesis>> all =
-      measure({*config, folder}, worlds->chosen, options.partners.front());
-  if (!all) return tl::unexpected(all.error());
-  const EvidenceModel& model = config->slam.loops.adaptive.merge_check.evidence;
-  std::vector<Table> tables = calibration_tables(*all);
-  tables.push_back(evidence_table(model, fitted_values(*all, model)));
-  const std::string json = calibration_json(*all);
+  if (const Result<> made = make_folder(folder / "maps"); !made) return tl::unexpected(made.error());
+  return measure({config, folder}, worlds->chosen, options.partners.front());
+}
+
+Result<std::vector<JudgedHypothesis>> joined_runs(const CalibrationOptions& options) {
+  if (!options.worlds.list.empty() || !options.worlds.choice.only.empty())
+    usage_error("--join reads what was measured and drives no world; give --worlds and --only without it");
+  const Result<std::vector<JudgedHypothesis>> all = joined_calibrations(options.join);
+  return all.and_then([&](const auto& found) { return make_folder(options.out).map([&] { return found; }); });
+}
+
+Result<> write_calibration(const CalibrationOptions& options, const Common& common,
+                           const EvidenceModel& model, const std::vector<JudgedHypothesis>& all) {
+  std::vector<Table> tables = calibration_tables(all);
+  tables.push_back(evidence_table(model, fitted_values(all, model)));
+  const std::string json = calibration_json(all);
+  const PageFigure figure{kFigureName, "Claimed and observed wrong acceptance", calibration_plot(all)};
+  const std::filesystem::path folder = options.out;
   Result<> done = write_bytes(folder / "calibration.json", json);
-  if (done && !options.page.empty()) done = write_tables(options.page, kCalibrationSection, tables);
+  if (done) done = write_bytes(folder / kFigureName, figure.svg);
+  if (done && !options.page.empty()) done = write_tables(options.page, kCalibrationSection, tables, {figure});
   if (!done) return done;
-  std::error_code ignored;
-  std::filesystem::remove(folder / kPartName, ignored);
   if (common.json) std::printf("%s", json.c_str());
   for (const Table& table : tables)
     if (!common.json) std::printf("%s\n", text_of(table).c_str());
   return {};
+}
+
+Result<> merge_calibration(const CalibrationOptions& options, const Common& common) {
+  const Result<RunConfig> config = configured(common, options.simulation);
+  if (!config) return tl::unexpected(config.error());
+  const bool joins = !options.join.empty();
+  const Result<std::vector<JudgedHypothesis>> all =
+      joins ? joined_runs(options) : measured_worlds(options, *config);
+  if (!all) return tl::unexpected(all.error());
+  const Result<> done =
+      write_calibration(options, common, config->slam.loops.adaptive.merge_check.evidence, *all);
+  std::error_code ignored;
+  if (done && !joins) std::filesystem::remove(std::filesystem::path(options.out) / kPartName, ignored);
+  return done;
 }
 
 }  // namespace
@@ -83,7 +109,12 @@ void add_merge_calibration(Program& program) {
                           "evidence model, over a list of worlds",
                           [options](const Common& common) { return merge_calibration(*options, common); });
   add_listed_worlds_options(command, options->worlds);
-  command.add_option("--out", options->out, "Folder that keeps the robots' maps and takes calibration.json")
+  command.add_option("--join", options->join,
+                     "Instead of --worlds: calibration.json of runs over different worlds, which count as "
+                     "one; nothing is driven");
+  command
+      .add_option("--out", options->out,
+                  "Folder that keeps the robots' maps and takes calibration.json and merge_calibration.svg")
       .required();
   command
       .add_option("--partners", options->partners,
@@ -92,7 +123,8 @@ void add_merge_calibration(Program& program) {
       .default_shown();
   add_simulation_options(command, options->simulation);
   command.add_option("--page", options->page,
-                     "Markdown file whose section between 'merge-calibration' marks takes the tables");
+                     "Markdown file whose section between 'merge-calibration' marks takes the tables; the "
+                     "figure goes into figures/ beside it");
 }
 
 }  // namespace adit::app

@@ -63,7 +63,7 @@ void add_merge_curves(Program& program) {
       "merge-curves",
       "Measure how much of each error of sensors and places merging bears, over a list of effects",
       [options](const Common& common) { return merge_curves(*options, common); });
-  add_listed_worlds_options(command, options->worlds);
+  add_listed_worlds_options(command, options->worlds).required();
   command.add_option("--effects", options->effects, "The effects (TOML, as bench/merge/effects.toml)")
       .required();
   command

@@ -76,7 +76,7 @@ void add_merge_study(Program& program) {
       "merge-study",
       "Measure which robots' maps are merged, refused or merged wrongly, over a list of worlds",
       [options](const Common& common) { return merge_study(*options, common); });
-  add_listed_worlds_options(command, options->worlds);
+  add_listed_worlds_options(command, options->worlds).required();
   command.add_option("--out", options->out, "Folder that keeps the robots' maps and the results of all runs")
       .required();
   command

@@ -93,7 +93,7 @@ void add_uncertainty_study(Program& program) {
       program.add_command("uncertainty-study",
                           "Measure whether stated covariances are those of the errors, over a list of worlds",
                           [options](const Common& common) { return uncertainty_study(*options, common); });
-  add_listed_worlds_options(command, options->worlds);
+  add_listed_worlds_options(command, options->worlds).required();
   command
       .add_option("--out", options->out,
                   "Folder that keeps the robots' maps and takes uncertainty.json and .svg")

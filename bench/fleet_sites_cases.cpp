@@ -64,6 +64,7 @@ RobotMap site_robot(const Tunnel& site, const LidarConfig& lidar, int on_site, R
     map.places.push_back(describe(*clouds[k], map.scan_context));
     map.tunnel.push_back({});
     map.searchable.push_back(true);
+    map.unconfirmed.emplace_back();
     map.step_covariances.push_back(covariance);
     map.pose_noise.push_back(Matrix6::Identity() * 1e-6);
     map.odometry.push_back({stamp, T_odom_base});

@@ -13,7 +13,8 @@
 #   ADIT_MERGE_LOOPS=0    leaves the pose graphs out
 #   ADIT_MERGE_CURVES=1   first measures the effects of bench/merge/effects.toml one by one, into the section "merge-curves"
 #   ADIT_MERGE_CALIBRATION=1  first compares the stated rate of wrong merges with the observed one; into the section
-#                             "merge-calibration" where ADIT_MERGE_PAGE is given, as docs/results.md has none
+#                             "merge-calibration" where ADIT_MERGE_PAGE is given, as docs/results.md has none, with the
+#                             figure merge_calibration.svg in figures/ beside that page
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/setup.sh

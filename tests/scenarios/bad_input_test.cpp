@@ -167,6 +167,10 @@ TEST_F(BadInput, WrongReadingsAreWrongUsageOfInfo) {
   const std::string bag = std::string(ADIT_CONFORMANCE) + "/tube.mcap";
   expect_refused("info " + bag + " --set recording.stamp_at=middle", 2, "not one of auto, start, end");
   expect_refused("doctor " + bag + " --point-times ps", 2, "--point-times");
+  expect_refused("doctor " + bag + " --point-time-field typo", 1, "no field 'typo'");
+  expect_refused("doctor " + bag + " --bin-columns 2", 2, "--bin-columns");
+  expect_refused("info " + bag + " --set recording.bin_columns=2", 1,
+                 "recording.bin_columns: 2 is not 3 to 8");
   expect_refused("info " + bag + " --points /typo", 1, "no topic of clouds '/typo'; there are: /points");
   expect_refused("info " + bag + " --wheel /points", 1, "no topic of wheel odometry '/points'");
   expect_refused("info " + bag + " --set recording.mount=here", 1, "here");

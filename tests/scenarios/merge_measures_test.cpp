@@ -60,8 +60,35 @@ TEST(MergeCalibrationCommand, JudgesTheHypothesesOfWorldsAndBetweenThem) {
   EXPECT_NE(get_file(folder / "page.md").find("Claimed rate"), std::string::npos);
   // The worlds are one in truth: loops between them are found, and count as wrong.
   EXPECT_NE(get_file(folder / "out/calibration.json").find("\"truth\": \"wrong\""), std::string::npos);
+  const std::string svg = get_file(folder / "out/merge_calibration.svg");
+  EXPECT_NE(svg.find("upper limit"), std::string::npos);
+  EXPECT_EQ(get_file(folder / "figures/merge_calibration.svg"), svg) << "beside the page";
+  EXPECT_NE(get_file(folder / "page.md").find("](figures/merge_calibration.svg)"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/calibration.part.json"));
   expect_refused(measure(folder, "merge-calibration", "--partners -1"), 2, "partners");
   expect_refused(measure(folder, "merge-calibration", "--only two"), 1, "no world 'two'");
+}
+
+TEST(MergeCalibrationCommand, JoinsWhatRunsWrote) {
+  const test::TemporaryFolder folder;
+  const auto in = [&](const std::string& name) { return (folder / name).string(); };
+  const auto written = [](const std::string& robots, const std::string& truth, double evidence) {
+    return R"({"version": 1, "hypotheses": [{"robots": ")" + robots + R"(", "truth": ")" + truth +
+           R"(", "refuted": false, "accepted": false, "evidence": )" + std::to_string(evidence) +
+           R"(, "of_walls": 0.5, "needed": 6.2, "compared_m": 30.5, "distinctive": 3, "changes": 1,)"
+           R"( "things": 0, "wall_patches": 12, "looked_for_again": 0, "found_again": 0,)"
+           R"( "not_found_again": 0, "equal_signs": 0.5, "equal_signs_sigma": 0.1}]})";
+  };
+  put_file(in("a.json"), written("a/0, a/1", "right", 9.0));
+  put_file(in("b.json"), written("b/0, b/1", "wrong", 1.5));
+  const std::string join = "merge-calibration --out " + in("out") + " --join " + in("a.json") + " ";
+  expect_done(join + in("b.json"));
+  const std::string json = get_file(in("out/calibration.json"));
+  EXPECT_LT(json.find("a/0, a/1"), json.find("b/0, b/1"));
+  EXPECT_NE(get_file(in("out/merge_calibration.svg")).find("1 false and 1 true"), std::string::npos);
+  expect_refused(join + in("a.json"), 1, "a.json: ");
+  expect_refused(join + in("b.json") + " --worlds list.toml", 2, "--join");
+  expect_refused("merge-calibration --out " + in("out"), 2, "--worlds is required");
 }
 
 }  // namespace

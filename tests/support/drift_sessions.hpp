@@ -216,6 +216,7 @@ inline DriftRobot drive_through(const PointCloud& whole, const DriftDrive& drive
     out.tunnel.push_back(
         tunnel_filter(*clouds[k], config.tunnel_filter).value_or(TunnelVerdict{Vector3::Zero(), true}));
     out.searchable.push_back(true);
+    out.unconfirmed.emplace_back();
     out.step_covariances.push_back(covariance);
     out.pose_noise.push_back(Matrix6::Identity() * 1e-6);
     out.odometry.push_back({stamp, T_odom_base});

@@ -34,6 +34,7 @@ inline std::shared_ptr<const RobotMap> in_a_tube(const std::vector<Box>& boxes, 
     map->keyframes.push_back({{robot, k}, {k}, T_odom_base, std::move(cloud)});
     map->step_covariances.push_back(k == 0 ? Matrix6::Zero() : random_walk({}, kTubeStep));
     map->pose_noise.push_back(Matrix6::Zero());
+    map->unconfirmed.emplace_back();
   }
   return map;
 }

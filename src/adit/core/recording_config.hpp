@@ -65,6 +65,10 @@ struct RecordingConfig {
   std::string truth = {};  ///< Topic of ground truth. "": the only one whose name says so; "none": without.
   /// Unit of the times of points, "s", "ms", "us" or "ns". "": as found (io/packed_cloud.hpp).
   std::string point_times = {};
+  /// Name of the field with the times of points, in PointCloud2, .pcd and .ply. "": as found
+  /// (io/packed_cloud.hpp).
+  std::string point_time_field = {};
+  int bin_columns = 0;  ///< Of .bin clouds, 3 to 8. 0: as found (io/kitti.hpp).
   /// "start": a sweep's stamp is that of its start, or of wherever its points' times are 0; "end": of its
   /// end, while the times count from its start; "auto": as found (io/bag_recording.hpp).
   std::string stamp_at = "auto";
@@ -101,6 +105,12 @@ struct RecordingConfig {
        0,
        "unit of the times of points, s, ms, us or ns; empty: the one that makes a sweep last 2 ms to 2 s",
        {"s", "ms", "us", "ns", ""}},
+      {"point_time_field", &c.point_time_field, "", 0, 0,
+       "field with the times of points, in PointCloud2, .pcd and .ply; empty: the first that is called t, "
+       "time, time_offset, offset_time, timestamp or time_stamp"},
+      {"bin_columns", &c.bin_columns, "", 0, 8,
+       "columns of .bin clouds, 3 to 8: x y z, intensity, and others that are not used; 0: four or five, as "
+       "the files show"},
       {"stamp_at",
        &c.stamp_at,
        "",

@@ -65,7 +65,10 @@ Result<ros::CloudMessage> first_cloud(const Bag& bag, const TopicIndices& topics
     throw_if_cancelled();
     Result<ros::CloudMessage> cloud = read_cloud_message(bag, message, known);
     if (cloud && !cloud->scan.cloud.empty()) return cloud;
-    if (!cloud && first_fault.empty()) first_fault = format("scan {}: {}", num, cloud.error().message);
+    const bool lacks_field = !cloud && lacks_stated_field(cloud.error());
+    if (!cloud && (first_fault.empty() || lacks_field))
+      first_fault = format("scan {}: {}", num, cloud.error().message);
+    if (lacks_field) break;
     ++num;
   }
   if (!first_fault.empty()) return fail(names_of(bag, topics) + ", " + first_fault);
@@ -74,9 +77,11 @@ Result<ros::CloudMessage> first_cloud(const Bag& bag, const TopicIndices& topics
 }
 
 Result<KnownTimes> stated_times(const Bag& bag, const RecordingConfig& config) {
-  return parse_time_unit(config.point_times).map([&](std::optional<TimeUnit> unit) {
-    if (!bag.own) return KnownTimes{unit};
-    return KnownTimes{unit.value_or(TimeUnit::nanoseconds), false};
+  return stated_times(config).map([&](KnownTimes stated) {
+    if (!bag.own) return stated;
+    stated.unit = stated.unit.value_or(TimeUnit::nanoseconds);
+    stated.from_first_point = false;
+    return stated;
   });
 }
 

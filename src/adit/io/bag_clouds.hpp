@@ -19,11 +19,12 @@ namespace adit {
 [[nodiscard]] Result<ros::CloudMessage> read_cloud_message(const Bag& bag, const BagMessage& message,
                                                            const KnownTimes& known);
 
-/// The first cloud that has points: what it shows of fields, times and frames holds for all.
+/// The first cloud that has points: what it shows of fields, times and frames holds for all. Fails where none
+/// can be read, and where the field that is stated for times is not there.
 [[nodiscard]] Result<ros::CloudMessage> first_cloud(const Bag& bag, const TopicIndices& topics,
                                                     const KnownTimes& known);
 
-/// What is known before the first cloud: adit's own times are nanoseconds from the stamp.
+/// What is known before the first cloud, as stated: adit's own times are nanoseconds from the stamp.
 [[nodiscard]] Result<KnownTimes> stated_times(const Bag& bag, const RecordingConfig& config);
 
 /// Whether the stamp is of the end of a sweep whose times count from its start: what `config.stamp_at` says

@@ -38,7 +38,8 @@ namespace adit {
 /// `config.mount` gives it. The IMU is the only Imu topic, or the one that `config.imu` names; without links
 /// to it, its mount is taken for the LiDAR's, which `assumptions` says. With `config.topics_under` only
 /// topics below that name are looked at, beside /tf_static, and names without a slash at the front count from
-/// there. The unit of point times is `config.point_times`, or what the first scan shows (packed_cloud.hpp).
+/// there. The unit of point times is `config.point_times`, and their field `config.point_time_field`, or what
+/// the first scan shows (packed_cloud.hpp); a field that is stated and not there is an error.
 [[nodiscard]] Result<Recording> read_recording(const std::filesystem::path& path,
                                                const RecordingConfig& config = {});
 /// Of a bag that is open. The recording keeps it to read scans. Errors name no file.

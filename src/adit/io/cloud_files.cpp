@@ -29,6 +29,8 @@ Result<CloudFile> parse(CloudFormat format, std::string_view bytes, const CloudR
     case CloudFormat::kitti:
       break;
   }
+  if (const std::string& field = known.times.field; !field.empty())
+    return fail(no_stated_field(field, "the columns of a .bin have no names; leave the option out"));
   return read_kitti(bytes, known.bin_columns);
 }
 
@@ -57,6 +59,22 @@ std::string_view extension_of(CloudFormat format) {
       break;
   }
   return ".bin";
+}
+
+Result<CloudReading> stated_reading(const RecordingConfig& config) {
+  CloudReading stated;
+  stated.are_columns_stated = config.bin_columns != 0;
+  if (stated.are_columns_stated) {
+    const auto columns = static_cast<std::size_t>(config.bin_columns);  // a negative one becomes too large
+    if (columns < kLeastBinColumns || columns > kMostBinColumns)
+      return fail(format("recording.bin_columns: {} is not {} to {}, or 0 for as many as are found",
+                         config.bin_columns, kLeastBinColumns, kMostBinColumns));
+    stated.bin_columns = columns;
+  }
+  return stated_times(config).map([&](KnownTimes times) {
+    stated.times = std::move(times);
+    return stated;
+  });
 }
 
 Result<CloudFile> read_cloud_file(const std::filesystem::path& path, const CloudReading& known) {

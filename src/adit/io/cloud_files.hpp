@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "adit/core/point_cloud.hpp"
+#include "adit/core/recording_config.hpp"
 #include "adit/core/result.hpp"
 #include "adit/io/point_times.hpp"
 
@@ -23,8 +24,11 @@ enum class CloudFormat { pcd, ply, kitti };
 /// What is known of a cloud before it is read; none: as the cloud shows it.
 struct CloudReading {
   KnownTimes times = {};                        ///< Of its points.
-  std::optional<std::size_t> bin_columns = {};  ///< Of .bin, 4 or 5 (kitti.hpp).
+  std::optional<std::size_t> bin_columns = {};  ///< Of .bin, 3 to 8 (kitti.hpp).
+  bool are_columns_stated = false;              ///< Rather than found.
 };
+/// What `config` states of clouds. Fails on a unit of times or a number of columns that is none.
+[[nodiscard]] Result<CloudReading> stated_reading(const RecordingConfig& config);
 
 /// What a cloud reader found. Points with a NaN or infinite coordinate are left out and counted.
 struct CloudFile {
@@ -34,6 +38,7 @@ struct CloudFile {
   /// writers put there that do not know it, and for formats without one.
   std::optional<Pose> viewpoint;
   PointTimes times = {};  ///< What the file shows of them; the times themselves are in `cloud`.
+  std::optional<std::size_t> bin_columns = {};  ///< Of .bin, as known or found.
 };
 
 /// Reads a cloud, in the frame and unit of the file. A missing, truncated or empty file, an unknown extension

@@ -202,7 +202,8 @@ TEST(Pcd, TimesInSecondsNanosecondsAndAbsolute) {
   EXPECT_EQ(times("8", "F", "1700000000.5", "1700000000.25"), Times({250'000'000, 0}));
   EXPECT_ERROR(
       times("8", "F", "0", "100"),
-      "span 100.000 s, more than 2.1 s: another field, or another unit than was taken (--point-times)");
+      "span 100.000 s, more than 2.1 s: another field (--point-time-field), or another unit than was taken "
+      "(--point-times)");
 }
 
 // A sweep of 0.1 s, as drivers write it: the unit follows from how long a sweep lasts.

@@ -47,8 +47,9 @@ Json trajectory_json(const Trajectory& poses) {
           {"path_length_m", path_length(poses)}};
 }
 
-Result<Json> cloud_info(const fs::path& path) {
-  return read_cloud_file(path).map([](const CloudFile& file) {
+Result<Json> cloud_info(const fs::path& path, const RecordingConfig& config) {
+  const auto read = [&](const CloudReading& stated) { return read_cloud_file(path, stated); };
+  return stated_reading(config).and_then(read).map([](const CloudFile& file) {
     Eigen::AlignedBox3f box;
     for (const Eigen::Vector3f& point : file.cloud.points) box.extend(point);
     Json info{{"kind", "cloud"},
@@ -59,6 +60,7 @@ Result<Json> cloud_info(const fs::path& path) {
               {"viewpoint", file.viewpoint ? mount_text(*file.viewpoint) : ""},
               {"bounding_box_m", box_json(box)}};
     if (const std::string from = point_times_text(file.times); !from.empty()) info["point_times_from"] = from;
+    if (file.bin_columns) info["bin_columns"] = *file.bin_columns;
     return info;
   });
 }
@@ -73,7 +75,9 @@ Result<Json> mesh_info(const fs::path& path) {
 }
 
 /// A PLY with faces is a mesh, one without a cloud.
-Result<Json> ply_info(const fs::path& path) { return is_ply_mesh(path) ? mesh_info(path) : cloud_info(path); }
+Result<Json> ply_info(const fs::path& path, const RecordingConfig& config) {
+  return is_ply_mesh(path) ? mesh_info(path) : cloud_info(path, config);
+}
 
 Result<Json> trajectory_info(const fs::path& path) {
   return read_trajectory(path).map([](const Trajectory& poses) {
@@ -247,6 +251,8 @@ std::string next_command(const fs::path& path, const RecordingConfig& config) {
   add(" --imu ", config.imu);
   add(" --imu-mount ", config.imu_mount);
   add(" --point-times ", config.point_times);
+  add(" --point-time-field ", config.point_time_field);
+  if (config.bin_columns != 0) add(" --bin-columns ", format("{}", config.bin_columns));
   add(" --tf ", config.tf);
   JointDriveConfig drive = config.drive;
   JointDriveConfig none;
@@ -372,7 +378,7 @@ Result<Json> adit_info(const fs::path& path) {
 Result<> check_reading(const RecordingConfig& config) {
   return mount_of(config)
       .and_then([&](const auto&) { return imu_mount_of(config); })
-      .and_then([&](const auto&) { return parse_time_unit(config.point_times); })
+      .and_then([&](const auto&) { return stated_reading(config); })
       .and_then([&](const auto&) { return check_stamp_at(config); });
 }
 
@@ -382,8 +388,8 @@ Result<Json> info_of(const fs::path& path, const RecordingConfig& config) {
   if (fs::is_directory(path, ignored)) return folder_info(path, config);
   const std::string extension = lower_case(path.extension().string());
   if (is_bag_file(path)) return bag_info(path, config);
-  if (extension == ".pcd" || extension == ".bin") return cloud_info(path);
-  if (extension == ".ply") return ply_info(path);
+  if (extension == ".pcd" || extension == ".bin") return cloud_info(path, config);
+  if (extension == ".ply") return ply_info(path, config);
   if (extension == ".obj" || extension == ".stl" || extension == ".dae" || extension == ".glb")
     return mesh_info(path);
   if (extension == ".tum" || extension == ".txt" || extension == ".csv" || extension == ".kitti")

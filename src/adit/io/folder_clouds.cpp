@@ -3,7 +3,9 @@
 #include "adit/io/folder_clouds.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <optional>
 
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
@@ -30,14 +32,29 @@ Result<> read_offsets(const fs::path& path, const CloudFile& file, PointCloud& c
   return {};
 }
 
-/// The first cloud that can be read; fails as the first of all does where none can.
+/// The first cloud that can be read; fails as the first of all does where none can, and as the first without
+/// the field that is stated for times.
 Result<CloudFile> first_readable(const std::vector<fs::path>& clouds, const CloudReading& known) {
+  const auto decides = [](const Result<CloudFile>& one) { return one || lacks_stated_field(one.error()); };
   Result<CloudFile> first = read_cloud_file(clouds.front(), known);
-  for (std::size_t i = 1; !first && i < clouds.size(); ++i) {
+  for (std::size_t i = 1; !decides(first) && i < clouds.size(); ++i) {
     Result<CloudFile> next = read_cloud_file(clouds[i], known);
-    if (next) return next;
+    if (decides(next)) return next;
   }
   return first;
+}
+
+/// What is to be said of columns that are not used.
+void note_columns(Recording& recording, const CloudReading& known) {
+  constexpr std::array kNumbers = {"five", "six", "seven", "eight"};
+  constexpr std::size_t kUsed = 4;
+  if (!known.bin_columns || *known.bin_columns <= kUsed) return;
+  const std::size_t num_unused = *known.bin_columns - kUsed;
+  recording.assumptions.push_back(
+      format("clouds: .bin with {} columns, of which {} not used{}; times count in clouds of .pcd or .ply",
+             kNumbers.at(num_unused - 1),
+             num_unused == 1 ? "the fifth (a ring, or times) is" : "those behind the fourth are",
+             known.are_columns_stated ? "" : " (--bin-columns states how many there are)"));
 }
 
 /// What is to be said of clouds without times, unless recording.toml has it already.
@@ -69,23 +86,18 @@ std::string offsets_text(const PointCloud& cloud) {
   return bytes;
 }
 
-Result<CloudReading> reading_of(const std::vector<fs::path>& clouds, std::optional<TimeUnit> time_unit) {
-  CloudReading known{{time_unit, {}}, {}};
-  if (lower_case(clouds.front().extension().string()) != extension_of(CloudFormat::kitti)) return known;
-  return kitti_columns(clouds).map([&](std::size_t columns) {
-    known.bin_columns = columns;
-    return known;
-  });
+Result<CloudReading> reading_of(const std::vector<fs::path>& clouds, const CloudReading& stated) {
+  const bool are_bin = lower_case(clouds.front().extension().string()) == extension_of(CloudFormat::kitti);
+  if (!are_bin) return CloudReading{stated.times};
+  if (stated.bin_columns) return check_kitti_columns(clouds, *stated.bin_columns).map([&] { return stated; });
+  return kitti_columns(clouds).map([&](std::size_t columns) { return CloudReading{stated.times, columns}; });
 }
 
 Result<CloudReading> read_as_first(CloudReading known, Recording& recording,
                                    const std::vector<fs::path>& clouds, bool is_kitti) {
   const Result<CloudFile> first = first_readable(clouds, known);
   if (!first) return tl::unexpected(first.error());
-  if (known.bin_columns == 5)
-    recording.assumptions.emplace_back(
-        "clouds: .bin with five columns, of which the fifth (a ring, or times) is not used; times count in "
-        "clouds of .pcd or .ply");
+  note_columns(recording, known);
   note_times_of_clouds(recording, *first, known.times.unit);
   std::error_code ignored;
   if (!first->cloud.has_times() && !fs::exists(offsets_beside(clouds.front()), ignored))

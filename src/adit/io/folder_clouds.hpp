@@ -4,7 +4,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,13 +19,13 @@ namespace adit {
 /// What that file holds.
 [[nodiscard]] std::string offsets_text(const PointCloud& cloud);
 
-/// How the clouds are read, as far as that shows before any is. `time_unit`: as it is stated. Fails as
-/// kitti_columns does. At least one cloud.
+/// How the clouds are read, as far as that is `stated` (stated_reading) or shows before any is. Fails as
+/// kitti_columns does, and check_kitti_columns. At least one cloud.
 [[nodiscard]] Result<CloudReading> reading_of(const std::vector<std::filesystem::path>& clouds,
-                                              std::optional<TimeUnit> time_unit);
+                                              const CloudReading& stated);
 
 /// Looks at the first cloud that can be read, says what is assumed of it, and lets all be read so. Fails, as
-/// the first of all does, where none can be read.
+/// the first of all does, where none can be read, and where the field that is stated for times is not there.
 [[nodiscard]] Result<CloudReading> read_as_first(CloudReading known, Recording& recording,
                                                  const std::vector<std::filesystem::path>& clouds,
                                                  bool is_kitti);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <system_error>
 
+#include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
 #include "adit/io/atomic_file.hpp"
 #include "adit/io/packed_cloud.hpp"
@@ -79,14 +80,30 @@ Result<std::size_t> kitti_columns(const std::vector<std::filesystem::path>& file
   return read_bytes(both).map([](const std::string& bytes) { return kitti_columns(bytes); });
 }
 
+Result<> check_kitti_columns(const std::vector<std::filesystem::path>& files, std::size_t columns) {
+  const std::size_t row = sizeof(float) * columns;
+  for (const std::filesystem::path& file : files) {
+    std::error_code unknown;
+    const std::uintmax_t size = std::filesystem::file_size(file, unknown);
+    if (unknown || size % row == 0) continue;
+    return fail(
+        format("{}: {} bytes are no whole rows of {} columns ({} bytes each), as --bin-columns states; state "
+               "how many there are, or leave the option out; if the file was cut short, take it away",
+               file.filename().string(), size, columns, row));
+  }
+  return {};
+}
+
 Result<CloudFile> read_kitti(std::string_view bytes, std::optional<std::size_t> columns) {
-  const std::size_t row = (columns ? *columns : kitti_columns(bytes)) == 5 ? kFive : kFour;
+  const std::size_t num_columns = columns ? *columns : kitti_columns(bytes);
+  ADIT_CHECK(num_columns >= kLeastBinColumns && num_columns <= kMostBinColumns, "3 to 8 columns");
+  const std::size_t row = sizeof(float) * num_columns;
   if (bytes.size() % row != 0) {
     return fail(
-        format("{} bytes are not a whole number of points (x y z intensity, 16 bytes each, or 20 with a "
-               "fifth column; {} were taken); the last whole one ends at byte {}: the file is truncated or "
-               "not a KITTI file",
-               bytes.size(), row, bytes.size() / row * row));
+        format("{} bytes are not a whole number of points of {} columns ({} bytes each); the last whole one "
+               "ends at byte {}: the file is truncated, not a KITTI file, or has another number of columns "
+               "(--bin-columns)",
+               bytes.size(), num_columns, row, bytes.size() / row * row));
   }
   PackedCloud packed;
   packed.bytes = bytes;
@@ -94,8 +111,11 @@ Result<CloudFile> read_kitti(std::string_view bytes, std::optional<std::size_t> 
   packed.x = {ScalarType::float32, 0, row};
   packed.y = {ScalarType::float32, 4, row};
   packed.z = {ScalarType::float32, 8, row};
-  packed.intensity = {ScalarType::float32, 12, row};
-  return unpack_file(packed);
+  if (num_columns > kLeastBinColumns) packed.intensity = {ScalarType::float32, 12, row};
+  return unpack_file(packed).map([&](CloudFile file) {
+    file.bin_columns = num_columns;
+    return file;
+  });
 }
 
 std::string write_kitti(const PointCloud& cloud) {

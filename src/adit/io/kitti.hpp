@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 /// KITTI's velodyne .bin: float32 x, y, z, intensity, one after the other, little-endian, nothing else; and
-/// what others write with a fifth column, a ring or a time, which is not used. KITTI's files of poses and of
-/// the calibration.
+/// what others write with a fifth column, a ring or a time, which is not used. Where it is stated, there are
+/// three columns, without intensity, or up to eight, of which those behind the fourth are not used. KITTI's
+/// files of poses and of the calibration.
 #pragma once
 
 #include <cstddef>
@@ -17,6 +18,12 @@
 
 namespace adit {
 
+/// How many columns `read_kitti` takes.
+///@{
+inline constexpr std::size_t kLeastBinColumns = 3;
+inline constexpr std::size_t kMostBinColumns = 8;
+///@}
+
 /// How many columns each point has in these bytes, 4 or 5. Five where the size is a multiple of 20 bytes, and
 /// the fifth number is a ring (whole, from 0 to 255), or a hundred rows have no negative intensity so. Where
 /// the size is a multiple of 16 bytes as well, only if a hundred rows have several rings, or some intensity
@@ -27,8 +34,13 @@ namespace adit {
 /// some files have whole rows of four columns alone and others of five.
 [[nodiscard]] Result<std::size_t> kitti_columns(const std::vector<std::filesystem::path>& files);
 
-/// `columns`: of each point, 4 or 5, where that is known. Other sizes are those of truncated files: an error
-/// that names the last whole point.
+/// Whether the files of a folder have whole rows of so many columns, as stated. Fails with the first that has
+/// not, and its size.
+[[nodiscard]] Result<> check_kitti_columns(const std::vector<std::filesystem::path>& files,
+                                           std::size_t columns);
+
+/// `columns`: of each point, where that is known; else kitti_columns. Other sizes are those of truncated
+/// files: an error that names the last whole point.
 Result<CloudFile> read_kitti(std::string_view bytes, std::optional<std::size_t> columns = {});
 
 /// Points without intensity get 0.

@@ -185,6 +185,11 @@ Result<> check_layout(const PackedCloud& cloud) {
                          .and_then([&] { return check_field(cloud, cloud.z, "z"); });
   if (checked && cloud.intensity) checked = check_field(cloud, cloud.intensity, "intensity");
   if (checked && cloud.time) checked = check_field(cloud, cloud.time, "t");
+  const std::string& stated = cloud.known_times.field;
+  if (checked && !cloud.time && !stated.empty())
+    return fail(no_stated_field(
+        stated,
+        format("the fields are: {}; name one of them, or leave the option out", names_text(cloud.names))));
   return checked;
 }
 
@@ -203,8 +208,8 @@ Result<> take_times(CloudFile& file, const std::vector<std::int64_t>& times, con
   const double span_s = static_cast<double>(Wide{high} - low) * 1e-9;
   if (Wide{high} - low > kLimit)
     return fail(
-        format("the point times of the sweep span {:.3f} s, more than 2.1 s: another field, or another "
-               "unit than was taken (--point-times)",
+        format("the point times of the sweep span {:.3f} s, more than 2.1 s: another field "
+               "(--point-time-field), or another unit than was taken (--point-times)",
                span_s));
   const std::int64_t absolute = packed.stamp ? packed.stamp->ns : 0;
   const double from_stamp_s = static_cast<double>(Wide{low} - absolute) * 1e-9;
@@ -215,8 +220,8 @@ Result<> take_times(CloudFile& file, const std::vector<std::int64_t>& times, con
   const bool is_apart = !is_relative && !(packed.stamp && fits(absolute));
   if (is_apart && packed.stamp && span_s < kShortestSweep && !known.unit && !known.from_first_point)
     return fail(
-        format("the point times span {:.3g} s and lie {:.3f} s from the scan's stamp: another "
-               "field, or another unit than was taken (--point-times)",
+        format("the point times span {:.3g} s and lie {:.3f} s from the scan's stamp: another field "
+               "(--point-time-field), or another unit than was taken (--point-times)",
                span_s, from_stamp_s));
   const bool from_first = is_known ? *known.from_first_point : is_apart;
   if (is_apart && !from_first)
@@ -284,7 +289,10 @@ void assign_field(PackedCloud& cloud, std::string_view name, PackedField field) 
   take(cloud.intensity, {"intensity", "intensities", "i", "scalar_Intensity"});
   take(cloud.reflectivity, {"reflectivity"});
   const bool had_time = cloud.time.has_value();
-  take(cloud.time, {"t", "time", "time_offset", "offset_time", "timestamp", "time_stamp"});
+  if (const std::string& stated = cloud.known_times.field; !stated.empty())
+    take(cloud.time, {stated});
+  else
+    take(cloud.time, {"t", "time", "time_offset", "offset_time", "timestamp", "time_stamp"});
   if (!had_time && cloud.time) cloud.time_name = name;
 }
 

@@ -64,8 +64,8 @@ struct PackedCloud {
   std::vector<std::string> names = {};      ///< Of all fields that assign_field was shown, for errors.
 };
 
-/// Takes the field when its name is one that clouds use (see pcd.hpp) and its place is still free; keeps its
-/// name in any case.
+/// Takes the field when its name is one that clouds use (see pcd.hpp), of times the one that `known_times`
+/// states, and its place is still free; keeps its name in any case.
 void assign_field(PackedCloud& cloud, std::string_view name, PackedField field);
 
 /// Where the unit of point times is not known, it is the one that makes the sweep last 2 ms to 2 s; where
@@ -75,8 +75,8 @@ void assign_field(PackedCloud& cloud, std::string_view name, PackedField field);
 /// another clock, or have no stamp, count from the earliest point. Under stamps that holds for all clouds if
 /// it does for the first; where the first one's did not, later ones that are so far away are an error. A
 /// first cloud of a hundred points or more that have one time has no times, nor have those after it. Fails
-/// when x, y or z is absent, a field reaches past the bytes, or times span more than 2.1 s. Where no point is
-/// finite, the cloud is empty.
+/// when x, y or z is absent, or the field that is stated for times, a field reaches past the bytes, or times
+/// span more than 2.1 s. Where no point is finite, the cloud is empty.
 Result<CloudFile> unpack(PackedCloud packed);
 /// `unpack` of a file: fails where it has no finite point, too.
 Result<CloudFile> unpack_file(const PackedCloud& packed);

@@ -14,9 +14,9 @@ namespace adit {
 /// Reads the bytes of a PCD file. Fields taken:
 ///  - x, y, z (F4 or F8), needed;
 ///  - intensity, intensities or i (any numeric type);
-///  - t, time, time_offset, offset_time, timestamp or time_stamp, in the unit that is `known` or else found
-///    (packed_cloud.hpp). Times further than 2.1 s from 0 (absolute clocks) are made relative to the
-///    earliest point.
+///  - t, time, time_offset, offset_time, timestamp or time_stamp, or the one that is `known`; in the unit
+///    that is `known` or else found (packed_cloud.hpp). Times further than 2.1 s from 0 (absolute clocks) are
+///    made relative to the earliest point.
 /// All other fields are skipped. VIEWPOINT (tx ty tz qw qx qy qz) becomes CloudFile::viewpoint. Errors name
 /// the header line or the byte offset.
 Result<CloudFile> read_pcd(std::string_view bytes, const KnownTimes& known = {});

@@ -218,8 +218,9 @@ Result<std::string> pack_element(Body& body, const PlyElement& element, const On
 }
 
 /// Names the fields in the packed rows of an element, which must outlive the result.
-PackedCloud packed_cloud(std::string_view rows, const PlyElement& element) {
+PackedCloud packed_cloud(std::string_view rows, const PlyElement& element, const KnownTimes& known = {}) {
   PackedCloud packed;
+  packed.known_times = known;
   packed.bytes = rows;
   packed.num_points = element.count;
   const std::size_t stride = element.count == 0 ? 0 : rows.size() / element.count;
@@ -241,9 +242,7 @@ Result<CloudFile> read_vertices(Body body, const PlyHeader& header, const KnownT
     const Result<std::string> rows = pack_element(body, element, [](const auto&, const auto&) {});
     if (!rows) return tl::unexpected(rows.error());
     if (element.name != "vertex") continue;
-    PackedCloud packed = packed_cloud(*rows, element);
-    packed.known_times = known;
-    return unpack_file(packed);
+    return unpack_file(packed_cloud(*rows, element, known));
   }
   return fail(std::string(kNoVertices));
 }

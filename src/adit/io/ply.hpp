@@ -14,8 +14,8 @@ namespace adit {
 
 /// Reads the `vertex` element of a PLY file: ascii, binary_little_endian or binary_big_endian. Taken are the
 /// scalar properties x, y, z (needed), intensity (also intensities, i, scalar_Intensity) and t (also time,
-/// time_offset, offset_time, timestamp, time_stamp; units as in pcd.hpp). Other properties, list properties
-/// and elements are stepped over. Errors name the header line or the byte offset.
+/// time_offset, offset_time, timestamp, time_stamp, or the one that is `known`; units as in pcd.hpp). Other
+/// properties, list properties and elements are stepped over. Errors name the header line or the byte offset.
 Result<CloudFile> read_ply(std::string_view bytes, const KnownTimes& known = {});
 
 /// Reads the vertices and the polygons of a mesh: the lists `vertex_indices` (or `vertex_index`) of the

@@ -11,6 +11,7 @@ namespace adit {
 namespace {
 
 constexpr std::string_view kOneTime = "is the same for every point";
+constexpr std::string_view kAsStated = "with the times of points, as --point-time-field states";
 
 }  // namespace
 
@@ -36,6 +37,12 @@ Result<std::optional<TimeUnit>> parse_time_unit(std::string_view text) {
   return fail(format("'{}' is not a unit of point times; s, ms, us and ns are", text));
 }
 
+Result<KnownTimes> stated_times(const RecordingConfig& config) {
+  return parse_time_unit(config.point_times).map([&](std::optional<TimeUnit> unit) {
+    return KnownTimes{unit, {}, false, config.point_time_field};
+  });
+}
+
 KnownTimes known_after(const PointTimes& first, KnownTimes stated) {
   stated.none = first.are_one;
   if (first.field.empty() || first.are_one) return stated;
@@ -43,6 +50,12 @@ KnownTimes known_after(const PointTimes& first, KnownTimes stated) {
   stated.from_first_point = first.from_first_point;
   return stated;
 }
+
+std::string no_stated_field(std::string_view field, std::string_view remedy) {
+  return format("no field '{}' {}; {}", printable(field), kAsStated, remedy);
+}
+
+bool lacks_stated_field(const Error& error) { return error.message.find(kAsStated) != std::string::npos; }
 
 std::string point_times_text(const PointTimes& times) {
   if (times.field.empty()) return "";

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "adit/core/point_cloud.hpp"
+#include "adit/core/recording_config.hpp"
 #include "adit/core/result.hpp"
 
 namespace adit {
@@ -25,8 +26,11 @@ struct KnownTimes {
   std::optional<TimeUnit> unit = {};  ///< As stated, or as the first cloud of the recording shows it.
   /// Whether the times of the recording's first cloud are of another clock than its stamp.
   std::optional<bool> from_first_point = {};
-  bool none = false;  ///< The first cloud has one time for all its points: the field tells nothing.
+  bool none = false;       ///< The first cloud has one time for all its points: the field tells nothing.
+  std::string field = {};  ///< Name of the field that has them, as stated; "": as found.
 };
+/// What `config` states of them. Fails on a unit that is none.
+[[nodiscard]] Result<KnownTimes> stated_times(const RecordingConfig& config);
 
 /// What a cloud shows of the times of its points.
 struct PointTimes {
@@ -44,6 +48,11 @@ struct PointTimes {
 
 /// What a first cloud shows holds for all. Of what it does not show, `stated` stays.
 [[nodiscard]] KnownTimes known_after(const PointTimes& first, KnownTimes stated);
+
+/// The fault of a cloud without the field that is stated. `remedy` says what the cloud has, and what to do.
+[[nodiscard]] std::string no_stated_field(std::string_view field, std::string_view remedy);
+/// Whether an error says so. Then the other clouds of a recording need not be tried.
+[[nodiscard]] bool lacks_stated_field(const Error& error);
 
 /// "timestamp, float64 s, absolute"; "" without a field.
 [[nodiscard]] std::string point_times_text(const PointTimes& times);

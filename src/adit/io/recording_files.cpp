@@ -94,9 +94,9 @@ Result<Recording> open_part(const std::filesystem::path& folder, const std::stri
 Result<Recording> open_folder(const std::string& input, const RecordingConfig& config) {
   const Result<std::optional<Pose>> mount = mount_of(config);
   if (!mount) return tl::unexpected(mount.error());
-  const Result<std::optional<TimeUnit>> time_unit = parse_time_unit(config.point_times);
-  if (!time_unit) return tl::unexpected(time_unit.error());
-  const FolderReading reading{*mount, *time_unit};
+  const Result<CloudReading> clouds = stated_reading(config);
+  if (!clouds) return tl::unexpected(clouds.error());
+  const FolderReading reading{*mount, *clouds};
   std::error_code ignored;
   const std::size_t at = input.rfind('@');
   const bool is_whole = std::filesystem::is_directory(input, ignored);

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -186,6 +186,15 @@ void scan_context_config(Archive& archive, Config& value) {
   archive.number(value.max_elevation_deg);
 }
 
+/// A negative share is that of a scan that was not judged; files of before this was told have 0 there.
+template <class Archive, class Share>
+void share_if_judged(Archive& archive, Share& value) {
+  constexpr float kNotJudged = -1.0F;
+  float share = value.value_or(kNotJudged);
+  archive.number(share);
+  if constexpr (Archive::kReads) value = share < 0.0F ? std::nullopt : std::optional(share);
+}
+
 template <class Archive, class Map>
 void transfer(Archive& archive, Map& map) {
   archive.number(map.id.value);
@@ -216,7 +225,8 @@ void transfer(Archive& archive, Map& map) {
       const bool searchable = flag(archive, map.searchable[k]);
       if constexpr (Archive::kReads) map.searchable[k] = searchable;
     }
-  plain_vector(archive, map.unconfirmed);
+  if (size_of_each(archive, map, map.unconfirmed))
+    for (auto& share : map.unconfirmed) share_if_judged(archive, share);
   archive.raw(map.viewpoint.data(), 3 * sizeof(double));
 }
 
@@ -262,7 +272,8 @@ Result<> check_keyframe(const RobotMap& map, std::size_t k) {
       std::pair(!map.pose_noise[k].allFinite(), "its pose's noise is not finite"),
       std::pair(!is_whole(map.places[k], map.scan_context), "its place does not fit the grid of places"),
       std::pair(!map.tunnel[k].extents.allFinite(), "its extents are not finite"),
-      std::pair(!std::isfinite(map.unconfirmed[k]), "its share of unconfirmed returns is not finite")};
+      std::pair(map.unconfirmed[k] && !(*map.unconfirmed[k] <= 1.0F),
+                "its share of unconfirmed returns is no share")};
   for (const auto& [is_there, fault] : faults)
     if (is_there) return fail(format("keyframe {}: {}", k, fault));
   return {};
@@ -270,7 +281,6 @@ Result<> check_keyframe(const RobotMap& map, std::size_t k) {
 
 /// What RobotMap promises and its users rely on.
 Result<> check_map(RobotMap& map) {
-  if (map.unconfirmed.size() != map.keyframes.size()) return fail("its lists differ in length");
   if (const Result<> checked = check_fields(fields_of(map.scan_context)); !checked)
     return fail("scan_context", checked.error());
   if (const Result<> checked = check_ascending(map.odometry, "pose"); !checked) return checked;

@@ -75,6 +75,14 @@ TEST(RobotMapFile, ReadsBackBitForBit) {
   EXPECT_EQ(again->tunnel[1].tunnel_like, map.tunnel[1].tunnel_like);
 }
 
+TEST(RobotMapFile, AScanThatWasNotJudgedIsReadAsSuch) {
+  RobotMap map = random_map();
+  map.unconfirmed[1].reset();
+  const Result<RobotMap> again = parse_robot_map(robot_map_bytes(map));
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(again->unconfirmed, map.unconfirmed);
+}
+
 TEST(RobotMapFile, DamageAndOtherVersionsAreRefused) {
   const std::string bytes = robot_map_bytes(random_map());
   for (std::size_t size = 0; size < bytes.size(); size += 7)
@@ -172,6 +180,9 @@ TEST(RobotMapFile, WhatItsUsersRelyOnIsChecked) {
                  "keyframe 1: its pose's noise is not finite");
   expect_refused([](RobotMap& map) { map.tunnel[0].extents.z() = kNan; },
                  "keyframe 0: its extents are not finite");
+  for (const float share : {1.5F, std::numeric_limits<float>::quiet_NaN()})
+    expect_refused([share](RobotMap& map) { map.unconfirmed[3] = share; },
+                   "keyframe 3: its share of unconfirmed returns is no share");
   expect_refused([](RobotMap& map) { map.step_covariances[4] = -Matrix6::Identity(); },
                  "keyframe 4: its step's covariance is not positive definite");
   expect_refused(

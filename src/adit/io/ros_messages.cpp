@@ -227,15 +227,15 @@ Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding enco
   packed.num_points = reader.number<std::uint32_t>();
   packed.bytes = reader.rest();
   packed.order = reader.order();
-  // offset_time uint32, x y z float32, reflectivity tag line uint8; CDR pads each to a multiple of four.
-  const std::size_t stride = encoding == MessageEncoding::cdr ? 20 : 19;
-  packed.time = {ScalarType::uint32, 0, stride};
-  packed.x = {ScalarType::float32, 4, stride};
-  packed.y = {ScalarType::float32, 8, stride};
-  packed.z = {ScalarType::float32, 12, stride};
-  packed.intensity = {ScalarType::uint8, 16, stride};
-  packed.time_name = "offset_time";
-  packed.known_times = {TimeUnit::nanoseconds, known.from_first_point};
+  packed.known_times = {TimeUnit::nanoseconds, known.from_first_point, false, known.field};
+  const std::size_t stride = encoding == MessageEncoding::cdr ? 20 : 19;  // CDR pads to a multiple of four
+  assign_field(packed, "offset_time", {ScalarType::uint32, 0, stride});
+  assign_field(packed, "x", {ScalarType::float32, 4, stride});
+  assign_field(packed, "y", {ScalarType::float32, 8, stride});
+  assign_field(packed, "z", {ScalarType::float32, 12, stride});
+  assign_field(packed, "reflectivity", {ScalarType::uint8, 16, stride});
+  assign_field(packed, "tag", {ScalarType::uint8, 17, stride});
+  assign_field(packed, "line", {ScalarType::uint8, 18, stride});
   packed.stamp = out.scan.stamp;
   if (!reader.ok()) return fail(format("byte {}: the CustomMsg message ends early", reader.offset()));
   return unpacked(packed, std::move(out)).map([&](CloudMessage cloud) {

@@ -54,7 +54,7 @@ Result<CloudMessage> decode_cloud(std::string_view message, MessageEncoding enco
 Result<std::string> describe_cloud(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr);
 /// The same of Livox's CustomMsg: intensity is the reflectivity, times are nanoseconds from its `timebase`,
 /// the time of the first point. Where that is further from the stamp than two sweeps, as by another clock,
-/// they count from the stamp.
+/// they count from the stamp. Their field is `offset_time`, also for `known`.
 Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding encoding = MessageEncoding::cdr,
                                   const KnownTimes& known = {});
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "adit/io/cdr.hpp"
+#include "support/files.hpp"
 
 namespace adit {
 namespace {
@@ -91,6 +92,14 @@ std::string livox_sweep(Stamp stamp, std::uint64_t time_base) {
     bytes.append(3, '\0');
   }
   return bytes;
+}
+
+TEST(RosMessages, TimesOfLivoxHaveTheFieldOfTheirDefinition) {
+  const Stamp stamp{1'700'000'000'000'000'000};
+  const std::string sweep = livox_sweep(stamp, static_cast<std::uint64_t>(stamp.ns));
+  EXPECT_TRUE(ros::decode_livox(sweep, MessageEncoding::ros1, {.field = "offset_time"}));
+  EXPECT_ERROR(ros::decode_livox(sweep, MessageEncoding::ros1, {.field = "timestamp"}),
+               "the fields are: offset_time, x, y, z, reflectivity, tag, line");
 }
 
 TEST(RosMessages, TimesOfLivoxCountFromTheTimeBase) {

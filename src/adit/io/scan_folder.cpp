@@ -349,7 +349,7 @@ Result<Recording> read_scan_folder(const fs::path& given, ScanSelection selectio
   if (!file) return tl::unexpected(file.error());
   std::vector<fs::path> clouds;
   for (const ScanFile& scan : select(*scans, selection)) clouds.push_back(scan.path);
-  const Result<CloudReading> known = reading_of(clouds, reading.time_unit);
+  const Result<CloudReading> known = reading_of(clouds, reading.clouds);
   if (!known) return fail(folder.string(), known.error());
   const Wheels wheels = recording->wheel.empty() ? Wheels::absent : Wheels::present;
   const Result<FolderMount> mount = mount_of_folder(clouds, *file, reading.T_base_lidar, wheels, *known);

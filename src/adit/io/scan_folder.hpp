@@ -17,7 +17,7 @@
 ///    the scan's stamp, little-endian.
 ///
 /// What the first cloud that can be read shows of the times of points holds for all, and all .bin have as
-/// many columns (kitti.hpp). `assumptions` say where the first has no times.
+/// many columns, as stated or found (kitti.hpp). `assumptions` say where the first has no times.
 ///
 /// The mount comes from, in this order: the caller; recording.toml; the VIEWPOINT that all .pcd files share;
 /// the clouds themselves, when they show clearly where the sensor stood (geometry/sensor_origin.hpp: then the
@@ -44,13 +44,13 @@ struct ScanSelection {
 
 /// What is known of the clouds of a folder.
 struct FolderReading {
-  std::optional<Pose> T_base_lidar = {};   ///< Overrides what the folder says of the mount.
-  std::optional<TimeUnit> time_unit = {};  ///< Of the times of points; none: as found (packed_cloud.hpp).
+  std::optional<Pose> T_base_lidar = {};  ///< Overrides what the folder says of the mount.
+  CloudReading clouds = {};               ///< What is stated of them (stated_reading).
 };
 
 /// Scans are read when asked for, from any thread. Errors: no clouds, clouds of several kinds, two scans of
 /// one number, a single scan, stamps not ascending or not as many as scans, an odometry that covers none of
-/// the scans, wheels without a mount.
+/// the scans, wheels without a mount, clouds that are not as stated.
 Result<Recording> read_scan_folder(const std::filesystem::path& folder, ScanSelection selection = {},
                                    const FolderReading& reading = {});
 

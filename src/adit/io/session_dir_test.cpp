@@ -164,6 +164,26 @@ TEST(SessionDir, MergesAreReadBackAsTheyWereTested) {
   EXPECT_TRUE(merges->back().check.accepted);
 }
 
+TEST(SessionDir, TheProvenanceSaysWhatShareOfTheReturnsNothingConfirmed) {
+  Session session = session_of_two();
+  auto dusty = std::make_shared<RobotMap>(*session.maps[0]);
+  dusty->unconfirmed.assign(kNum, 0.125F);
+  dusty->unconfirmed.front().reset();
+  session.maps[0] = dusty;
+  for (const auto& map : session.maps)
+    session.provenance.robots.push_back({map->name, "plane-icp", "", 12, ""});
+  session.fleet.checks.at({{0}, {1}}).unconfirmed = {0.0626, std::nullopt};
+  const std::string toml = session_toml(session);
+  EXPECT_NE(toml.find("unconfirmed = 0.125"), std::string::npos) << toml;
+  EXPECT_EQ(toml.find("unconfirmed = "), toml.rfind("unconfirmed = ")) << "bo was not judged";
+  EXPECT_NE(toml.find("unconfirmed_a = 0.063"), std::string::npos) << toml;
+  EXPECT_EQ(toml.find("unconfirmed_b"), std::string::npos) << toml;
+  const Result<std::vector<SavedMerge>> merges = parse_session_merges(toml);
+  ASSERT_TRUE(merges) << merges.error().message;
+  EXPECT_EQ(merges->front().check.unconfirmed.a, 0.063);
+  EXPECT_FALSE(merges->front().check.unconfirmed.b);
+}
+
 TEST(SessionDir, ARulingIsNoOutcomeOfTheTest) {
   Session session = session_of_two();
   MergeCheck& check = session.fleet.checks.at({{0}, {1}});

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <tuple>
@@ -23,6 +24,11 @@ namespace {
 std::string name_of(const FleetGraph& fleet, RobotId id) { return fleet.robots.at(id).name; }
 
 double rounded(double value) { return std::round(100.0 * value) / 100.0; }
+
+/// Nothing where no scan was judged.
+void insert_share(toml::table& table, const char* key, const std::optional<double>& share) {
+  if (share) table.insert(key, std::round(1000.0 * *share) / 1000.0);
+}
 
 /// In the odometry frame of the first robot, along its path.
 toml::table advice_table(const MergeAdvice& advice) {
@@ -66,6 +72,8 @@ toml::table merge_table(const FleetGraph& fleet, const MergeCheck& check) {
                   {"hypotheses", hypotheses}};
   if (!check.accepted) out.insert("refused_kind", std::string(to_string(check.refused_kind)));
   if (check.advice) out.insert("where_to_drive", advice_table(*check.advice));
+  insert_share(out, "unconfirmed_a", check.unconfirmed.a);
+  insert_share(out, "unconfirmed_b", check.unconfirmed.b);
   return out;
 }
 
@@ -83,10 +91,10 @@ std::vector<std::string> strings_of(const toml::node* node) {
   return out;
 }
 
-/// How each robot was mapped.
-toml::array mapping_of(const Provenance& provenance) {
+/// How each robot was mapped, and how much of its scans nothing confirmed.
+toml::array mapping_of(const Session& session) {
   toml::array mapping;
-  for (const RobotProvenance& robot : provenance.robots) {
+  for (const RobotProvenance& robot : session.provenance.robots) {
     toml::table entry{{"name", robot.name}};
     if (!robot.failure.empty()) {
       entry.insert("failed", robot.failure);
@@ -95,12 +103,15 @@ toml::array mapping_of(const Provenance& provenance) {
       entry.insert("lidar", robot.lidar);
       entry.insert("scans", static_cast<std::int64_t>(robot.scans));
     }
+    for (const auto& map : session.maps)
+      if (robot.is_of_map(map->name)) insert_share(entry, "unconfirmed", mean_of_judged(map->unconfirmed));
     mapping.push_back(std::move(entry));
   }
   return mapping;
 }
 
-void insert_provenance(const Provenance& provenance, toml::table& table) {
+void insert_provenance(const Session& session, toml::table& table) {
+  const Provenance& provenance = session.provenance;
   table.insert("command", provenance.command);
   if (!provenance.earlier_commands.empty())
     table.insert("earlier_commands", array_of(provenance.earlier_commands));
@@ -109,7 +120,7 @@ void insert_provenance(const Provenance& provenance, toml::table& table) {
   table.insert("profile", provenance.profile);
   table.insert("settings", array_of(provenance.settings));
   table.insert("seed", static_cast<std::int64_t>(provenance.seed));
-  table.insert("mapping", mapping_of(provenance));
+  table.insert("mapping", mapping_of(session));
 }
 
 void insert_solution(const Session& session, toml::table& table) {
@@ -261,6 +272,7 @@ SavedMerge merge_in(const toml::table& table) {
   check.reason = table["reason"].value_or(std::string());
   check.refused_kind = refusal_kind(table["refused_kind"].value_or(std::string()));
   if (const toml::table* advice = table["where_to_drive"].as_table()) check.advice = advice_in(*advice);
+  check.unconfirmed = {table["unconfirmed_a"].value<double>(), table["unconfirmed_b"].value<double>()};
   if (const toml::array* hypotheses = table["hypotheses"].as_array())
     for (const toml::node& node : *hypotheses)
       if (const toml::table* h = node.as_table()) check.hypotheses.push_back(hypothesis_in(*h));
@@ -343,7 +355,7 @@ std::vector<SavedMerge> merges_of_pairs(const std::vector<std::string>& robots, 
 std::string session_toml(const Session& session) {
   toml::table table;
   table.insert("version", std::string(version()));
-  insert_provenance(session.provenance, table);
+  insert_provenance(session, table);
   insert_solution(session, table);
   insert_merges(session, table);
   std::ostringstream text;

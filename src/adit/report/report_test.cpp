@@ -10,6 +10,9 @@
 #include "adit/report/html_report.hpp"
 #include "adit/report/markup.hpp"
 #include "adit/report/metrics_json.hpp"
+#include "adit/report/palette.hpp"
+#include "adit/report/png.hpp"
+#include "adit/report/rate_plot.hpp"
 #include "adit/report/reliability_plot.hpp"
 #include "adit/report/text_tables.hpp"
 #include "support/made_up_study.hpp"
@@ -153,6 +156,41 @@ TEST(ReliabilityPlot, EachCurveIsALineAndIsNamed) {
   EXPECT_EQ(occurrences(svg, "stroke-linejoin"), 2U);
   EXPECT_EQ(occurrences(svg, ">loops<"), 1U);
   EXPECT_NE(plot_reliability({}).find("</svg>"), std::string::npos);
+}
+
+constexpr const char* kRateLine = "fill=\"none\" stroke-linejoin";
+
+TEST(RatePlot, EachCurveIsALineAndTheRateInUseIsMarked) {
+  RateFigure figure;
+  figure.title = "Claimed & observed";
+  figure.note = "of 94";
+  figure.curves = {{"limit", {{1.0, 0.2}, {0.01, 0.2}, {0.01, 0.1}, {1e-5, 0.1}}, kInk, Dash::dashes},
+                   {"false ones", {{1.0, 0.1}, {0.01, 0.1}}, kWall},
+                   {"none", {}, kWall}};
+  figure.rate_in_use = 0.002;
+  const std::string svg = plot_rates(figure);
+  EXPECT_EQ(occurrences(svg, kRateLine), 2U);
+  for (const char* text : {">limit<", ">false ones<", ">claimed = observed<", ">error rate in use: 0.002<",
+                           ">Claimed &amp; observed<", ">of 94<", ">1e-05<"})
+    EXPECT_EQ(occurrences(svg, text), text == std::string(">1e-05<") ? 2U : 1U) << text;
+  EXPECT_EQ(svg.find(">none<"), std::string::npos);
+  EXPECT_EQ(svg, plot_rates(figure));
+  EXPECT_TRUE(png_from_svg(svg, 400)) << png_from_svg(svg, 400).error().message;
+  figure.rate_in_use = 1e-7;
+  EXPECT_EQ(plot_rates(figure).find("in use"), std::string::npos) << "the axis does not have it";
+}
+
+TEST(RatePlot, DrawsWhatLacksItsDataAndNothingThatALogarithmDoesNotHave) {
+  RateFigure figure;
+  figure.absent = "no false ones";
+  const std::string svg = plot_rates(figure);
+  EXPECT_EQ(occurrences(svg, kRateLine), 0U);
+  EXPECT_EQ(occurrences(svg, ">no false ones<"), 1U);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  figure.curves = {{"beyond", {{1e-9, 1e-9}, {2.0, 2.0}}, kInk}};
+  EXPECT_EQ(occurrences(plot_rates(figure), kRateLine), 1U) << "at the ends of the axes";
+  figure.curves = {{"none", {{1.0, 0.0}, {0.5, 0.0}}, kInk}};
+  EXPECT_THROW((void)plot_rates(figure), ContractViolation);
 }
 
 TEST(HtmlReport, AnEmptyStudyIsAPageToo) {

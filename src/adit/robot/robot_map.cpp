@@ -56,6 +56,17 @@ RobotMap without_tunnel_keyframes(const RobotMap& map) {
 
 }  // namespace
 
+std::optional<double> mean_of_judged(std::span<const std::optional<float>> shares) {
+  double sum = 0.0;
+  std::size_t num = 0;
+  for (const std::optional<float>& share : shares) {
+    if (!share) continue;
+    sum += *share;
+    ++num;
+  }
+  return num == 0 ? std::nullopt : std::optional(sum / static_cast<double>(num));
+}
+
 std::string_view to_string(KeyframeSelection selection) {
   return std::ranges::find(kSelections, selection, &decltype(kSelections)::value_type::first)->second;
 }

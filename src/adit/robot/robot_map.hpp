@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,7 +39,8 @@ struct RobotMap {
   std::vector<TunnelVerdict> tunnel;  ///< Tunnel-like, too, where a cloud has too few points for a box.
   std::vector<bool> searchable;       ///< Takes part in loop search.
   /// Share of the scan's returns that nothing confirmed (dust, drops, what moves); they are not in the cloud.
-  std::vector<float> unconfirmed;
+  /// None where the scan was too thin to be judged (ScanView::is_dense).
+  std::vector<std::optional<float>> unconfirmed;
   Trajectory odometry;             ///< T_odom_base of every scan.
   std::vector<SlipStretch> slips;  ///< In the order of time, none touching the next.
   /// Of every scan that was registered and whose motion had been predicted with a covariance: the innovation
@@ -46,6 +49,9 @@ struct RobotMap {
   int num_degenerate = 0;  ///< Odometry steps with a direction that the scan did not fix.
   int num_refused = 0;     ///< Scans with too few points, or that diverged.
 };
+
+/// The mean share of the scans that were judged (RobotMap::unconfirmed); none where none was.
+[[nodiscard]] std::optional<double> mean_of_judged(std::span<const std::optional<float>> shares);
 
 /// Which keyframes take part in the graph and in the loop search.
 enum class KeyframeSelection {

@@ -135,5 +135,12 @@ TEST(RobotMap, SelectionsAreReadFromTheirNames) {
   EXPECT_NE(keyframe_selection("tunnel").error().message.find("tunnel_filter_keep"), std::string::npos);
 }
 
+TEST(RobotMap, TheMeanShareIsThatOfScansThatWereJudged) {
+  const std::vector<std::optional<float>> shares = {0.25F, std::nullopt, 0.75F, 0.5F};
+  EXPECT_EQ(mean_of_judged(shares), 0.5);
+  EXPECT_FALSE(mean_of_judged(std::vector<std::optional<float>>(3)));
+  EXPECT_FALSE(mean_of_judged({}));
+}
+
 }  // namespace
 }  // namespace adit

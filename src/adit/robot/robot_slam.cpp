@@ -138,8 +138,11 @@ void RobotSlam::describe_keyframe(std::size_t k, const Look& look) {
   // search.
   map_.tunnel[k] =
       tunnel_filter(thinned, config_.tunnel_filter).value_or(TunnelVerdict{Vector3::Zero(), true});
-  const double num = static_cast<double>(std::max<std::size_t>(look.num_returns, 1));
-  map_.unconfirmed[k] = static_cast<float>(1.0 - static_cast<double>(look.cloud.size()) / num);
+  // That nothing left a thin scan does not make it a clean one.
+  map_.unconfirmed[k].reset();
+  if (look.view.is_dense())
+    map_.unconfirmed[k] = static_cast<float>(1.0 - static_cast<double>(look.cloud.size()) /
+                                                       static_cast<double>(look.num_returns));
   map_.keyframes[k].cloud = std::make_shared<const PointCloud>(std::move(thinned));
 }
 

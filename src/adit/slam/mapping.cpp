@@ -48,9 +48,7 @@ constexpr double kNotableShare = 0.03;
 
 /// A note where a robot's scans are not as good as they should be.
 void note_quality(const RobotMap& map, std::vector<std::string>& notes) {
-  double sum = 0.0;
-  for (const float share : map.unconfirmed) sum += share;
-  const double mean = sum / static_cast<double>(std::max<std::size_t>(map.unconfirmed.size(), 1));
+  const double mean = mean_of_judged(map.unconfirmed).value_or(0.0);
   if (mean < kNotableShare) return;
   notes.push_back(
       format("{}: {:.0f} % of the LiDAR's returns were confirmed by no other and are left out of the map, as "

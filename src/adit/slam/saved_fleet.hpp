@@ -33,7 +33,7 @@ Result<> write_fleet(const std::filesystem::path& dir,
                      const std::vector<std::shared_ptr<const RobotMap>>& maps,
                      const std::vector<MessageBody>& findings);
 
-/// Reads a session directory. Findings that are damaged, of other maps or of another version of the protocol
+/// Reads a session directory. Findings that are damaged, of other maps or of a protocol that is not read
 /// are left out, with a note: the pairs are then tested anew. Fails, naming the file, where a map is missing
 /// (older sessions have none) or damaged.
 [[nodiscard]] Result<SavedFleet> read_fleet(const std::filesystem::path& dir);

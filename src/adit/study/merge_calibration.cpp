@@ -13,6 +13,8 @@
 #include "adit/core/progress.hpp"
 #include "adit/evaluation/loop_stats.hpp"
 #include "adit/evaluation/statistics.hpp"
+#include "adit/report/palette.hpp"
+#include "adit/report/rate_plot.hpp"
 #include "adit/slam/meeting.hpp"
 
 namespace adit {
@@ -165,6 +167,24 @@ Table bins_table(const std::vector<JudgedHypothesis>& all, double needed) {
   return table;
 }
 
+/// The evidence that joins maps, the same for all hypotheses of a study.
+double needed_by(const std::vector<JudgedHypothesis>& hypotheses) {
+  return hypotheses.empty() ? -std::log(EvidenceModel{}.error_rate) : hypotheses.front().needed;
+}
+
+/// Both ends of each step that has a value above 0, which no logarithmic axis shows.
+template <class Value>
+std::vector<Eigen::Vector2d> staircase(const std::vector<CalibrationStep>& steps, const Value& value) {
+  std::vector<Eigen::Vector2d> points;
+  for (const CalibrationStep& step : steps) {
+    const double height = value(step);
+    if (!(height > 0.0)) continue;
+    points.emplace_back(step.from, height);
+    points.emplace_back(step.to, height);
+  }
+  return points;
+}
+
 }  // namespace
 
 Result<std::vector<JudgedHypothesis>> hypotheses_within(const CalibrationStudy& study,
@@ -224,9 +244,51 @@ Result<std::vector<JudgedHypothesis>> hypotheses_between(const CalibrationStudy&
 }
 
 std::vector<Table> calibration_tables(const std::vector<JudgedHypothesis>& hypotheses) {
-  const double needed =
-      hypotheses.empty() ? -std::log(EvidenceModel{}.error_rate) : hypotheses.front().needed;
+  const double needed = needed_by(hypotheses);
   return {rates_table(hypotheses, needed), bins_table(hypotheses, needed)};
+}
+
+double CalibrationStep::share() const { return static_cast<double>(num_reached) / static_cast<double>(num); }
+
+double CalibrationStep::upper_limit() const { return share_upper_limit(num_reached, num); }
+
+std::vector<CalibrationStep> calibration_steps(const std::vector<JudgedHypothesis>& hypotheses,
+                                               HypothesisTruth truth) {
+  std::size_t num = 0;
+  std::vector<double> reached;  // Evidence, ascending.
+  for (const JudgedHypothesis& h : hypotheses) {
+    if (h.truth != truth) continue;
+    ++num;
+    if (reaches(h, 0.0)) reached.push_back(h.evidence);
+  }
+  std::ranges::sort(reached);
+  std::vector<CalibrationStep> steps;
+  auto next = reached.begin();
+  for (double from = 1.0; num > 0 && from > kLeastRate; from = steps.back().to) {
+    const auto left = static_cast<std::size_t>(reached.end() - next);
+    const double to = left == 0 ? kLeastRate : std::max(std::exp(-*next), kLeastRate);
+    steps.push_back({from, to, left, num});
+    if (left > 0) next = std::upper_bound(next, reached.end(), *next);
+  }
+  return steps;
+}
+
+std::string calibration_plot(const std::vector<JudgedHypothesis>& hypotheses) {
+  const std::vector<CalibrationStep> wrong = calibration_steps(hypotheses, HypothesisTruth::wrong);
+  const std::vector<CalibrationStep> right = calibration_steps(hypotheses, HypothesisTruth::right);
+  const auto num_of = [](const auto& steps) { return steps.empty() ? std::size_t{0} : steps.front().num; };
+  const auto share = [](const CalibrationStep& step) { return step.share(); };
+  const auto limit = [](const CalibrationStep& step) { return step.upper_limit(); };
+  RateFigure figure;
+  figure.title = "Wrong acceptance, claimed and observed";
+  figure.note = format("{} false and {} true hypotheses; limits treat hypotheses as independent",
+                       num_of(wrong), num_of(right));
+  figure.curves = {{"true, observed", staircase(right, share), method_color(1)},
+                   {"false, upper limit (95 %)", staircase(wrong, limit), method_color(0), Dash::dashes},
+                   {"false, observed", staircase(wrong, share), method_color(0)}};
+  figure.rate_in_use = std::exp(-needed_by(hypotheses));
+  if (wrong.empty()) figure.absent = "no false hypotheses";
+  return plot_rates(figure);
 }
 
 }  // namespace adit

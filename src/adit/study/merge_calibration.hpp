@@ -5,6 +5,7 @@
 /// evidence claims. Robots of different worlds never met: all that aligns their maps is false.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -54,5 +55,33 @@ struct CalibrationStudy {
 [[nodiscard]] std::vector<Table> calibration_tables(const std::vector<JudgedHypothesis>& hypotheses);
 /// The hypotheses for programs.
 [[nodiscard]] std::string calibration_json(const std::vector<JudgedHypothesis>& hypotheses);
+/// Reads what `calibration_json` wrote. Fails on other content.
+[[nodiscard]] Result<std::vector<JudgedHypothesis>> read_calibration(const std::filesystem::path& file);
+/// Those of several such files, in the order of the files. Fails, naming the file, where it has hypotheses
+/// about two robots that one before it has, too, which would count twice, or needed other evidence.
+[[nodiscard]] Result<std::vector<JudgedHypothesis>> joined_calibrations(
+    const std::vector<std::string>& files);
+
+/// Between two claimed rates the same hypotheses reach the evidence, -log(claimed rate).
+struct CalibrationStep {
+  double from = 1.0;            ///< Claimed rate at which the step begins; only the first one includes it.
+  double to = 1.0;              ///< Claimed rate at which it ends, and which it includes; at most `from`.
+  std::size_t num_reached = 0;  ///< Hypotheses, not refuted, with the evidence or more.
+  std::size_t num = 1;          ///< All of them; at least one.
+
+  /// Observed, 0 to 1.
+  [[nodiscard]] double share() const;
+  /// Of the share, as `share_upper_limit` has it at 95 %: above it but where all reach the evidence.
+  [[nodiscard]] double upper_limit() const;
+};
+/// How many hypotheses of that truth reach an evidence, from a claimed rate of 1 down to 1e-5, where
+/// figures of rates end (kLeastRate). None
+/// without such hypotheses.
+[[nodiscard]] std::vector<CalibrationStep> calibration_steps(const std::vector<JudgedHypothesis>& hypotheses,
+                                                             HypothesisTruth truth);
+/// Claimed against observed wrong acceptance, an SVG document: the share of false hypotheses that reach an
+/// evidence, which ends where none does, its upper limit (95 %) and the share of true ones, over the rate
+/// that the evidence claims. Without false hypotheses it says so.
+[[nodiscard]] std::string calibration_plot(const std::vector<JudgedHypothesis>& hypotheses);
 
 }  // namespace adit

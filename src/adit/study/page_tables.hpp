@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -11,9 +12,17 @@
 
 namespace adit {
 
+/// A figure that a page shows below its tables.
+struct PageFigure {
+  std::string name;   ///< Of the file, "merge_calibration.svg": in the folder figures/ beside the page.
+  std::string title;  ///< One line of plain text without brackets, shown where the figure is not.
+  std::string svg;    ///< The whole document.
+};
+
 /// Puts the tables between the lines that mark `section` in a Markdown page (`with_section`); the rest of the
-/// page stays. Fails where the page cannot be read or written, or lacks the marks.
+/// page stays. Figures are written first. Fails where the page cannot be read or written, or lacks the marks,
+/// and then writes nothing, and where a figure cannot be written.
 Result<> write_tables(const std::filesystem::path& page, std::string_view section,
-                      const std::vector<Table>& tables);
+                      const std::vector<Table>& tables, const std::vector<PageFigure>& figures = {});
 
 }  // namespace adit

@@ -52,6 +52,21 @@ TEST(WriteTables, APageWithoutTheMarksStaysAsItIs) {
   }
 }
 
+TEST(WriteTables, FiguresLieBesideThePageAndBelowTheTables) {
+  const test::TemporaryFolder folder;
+  put_file(folder / "page.md", kBegin + kEnd);
+  const std::vector<PageFigure> figures = {{"rates.svg", "Rates", "<svg/>"}};
+  ASSERT_TRUE(write_tables(folder / "page.md", "merging", {table("First", "3")}, figures));
+  const std::string page = get_file(folder / "page.md");
+  EXPECT_LT(page.find("| zab | 3 |"), page.find("\n![Rates](figures/rates.svg)\n")) << page;
+  EXPECT_EQ(get_file(folder / "figures/rates.svg"), "<svg/>");
+  ASSERT_TRUE(write_tables(folder / "page.md", "merging", {table("First", "3")}, figures));
+  EXPECT_EQ(get_file(folder / "page.md"), page);
+  std::filesystem::remove_all(folder / "figures");
+  EXPECT_FALSE(write_tables(folder / "page.md", "other", {}, figures));
+  EXPECT_FALSE(std::filesystem::exists(folder / "figures")) << "a page without the marks takes none";
+}
+
 TEST(WriteTables, APageThatIsNotThereIsNamedAndNotMade) {
   const test::TemporaryFolder folder;
   EXPECT_ERROR(write_tables(folder / "away.md", "merging", {}), "away.md");

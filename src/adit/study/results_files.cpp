@@ -1,7 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
 // The results of studies on disk.
+#include <algorithm>
+#include <array>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string_view>
 
 #include "adit/core/format.hpp"
 #include "adit/core/refusal_kind.hpp"
@@ -18,7 +23,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kMergeRunsVersion = 4;  // of results.json
+constexpr int kMergeRunsVersion = 4;    // of results.json
+constexpr int kCalibrationVersion = 1;  // of calibration.json
+
+/// As calibration.json spells them, in the order of the values.
+constexpr std::array<std::string_view, 3> kHypothesisTruths{"right", "near", "wrong"};
 
 Json json_of(const MergePair& pair) {
   return {{"robots", pair.robots},
@@ -138,6 +147,55 @@ MergeRun run_of(const Json& json) {
   return run;
 }
 
+Json json_of(const JudgedHypothesis& h) {
+  return {{"robots", h.robots},
+          {"truth", kHypothesisTruths[static_cast<std::size_t>(h.truth)]},
+          {"refuted", h.refuted},
+          {"accepted", h.accepted},
+          {"evidence", h.evidence},
+          {"of_walls", h.walls},
+          {"needed", h.needed},
+          {"compared_m", h.counts.compared_m},
+          {"distinctive", h.counts.num_distinctive},
+          {"changes", h.counts.num_changes},
+          {"things", h.counts.num_things},
+          {"wall_patches", h.counts.num_wall_patches},
+          {"looked_for_again", h.counts.num_looked_for},
+          {"found_again", h.counts.num_found_again},
+          {"not_found_again", h.counts.num_not_found},
+          {"equal_signs", h.counts.equal_signs},
+          {"equal_signs_sigma", h.counts.equal_signs_sigma}};
+}
+
+/// Throws on an unknown one.
+HypothesisTruth hypothesis_truth(const std::string& name) {
+  const auto found = std::ranges::find(kHypothesisTruths, name);
+  if (found == kHypothesisTruths.end()) throw std::runtime_error("unknown truth " + name);
+  return static_cast<HypothesisTruth>(found - kHypothesisTruths.begin());
+}
+
+JudgedHypothesis judged_of(const Json& json) {
+  JudgedHypothesis h;
+  get(json, "robots", h.robots);
+  h.truth = hypothesis_truth(json.at("truth").get<std::string>());
+  get(json, "refuted", h.refuted);
+  get(json, "accepted", h.accepted);
+  get(json, "evidence", h.evidence);
+  get(json, "of_walls", h.walls);
+  get(json, "needed", h.needed);
+  get(json, "compared_m", h.counts.compared_m);
+  get(json, "distinctive", h.counts.num_distinctive);
+  get(json, "changes", h.counts.num_changes);
+  get(json, "things", h.counts.num_things);
+  get(json, "wall_patches", h.counts.num_wall_patches);
+  get(json, "looked_for_again", h.counts.num_looked_for);
+  get(json, "found_again", h.counts.num_found_again);
+  get(json, "not_found_again", h.counts.num_not_found);
+  get(json, "equal_signs", h.counts.equal_signs);
+  get(json, "equal_signs_sigma", h.counts.equal_signs_sigma);
+  return h;
+}
+
 Json json_of(const UncertaintyRow& row) {
   const Calibration& c = row.calibration;
   Json json = {{"source", row.source}, {"count", c.count()}, {"without_covariance", c.num_unusable()}};
@@ -219,27 +277,45 @@ std::string json_of(const std::vector<IncrementalRun>& runs) {
 }
 
 std::string calibration_json(const std::vector<JudgedHypothesis>& hypotheses) {
-  constexpr std::array kTruths{"right", "near", "wrong"};
   Json all = Json::array();
-  for (const JudgedHypothesis& h : hypotheses)
-    all.push_back({{"robots", h.robots},
-                   {"truth", kTruths[static_cast<std::size_t>(h.truth)]},
-                   {"refuted", h.refuted},
-                   {"accepted", h.accepted},
-                   {"evidence", h.evidence},
-                   {"of_walls", h.walls},
-                   {"needed", h.needed},
-                   {"compared_m", h.counts.compared_m},
-                   {"distinctive", h.counts.num_distinctive},
-                   {"changes", h.counts.num_changes},
-                   {"things", h.counts.num_things},
-                   {"wall_patches", h.counts.num_wall_patches},
-                   {"looked_for_again", h.counts.num_looked_for},
-                   {"found_again", h.counts.num_found_again},
-                   {"not_found_again", h.counts.num_not_found},
-                   {"equal_signs", h.counts.equal_signs},
-                   {"equal_signs_sigma", h.counts.equal_signs_sigma}});
-  return Json{{"version", 1}, {"hypotheses", all}}.dump(1) + "\n";
+  for (const JudgedHypothesis& h : hypotheses) all.push_back(json_of(h));
+  return Json{{"version", kCalibrationVersion}, {"hypotheses", all}}.dump(1) + "\n";
+}
+
+Result<std::vector<JudgedHypothesis>> read_calibration(const std::filesystem::path& file) {
+  const Result<std::string> bytes = read_bytes(file);
+  if (!bytes) return tl::unexpected(bytes.error());
+  const auto refused =
+      fail(file.string() + ": no hypotheses of this version; give calibration.json of merge-calibration");
+  try {
+    const Json content = Json::parse(*bytes);
+    if (content.at("version") != kCalibrationVersion) return refused;
+    std::vector<JudgedHypothesis> all;
+    for (const Json& hypothesis : content.at("hypotheses")) all.push_back(judged_of(hypothesis));
+    return all;
+  } catch (const std::exception&) {
+    return refused;
+  }
+}
+
+Result<std::vector<JudgedHypothesis>> joined_calibrations(const std::vector<std::string>& files) {
+  std::vector<JudgedHypothesis> all;
+  std::map<std::string, std::string> file_of;  // By the robots.
+  for (const std::string& file : files) {
+    const Result<std::vector<JudgedHypothesis>> more = read_calibration(file);
+    if (!more) return tl::unexpected(more.error());
+    for (const JudgedHypothesis& h : *more)
+      if (const auto known = file_of.find(h.robots); known != file_of.end())
+        return fail(format("{}: {} has hypotheses about {}, too, and they would count twice; leave one out",
+                           file, known->second, h.robots));
+    if (!all.empty() && !more->empty() && more->front().needed != all.front().needed)
+      return fail(format(
+          "{}: {:.2f} of evidence was needed, {:.2f} in {}; join runs of one version and configuration", file,
+          more->front().needed, all.front().needed, file_of.at(all.front().robots)));
+    for (const JudgedHypothesis& h : *more) file_of.emplace(h.robots, file);
+    all.insert(all.end(), more->begin(), more->end());
+  }
+  return all;
 }
 
 }  // namespace adit

@@ -154,6 +154,7 @@ void get_intensities(Reader& in, Clouds::Cloud& cloud) {
 void put(Writer& out, const Clouds::Cloud& cloud) {
   out.scalar(cloud.index);
   put(out, cloud.viewpoint);
+  put_share(out, cloud.unconfirmed);
   put_within_reach(out, cloud.points);
   put_within_reach(out, cloud.beside);
   put_intensities(out, cloud);
@@ -161,6 +162,7 @@ void put(Writer& out, const Clouds::Cloud& cloud) {
 void get(Reader& in, Clouds::Cloud& cloud) {
   cloud.index = in.scalar<std::uint32_t>();
   get(in, cloud.viewpoint);
+  get_share(in, cloud.unconfirmed);
   in.vector(cloud.points);
   in.vector(cloud.beside);
   get_intensities(in, cloud);
@@ -305,15 +307,16 @@ std::uint64_t checksum(std::span<const std::byte> bytes) {
 Result<Message> decode(std::span<const std::byte> bytes) {
   if (bytes.empty()) return fail("message without bytes");
   const auto version = static_cast<std::uint8_t>(bytes.front());
-  if (version != kProtocolVersion) {
-    return fail(format("message of protocol version {}, this adit speaks {}", version, kProtocolVersion));
+  if (version < kOldestProtocolVersion || version > kProtocolVersion) {
+    return fail(format("message of protocol version {}, this adit reads {} to {}", version,
+                       kOldestProtocolVersion, kProtocolVersion));
   }
   constexpr std::size_t kTail = sizeof(std::uint64_t);
   const std::span<const std::byte> content = bytes.first(bytes.size() - std::min(bytes.size(), kTail));
   if (content.empty() || wire::Reader(bytes.last(kTail)).scalar<std::uint64_t>() != checksum(content)) {
     return fail(format("message of {} bytes is cut or damaged: its checksum does not fit", bytes.size()));
   }
-  wire::Reader in(content.subspan(1));
+  wire::Reader in(content.subspan(1), version);
   Message message;
   message.from.value = in.scalar<std::uint8_t>();
   message.to.value = in.scalar<std::uint8_t>();

@@ -10,10 +10,13 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "adit/fleet/sync/protocol.hpp"
 
 namespace adit::wire {
 
@@ -45,8 +48,11 @@ class Writer {
 /// Reads until the bytes end; from then on every value is zero and `ok` is false.
 class Reader {
  public:
-  /// `bytes` must outlive the reader.
-  explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  /// `bytes` must outlive the reader. `version`: of the protocol that they follow.
+  explicit Reader(std::span<const std::byte> bytes, std::uint8_t version = kProtocolVersion)
+      : bytes_(bytes), version_(version) {}
+  /// That of the protocol.
+  [[nodiscard]] std::uint8_t version() const { return version_; }
   /// The next number or enumerator; enumerators are not checked.
   template <class T>
   T scalar() {
@@ -79,6 +85,7 @@ class Reader {
 
  private:
   std::span<const std::byte> bytes_;
+  std::uint8_t version_;
   std::size_t at_ = 0;
   bool ok_ = true;
 };
@@ -92,6 +99,22 @@ inline void put(Writer& out, const std::string& text) {
 inline void get(Reader& in, std::string& text) {
   const auto size = in.scalar<std::uint32_t>();
   for (std::uint32_t i = 0; i < size && in.ok(); ++i) text.push_back(in.scalar<char>());
+}
+///@}
+
+/// A share from 0 to 1, behind whether there is one; messages of older versions have neither.
+///@{
+template <class Share>
+void put_share(Writer& out, const std::optional<Share>& share) {
+  out.scalar(static_cast<std::uint8_t>(share ? 1 : 0));
+  if (share) out.scalar(*share);
+}
+template <class Share>
+void get_share(Reader& in, std::optional<Share>& share) {
+  constexpr std::uint8_t kFirstWithShares = 12;
+  if (in.version() < kFirstWithShares || in.scalar<std::uint8_t>() == 0) return;
+  share = in.scalar<Share>();
+  if (!(*share >= Share{0} && *share <= Share{1})) in.refuse();
 }
 ///@}
 

@@ -100,6 +100,8 @@ void put(Writer& out, const MergeCheck& check) {
   out.scalar(check.refused_kind);
   out.scalar(static_cast<std::uint8_t>(check.advice ? 1 : 0));
   if (check.advice) put(out, *check.advice);
+  put_share(out, check.unconfirmed.a);
+  put_share(out, check.unconfirmed.b);
 }
 void get(Reader& in, MergeCheck& check) {
   check.a.value = in.scalar<std::uint8_t>();
@@ -115,6 +117,8 @@ void get(Reader& in, MergeCheck& check) {
   check.refused_kind = in.scalar<RefusalKind>();
   if (check.refused_kind > RefusalKind::vetoed) in.refuse();
   if (in.scalar<std::uint8_t>() != 0) get(in, check.advice.emplace());
+  get_share(in, check.unconfirmed.a);
+  get_share(in, check.unconfirmed.b);
   if (!std::isfinite(check.evidence) || !std::isfinite(check.needed) || check.num_passed > check.num_checked)
     in.refuse();
 }

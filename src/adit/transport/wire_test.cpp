@@ -6,8 +6,10 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <variant>
 
+#include "adit/core/format.hpp"
 #include "adit/core/rng.hpp"
 #include "support/wire.hpp"
 
@@ -41,6 +43,7 @@ MergeCheck a_check() {
   check.hypotheses[1].counts = {11, 3, 70001, 456, 8, 5, 2, 123.5, 0.75, 0.0625};
   check.refused_kind = RefusalKind::changed_place;
   check.advice = MergeAdvice{143.5, 103.25, {51.25, -8.0, 0.5}, 5.125, 4.0};
+  check.unconfirmed = {0.0625, std::nullopt};
   return check;
 }
 
@@ -58,7 +61,8 @@ std::vector<Message> one_of_each() {
                     {0.5F, 0.0F, 0.9F},
                     {Eigen::Vector3f(1.0F, -2.0F, 3.0F), Eigen::Vector3f(0.0025F, 160.0F, -160.0F)},
                     {Eigen::Vector3f(-4.0F, 5.0F, 6.0F)},
-                    {12.5F, 0.0F}}},
+                    {12.5F, 0.0F},
+                    0.21875F}},
                   CloudKind::submap}},
           {{0}, {1}, Loops{{0}, 3, {a_loop()}}},
           {{0}, {2}, MergeChecks{{1}, 4, {a_check()}}}};
@@ -127,6 +131,8 @@ TEST(Wire, DecisionsTravelExactly) {
   EXPECT_EQ(check.advice->from, Vector3(51.25, -8.0, 0.5));
   EXPECT_EQ(check.advice->gain, 5.125);
   EXPECT_EQ(check.advice->missing, 4.0);
+  EXPECT_EQ(check.unconfirmed.a, 0.0625);
+  EXPECT_FALSE(check.unconfirmed.b);
 }
 
 TEST(Wire, DecisionsThatCannotBeAreRefused) {
@@ -150,6 +156,8 @@ TEST(Wire, DecisionsThatCannotBeAreRefused) {
       [&](MergeCheck& c) { c.advice->from_m = nan; },
       [&](MergeCheck& c) { c.advice->from.z() = nan; },
       [&](MergeCheck& c) { c.advice->gain = nan; },
+      [&](MergeCheck& c) { c.unconfirmed.a = nan; },
+      [&](MergeCheck& c) { c.unconfirmed.b = -0.5; },
       [&](MergeCheck& c) { c.hypotheses.resize(kHypothesesPerCheck + 1); }};
   for (std::size_t i = 0; i < spoilers.size(); ++i) {
     MergeCheck check = a_check();
@@ -214,6 +222,48 @@ TEST(Wire, FewerIntensitiesThanPointsAreRefused) {
   EXPECT_FALSE(decode(test::resealed(bytes)).has_value());
 }
 
+Result<Message> decoded_cloud(const std::optional<float>& unconfirmed) {
+  Clouds::Cloud cloud{1, Eigen::Vector3f::Zero(), {2, Eigen::Vector3f::Ones()}};
+  cloud.unconfirmed = unconfirmed;
+  return decode(encode({{0}, {1}, Clouds{{cloud}}}));
+}
+
+TEST(Wire, CloudsSayWhatShareOfTheirScanNothingConfirmed) {
+  for (const std::optional<float> share : {std::optional<float>(), std::optional(0.0F), std::optional(0.22F)})
+    EXPECT_EQ(std::get<Clouds>(decoded_cloud(share).value().body).clouds.at(0).unconfirmed, share);
+  EXPECT_FALSE(decoded_cloud(1.25F).has_value());
+}
+
+/// As protocol 11 had it, which lacks `num` bytes at `from`.
+std::vector<std::byte> of_protocol_11(std::vector<std::byte> bytes, std::size_t from, std::size_t num) {
+  const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(from);
+  bytes.erase(begin, begin + static_cast<std::ptrdiff_t>(num));
+  bytes[0] = std::byte{11};
+  return test::resealed(std::move(bytes));
+}
+
+// Sessions of then go on with their findings.
+TEST(Wire, AMessageOfTheVersionBeforeSaysNoShares) {
+  MergeCheck check = a_check();
+  check.unconfirmed = {};
+  const std::vector<std::byte> bytes = encode({{0}, {2}, MergeChecks{{1}, 4, {check}}});
+  constexpr std::size_t kFromEnd = 2 + 8;  // whether there is a share of a and of b; the checksum
+  const Result<Message> back = decode(of_protocol_11(bytes, bytes.size() - kFromEnd, 2));
+  ASSERT_TRUE(back.has_value()) << back.error().message;
+  const MergeCheck& read = std::get<MergeChecks>(back->body).checks.at(0);
+  EXPECT_EQ(read.reason, check.reason);
+  EXPECT_EQ(read.advice->missing, check.advice->missing);
+  EXPECT_FALSE(read.unconfirmed.a || read.unconfirmed.b);
+  EXPECT_EQ(encode(*back), bytes) << "it is passed on as what is said now";
+
+  const Clouds::Cloud cloud{1, Eigen::Vector3f::Zero(), {2, Eigen::Vector3f::Ones()}, {}, {2.0F, 3.0F}};
+  constexpr std::size_t kShare = 4 + 1 + 4 + 4 + 6;  // behind head, kind, number, index and viewpoint
+  const Result<Message> clouds = decode(of_protocol_11(encode({{0}, {1}, Clouds{{cloud}}}), kShare, 1));
+  ASSERT_TRUE(clouds.has_value()) << clouds.error().message;
+  EXPECT_EQ(std::get<Clouds>(clouds->body).clouds.at(0).intensities.size(), 2U);
+  EXPECT_FALSE(std::get<Clouds>(clouds->body).clouds.at(0).unconfirmed);
+}
+
 TEST(Wire, EveryCutIsAnError) {
   for (const Message& message : one_of_each()) {
     const std::vector<std::byte> bytes = encode(message);
@@ -267,8 +317,11 @@ TEST(Wire, ForeignVersionAndTrailingBytesAreRefused) {
   bytes.insert(bytes.end() - 8, std::byte{0});
   EXPECT_NE(decode(bytes).error().message.find("checksum"), std::string::npos);
   EXPECT_NE(decode(test::resealed(bytes)).error().message.find("more bytes"), std::string::npos);
-  bytes[0] = std::byte{99};
-  EXPECT_NE(decode(bytes).error().message.find("version 99"), std::string::npos);
+  for (const std::uint8_t version : {std::uint8_t{10}, std::uint8_t{13}, std::uint8_t{99}}) {
+    bytes[0] = std::byte{version};
+    EXPECT_NE(decode(bytes).error().message.find(format("version {}, this adit reads 11 to 12", version)),
+              std::string::npos);
+  }
 }
 
 TEST(Wire, UnknownKindIsRefused) {

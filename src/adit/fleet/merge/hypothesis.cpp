@@ -9,6 +9,7 @@
 
 #include "adit/core/picked.hpp"
 #include "adit/fleet/search/path.hpp"
+#include "adit/robot/robot_map.hpp"
 
 namespace adit {
 namespace {
@@ -120,6 +121,8 @@ void Hypothesis::add_second_look(std::size_t which, const ComparedPlace& place) 
     offsets.add(place.offsets);
     things.add(place.things);
     first = {place.difference, place.is_distinctive, {}, {}, {}, place.signs, false};
+    first.unconfirmed_own = place.unconfirmed_own;
+    first.unconfirmed_theirs = place.unconfirmed_theirs;
     plan[which] = look;
     return;
   }
@@ -231,6 +234,16 @@ std::vector<TestedPlace> Hypothesis::places_at_best() const {
                       waits_for_second_look(i) ? PlaceOutcome::distinctive : outcome(compared[i])});
   std::ranges::stable_sort(places, {}, &TestedPlace::a);
   return places;
+}
+
+UnconfirmedShares Hypothesis::unconfirmed() const {
+  std::vector<std::optional<float>> own;
+  std::vector<std::optional<float>> theirs;
+  for (const ComparedPlace& place : compared) {
+    own.push_back(place.unconfirmed_own);
+    theirs.push_back(place.unconfirmed_theirs);
+  }
+  return {mean_of_judged(own), mean_of_judged(theirs)};
 }
 
 std::vector<Hypothesis> hypotheses_of(const LoopsBetween& between, double reach_m,

@@ -42,6 +42,11 @@ struct ComparedPlace {
   bool is_explained = false;  ///< What differs was counted before, at another place, or was not seen again.
   FoundAgain found_again =
       FoundAgain::not_asked;  ///< Where registration alone puts it, where that was asked.
+  /// Share of the returns of either scan that nothing confirmed (RobotMap::unconfirmed).
+  ///@{
+  std::optional<float> unconfirmed_own = {};
+  std::optional<float> unconfirmed_theirs = {};
+  ///@}
   /// Whether the scans cannot be of one place; those with nothing in common differ.
   [[nodiscard]] bool differs() const { return !(difference <= 1.0); }
 };
@@ -127,6 +132,8 @@ struct Hypothesis {
   [[nodiscard]] std::vector<TestedPlace> places() const;
   /// The same if all second looks that are left showed that places agree, and are distinctive.
   [[nodiscard]] std::vector<TestedPlace> places_at_best() const;
+  /// Of the scans that were compared, the own ones as `a`.
+  [[nodiscard]] UnconfirmedShares unconfirmed() const;
 
  private:
   [[nodiscard]] bool waits_for_second_look(std::size_t which) const;

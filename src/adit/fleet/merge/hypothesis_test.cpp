@@ -46,6 +46,29 @@ TEST(Hypothesis, DistinctivePlacesAreThePairsThatAgreedAlongThePath) {
   EXPECT_EQ(keyframes, (std::vector<std::uint32_t>{10, 22, 30}));
 }
 
+ComparedPlace in_dust(ComparedPlace place, const std::optional<float>& own,
+                      const std::optional<float>& theirs) {
+  place.unconfirmed_own = own;
+  place.unconfirmed_theirs = theirs;
+  return place;
+}
+
+TEST(Hypothesis, UnconfirmedSharesAreThoseOfTheScansThatWereJudged) {
+  Hypothesis h;
+  EXPECT_FALSE(h.unconfirmed().a || h.unconfirmed().b);
+  h.plan.resize(3);
+  h.second_looks.resize(3);
+  h.second_looks[1] = PlannedComparison();
+  h.add(in_dust(kAgrees, 0.25F, {}));
+  h.add(in_dust(kDiffers, 0.75F, {}));
+  h.add(in_dust(kAgrees, {}, {}));
+  EXPECT_EQ(h.unconfirmed().a, 0.5);
+  EXPECT_FALSE(h.unconfirmed().b);
+  h.add_second_look(1, in_dust(kAgrees, 0.5F, 0.125F));
+  EXPECT_EQ(h.unconfirmed().a, 0.375) << "of the scans that agree, in place of those that did not";
+  EXPECT_EQ(h.unconfirmed().b, 0.125);
+}
+
 // A hypothesis of which one place differs, and what a second look at it showed.
 Hypothesis looked_again(const ComparedPlace& first, const ComparedPlace& second) {
   Hypothesis h;

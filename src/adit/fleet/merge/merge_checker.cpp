@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "adit/core/check.hpp"
+#include "adit/fleet/merge/scan_quality.hpp"
 #include "adit/fleet/search/path.hpp"
 
 namespace adit {
@@ -413,7 +414,8 @@ MergeCheck MergeChecker::verdict(RobotId a, RobotId b, const std::string& remedy
   out.needed = needed_;
   out.accepted = decision == MergeDecision::accepted;
   out.refused_kind = refused_kind(decision, order);
-  out.reason = why(decision, order);
+  if (!order.empty()) out.unconfirmed = hypotheses_[order.front()].unconfirmed();
+  out.reason = why(decision, order) + what_dust_may_have_done(out.refused_kind, out.unconfirmed);
   if (!out.accepted) out.reason += "; " + (remedy.empty() ? this->remedy(decision, order) : remedy);
   if (order.empty()) return out;
   for (const std::size_t h : std::span(order).first(std::min(order.size(), kHypothesesPerCheck)))

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string>
+
 #include "adit/fleet/merge/merge_checker.hpp"
 #include "adit/fleet/merge/merge_evidence.hpp"
 #include "support/merge_checks.hpp"
@@ -72,16 +75,19 @@ TEST(MergeRefusal, WhatMorePlacesWouldBeWorthIsWhatTheCheckWouldCount) {
 }
 
 // Structure of its own at every so many-th place, by both looks.
-MergeCheck check_of_changes(std::uint32_t every, double chance_to_go_on) {
+MergeCheck check_of_changes(std::uint32_t every, double chance_to_go_on,
+                            const std::optional<float>& own_dust = {},
+                            const std::optional<float>& their_dust = {}) {
   MergeCheckConfig config;
   config.evidence.error_rate = 0.05;  // the stretch is short
   MergeChecker checker = a_check(kTrueLoops, chance_to_go_on, config);
   const std::uint32_t first = checker.next(1).front().own % 6;
   return run(checker, [&](const PlannedComparison& asked) {
     const std::uint32_t place_number = (asked.own + 3 - first) / 6;
-    if (place_number % every != 0) return kAgrees;
-    ComparedPlace place = kHasANiche;
-    place.structures = {{20.0 * place_number, 0.0, 0.0}};
+    ComparedPlace place = place_number % every != 0 ? kAgrees : kHasANiche;
+    if (place_number % every == 0) place.structures = {{20.0 * place_number, 0.0, 0.0}};
+    place.unconfirmed_own = own_dust;
+    place.unconfirmed_theirs = their_dust;
     return place;
   });
 }
@@ -107,11 +113,13 @@ TEST(MergeRefusal, ChangesAmongPlacesThatAgreeAreNoOtherTunnel) {
 }
 
 // Walls of another relief, and all of them farther off by what an error of range may be.
-Told told_of_walls(double range_error_m) {
+Told told_of_walls(double range_error_m, const std::optional<float>& own_dust = {}) {
   return told(
       kTrueLoops, 0.5,
       [=](const PlannedComparison& asked) {
-        return test::agreeing_with_relief(asked.theirs, 0.01, range_error_m);
+        ComparedPlace place = test::agreeing_with_relief(asked.theirs, 0.01, range_error_m);
+        place.unconfirmed_own = own_dust;
+        return place;
       },
       MergeCheckConfig());
 }
@@ -123,6 +131,34 @@ TEST(MergeRefusal, WallsThatSensorsMayMoveAreNotSaidToBeOfAnotherTunnel) {
   const MergeCheck off = told_of_walls(0.03).check;
   EXPECT_EQ(off.refused_kind, RefusalKind::sensor);
   EXPECT_NE(off.reason.find("it may be the sensors"), std::string::npos) << off.reason;
+}
+
+TEST(MergeRefusal, DustIsToldWhereItMayHaveMadeTheDifferenceAndDecidesNothing) {
+  const auto tells_dust = [](const MergeCheck& check) {
+    return check.reason.find("confirmed by no second look") != std::string::npos;
+  };
+  for (const std::uint32_t every : {3U, 4U}) {  // scans differ too often, or leave too little evidence
+    const double chance_to_go_on = every == 3 ? 0.4 : 0.5;
+    const MergeCheck clear = check_of_changes(every, chance_to_go_on);
+    const MergeCheck dusty = check_of_changes(every, chance_to_go_on, 0.0625F, 0.21875F);
+    EXPECT_EQ(dusty.unconfirmed.a, 0.0625);
+    EXPECT_EQ(dusty.unconfirmed.b, 0.21875);
+    EXPECT_FALSE(clear.unconfirmed.a || clear.unconfirmed.b);
+    EXPECT_FALSE(tells_dust(clear));
+    EXPECT_NE(dusty.reason.find("; of the scans compared, 6 % and 22 % of the returns were confirmed by no "
+                                "second look"),
+              std::string::npos)
+        << dusty.reason;
+    EXPECT_NE(dusty.reason.find("when it has settled; "), std::string::npos) << dusty.reason;
+    EXPECT_EQ(dusty.refused_kind, RefusalKind::changed_place);
+    EXPECT_EQ(dusty.evidence, clear.evidence);
+    EXPECT_FALSE(tells_dust(check_of_changes(every, chance_to_go_on, 0.04F, 0.03F)));
+  }
+  EXPECT_FALSE(tells_dust(check_of_changes(1, 0.5, 0.25F, 0.25F))) << "another tunnel";
+  const MergeCheck sensor = told_of_walls(0.03, 0.25F).check;
+  EXPECT_EQ(sensor.refused_kind, RefusalKind::sensor);
+  EXPECT_NE(sensor.reason.find("25 % and an unknown share of the returns"), std::string::npos)
+      << sensor.reason;
 }
 
 }  // namespace

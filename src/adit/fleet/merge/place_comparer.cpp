@@ -167,6 +167,10 @@ std::vector<ComparedPlace> PlaceComparer::with_views(const std::vector<PlannedCo
   }
   std::vector<Fitted> found =
       compare_views(asked, [&](std::size_t i) -> const SeenSurface& { return *theirs[i]; }, {});
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    found[i].place.unconfirmed_own = map_.unconfirmed[asked[i].own];
+    found[i].place.unconfirmed_theirs = views.at(asked[i].theirs).unconfirmed;
+  }
   const std::vector<std::size_t> with_walls = those_with_walls(asked, found);
   discernment_.scans().prepare(own_keyframes(picked(asked, with_walls)));
   parallel_for_each(with_walls.size(), [&](std::size_t k) {
@@ -189,6 +193,10 @@ std::vector<ComparedPlace> PlaceComparer::within_own_map(const std::vector<Plann
   }
   std::vector<Fitted> found = compare_views(
       asked, [&](std::size_t i) -> const SeenSurface& { return discernment_.views().at(later[i]); }, later);
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    found[i].place.unconfirmed_own = map_.unconfirmed[asked[i].own];
+    found[i].place.unconfirmed_theirs = map_.unconfirmed[later[i]];
+  }
   const std::vector<std::size_t> with_walls = those_with_walls(asked, found);
   std::vector<std::uint32_t> both = own_keyframes(picked(asked, with_walls));
   for (const std::size_t i : with_walls) both.push_back(later[i]);

@@ -25,7 +25,8 @@ constexpr float kIntensityOfPeer = 100.0F;
 ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
                        const std::function<bool(const Eigen::Vector3f&)>& is_seen_by_peer,
                        PlaceQuestion question = PlaceQuestion::agreement, CloudKind sent = CloudKind::view) {
-  const auto own = in_a_tube(kBlock);
+  auto own = std::make_shared<RobotMap>(*in_a_tube(kBlock));
+  own->unconfirmed[kBesideTheBlock] = 0.06F;
   const auto theirs = in_a_tube(boxes_of_peer, {1});
   const AdaptiveConfig config;
   Discernment discernment(
@@ -41,6 +42,7 @@ ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
     seen.points.push_back(cloud.points[i]);
     seen.intensities.push_back(kIntensityOfPeer);
   }
+  cloud.unconfirmed = 0.22F;
   cloud.points = seen.points;
   cloud.intensities = seen.intensities;
   std::erase_if(cloud.beside, [&](const Eigen::Vector3f& p) { return !is_seen_by_peer(p); });
@@ -66,6 +68,14 @@ TEST(PlaceComparer, APlaceIsNotDistinctiveByWhatThePeersSensorCannotSee) {
   EXPECT_FALSE(place.is_distinctive) << "the smooth half of the tube looks alike five metres on";
   ASSERT_TRUE(place.signs);
   EXPECT_TRUE(place.signs->empty());
+}
+
+TEST(PlaceComparer, APlaceSaysWhatShareOfBothScansNothingConfirmed) {
+  for (const bool has_block : {true, false}) {
+    const ComparedPlace place = compared(has_block ? kBlock : std::vector<test::Box>(), everything);
+    EXPECT_EQ(place.unconfirmed_own, 0.06F);
+    EXPECT_EQ(place.unconfirmed_theirs, 0.22F);
+  }
 }
 
 TEST(PlaceComparer, WallsKnowTheIntensitiesThatThePeerSent) {

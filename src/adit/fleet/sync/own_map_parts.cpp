@@ -63,6 +63,7 @@ Clouds clouds_of(const RobotMap& map, const CloudRequest& request, const SentClo
       return voxel_centroids(submap(map, index, of), config.voxel_m).points;
     };
     Clouds::Cloud cloud{index, map.viewpoint.cast<float>(), {}};
+    cloud.unconfirmed = map.unconfirmed[index];
     if (request.kind == CloudKind::submap) {
       cloud.points = thinned(config.submap);
     } else {

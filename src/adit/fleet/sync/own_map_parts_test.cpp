@@ -60,6 +60,17 @@ TEST(OwnMapParts, AViewHasTheIntensitiesOfTheScan) {
   EXPECT_TRUE(clouds_of(map, {{60}, CloudKind::submap}, kSent).clouds.at(0).intensities.empty());
 }
 
+TEST(OwnMapParts, ACloudSaysWhatShareOfItsScanNothingConfirmed) {
+  RobotMap map = *test::in_a_tube({});
+  map.unconfirmed[60] = 0.22F;
+  map.unconfirmed[61].reset();
+  for (const CloudKind kind : {CloudKind::view, CloudKind::submap}) {
+    const Clouds sent = clouds_of(map, {{60, 61}, kind}, kSent);
+    EXPECT_EQ(sent.clouds.at(0).unconfirmed, 0.22F);
+    EXPECT_FALSE(sent.clouds.at(1).unconfirmed);
+  }
+}
+
 TEST(OwnMapParts, ASubmapIsOneCloud) {
   const auto map = test::in_a_tube({});
   const Clouds clouds = clouds_of(*map, {{60}, CloudKind::submap}, kSent);

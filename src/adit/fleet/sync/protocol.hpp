@@ -21,8 +21,11 @@
 
 namespace adit {
 
-/// In every encoded message: messages of another version are refused.
-inline constexpr std::uint8_t kProtocolVersion = 11;
+/// In every encoded message. Those of versions before the oldest are refused, and those of later ones.
+///@{
+inline constexpr std::uint8_t kProtocolVersion = 12;
+inline constexpr std::uint8_t kOldestProtocolVersion = 11;  ///< Says no unconfirmed shares; else the same.
+///@}
 /// The most that one message holds; longer lists are sent in parts.
 ///@{
 inline constexpr std::size_t kPlacesPerMessage = 64;
@@ -110,6 +113,8 @@ struct Clouds {
     /// Of the points of a view, in the unit of the sensor, to 4 % between 0.0011 and 93,000; empty: it gives
     /// none.
     std::vector<float> intensities = {};
+    /// Of the keyframe's scan (RobotMap::unconfirmed); none, too, where the sender did not say it.
+    std::optional<float> unconfirmed = {};
   };
   std::vector<Cloud> clouds;         ///< In the order of the request, without keyframes that do not exist.
   CloudKind kind = CloudKind::view;  ///< As requested.
@@ -198,6 +203,15 @@ struct MergeAdvice {
   double missing = 0.0;            ///< Evidence that a merge lacks.
 };
 
+/// Of the scans of two robots: the mean share of returns that nothing confirmed. None where no scan was
+/// judged, or nothing compared, and in what earlier versions decided.
+struct UnconfirmedShares {
+  /// From 0 to 1, of each robot's own.
+  ///@{
+  std::optional<double> a, b;
+  ///@}
+};
+
 /// The verdict on the loops between two robots: whether they may join the maps. Robot `a`, which searched,
 /// decides; where `b` is the same robot it is about places of its own map that it came back to. A later
 /// verdict replaces those before it. Evidence, numbers and loops are those of the best hypothesis.
@@ -216,6 +230,7 @@ struct MergeCheck {
   std::vector<MergeHypothesis> hypotheses{};        ///< At most kHypothesesPerCheck, the best one first.
   RefusalKind refused_kind = RefusalKind::unknown;  ///< Where it is not accepted.
   std::optional<MergeAdvice> advice = {};           ///< Where a place is known; `reason` names it.
+  UnconfirmedShares unconfirmed = {};               ///< Of the scans that were compared.
 };
 
 /// Number first, first + 1, ... of those that `author`, who need not be the sender, decided.
