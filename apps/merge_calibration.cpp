@@ -35,6 +35,11 @@ Result<> add(std::vector<JudgedHypothesis>& all, const Result<std::vector<Judged
       [&](const std::vector<JudgedHypothesis>& found) { all.insert(all.end(), found.begin(), found.end()); });
 }
 
+/// Of a list that begins anew at its end: two worlds may follow one another both ways round.
+bool is_first_time(std::size_t world, std::size_t steps_on, std::size_t num_worlds) {
+  return 2 * steps_on < num_worlds || (2 * steps_on == num_worlds && world < steps_on);
+}
+
 /// Each world by itself, and with those that follow it in the list, which begins anew at its end. After each,
 /// calibration.part.json has all so far: a run takes hours.
 Result<std::vector<JudgedHypothesis>> measure(const CalibrationStudy& study,
@@ -42,8 +47,9 @@ Result<std::vector<JudgedHypothesis>> measure(const CalibrationStudy& study,
   std::vector<JudgedHypothesis> all;
   for (std::size_t w = 0; w < worlds.size(); ++w) {
     Result<> done = add(all, hypotheses_within(study, worlds[w]));
-    for (std::size_t k = 1; done && k <= static_cast<std::size_t>(num_partners) && k < worlds.size(); ++k)
-      done = add(all, hypotheses_between(study, worlds[w], worlds[(w + k) % worlds.size()]));
+    for (std::size_t k = 1; done && k <= static_cast<std::size_t>(num_partners); ++k)
+      if (is_first_time(w, k, worlds.size()))
+        done = add(all, hypotheses_between(study, worlds[w], worlds[(w + k) % worlds.size()]));
     if (done) done = write_bytes(study.folder / kPartName, calibration_json(all));
     if (!done) return tl::unexpected(done.error());
   }
