@@ -8,6 +8,8 @@
 
 #include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
+#include "adit/fleet/merge/advised_verdict.hpp"
+#include "adit/fleet/merge/loop_check.hpp"
 #include "adit/fleet/merge/place_comparer.hpp"
 #include "adit/fleet/sync/own_map_parts.hpp"
 #include "adit/fleet/sync/parts.hpp"
@@ -22,61 +24,19 @@ bool have_same_grid(const ScanContext& a, const ScanContext& b) {
 // Keyframes lie closer together than places differ: every fourth still meets each place of the other.
 constexpr std::size_t kStrideInLargeFleets = 4;
 
-std::vector<std::uint32_t> every_nth(const std::vector<std::uint32_t>& keyframes, std::size_t stride) {
-  std::vector<std::uint32_t> out;
-  for (std::size_t i = 0; i < keyframes.size(); i += stride) out.push_back(keyframes[i]);
-  return out;
-}
-
 std::vector<MessageBody> request_of(const PeerSession& session) {
   const std::optional<CloudRequest> request = session.request();
   return request ? std::vector<MessageBody>{*request} : std::vector<MessageBody>{};
 }
 
-/// Accepted loops that registration does not leave free to slide: in tunnels of equal blocks the others would
-/// let false alignments pass (decision 0059).
-std::vector<LoopClosure> without_sliding(std::vector<LoopClosure> loops) {
-  std::erase_if(loops, [](const LoopClosure& loop) {
-    return loop.verdict != LoopVerdict::accepted || loop.is_free_to_slide();
-  });
-  return loops;
-}
-
-LoopRegistrationConfig registration_of(const AgentConfig& config) {
-  LoopRegistrationConfig out{config.registration_in_use()};
-  if (config.policy == MergePolicy::adaptive) {
-    out.one_place_m = config.adaptive.one_place_m;
-    out.upright = true;
-    out.added_noise = config.adaptive.loop_noise;
-  } else {
-    out.noise = config.loop_noise;
-  }
-  return out;
-}
-
 }  // namespace
-
-Fields fields_of(AgentConfig& c) {
-  Fields fields = {{"max_candidates", &c.max_candidates, "", 0, 1e9,
-                    "candidates that a robot registers with the peers it meets first"},
-                   {"candidates_per_peer", &c.candidates_per_peer, "", 1, 1e6,
-                    "candidates that it registers with each further peer, the most similar ones"},
-                   {"loop_translation", &c.loop_noise.translation, "m", 1e-4, 10.0,
-                    "the paper's policies: sigma of a loop's translation"},
-                   {"loop_rotation_deg", &c.loop_noise.rotation_deg, "deg", 1e-3, 90.0,
-                    "the paper's policies: sigma of a loop's rotation"}};
-  append(fields, "place", fields_of(c.place));
-  append(fields, "registration", fields_of(c.registration));
-  append(fields, "adaptive", fields_of(c.adaptive));
-  return fields;
-}
 
 Agent::Agent(std::shared_ptr<const RobotMap> map, const AgentConfig& config)
     : map_(std::move(map)),
       config_(config),
       ledger_(map_->id, graph_of(*map_), config.policy),
       features_(std::make_shared<FeatureStore>(map_, config.registration_in_use(), config.submap_in_use())),
-      registration_(features_, registration_of(config)),
+      registration_(features_, config.loop_registration()),
       search_(std::make_shared<CandidateSearch>(map_, chain_by(map_->id), config.place,
                                                 config.adaptive.search)) {}
 
@@ -211,19 +171,12 @@ Agent::Replies Agent::search_when_ready(RobotId peer) {
 }
 
 std::vector<LoopCandidate> Agent::candidates_with(RobotId peer) {
-  const SearchConfig& search = config_.adaptive.search;
-  PlaceIndexConfig place = config_.place;
-  std::size_t stride = 1;
-  if (is_adaptive()) {
-    place.max_distance = 1.0;  // ranked, not cut off
-    place.num_candidates = search.ring_keys;
-    stride = static_cast<std::size_t>(search.query_stride);
-  }
-  if (num_tried() >= static_cast<std::size_t>(config_.max_candidates))
-    stride = std::max(stride, kStrideInLargeFleets);
-  std::vector<LoopCandidate> found = most_similar_places(
-      *map_, every_nth(searchable_keyframes(*map_), stride), {peer, sessions_[peer].places()}, place,
-      is_adaptive() ? search_->lanes() : Lanes{});
+  const bool has_met_many = num_tried() >= static_cast<std::size_t>(config_.max_candidates);
+  const std::size_t stride = has_met_many ? kStrideInLargeFleets : 1;
+  const PeerPlaces theirs{peer, sessions_[peer].places()};
+  std::vector<LoopCandidate> found =
+      is_adaptive() ? search_->most_similar(theirs, stride)
+                    : most_similar_places(*map_, query_keyframes(*map_, stride), theirs, config_.place);
   std::erase_if(found, [&](const LoopCandidate& candidate) {
     return known().loops.contains({candidate.query, candidate.match});
   });
@@ -301,9 +254,10 @@ Agent::Replies Agent::begin_check(RobotId peer) {
          !sessions_[peer].exists(static_cast<std::uint32_t>(theirs.nodes.size() - 1)))
     theirs.nodes.pop_back();
   const auto earlier = known().checks.find({map_->id, peer});
-  checks_.insert_or_assign(peer,
-                           checker_of(without_sliding(loops_with(peer)), chain_by(map_->id), chain_of(theirs),
-                                      earlier == known().checks.end() ? nullptr : &earlier->second));
+  checks_.insert_or_assign(
+      peer,
+      check_of_loops(without_sliding(loops_with(peer)), chain_by(map_->id), chain_of(theirs), discernment(),
+                     config_.adaptive, earlier == known().checks.end() ? nullptr : &earlier->second));
   sessions_[peer].await_comparison_of({});  // the peer's map may have grown since a check that was broken off
   for (auto& [robot, session] : sessions_) session.forget_views();
   return go_on_checking(peer);
@@ -331,39 +285,13 @@ Agent::Replies Agent::go_on_checking(RobotId peer) {
 }
 
 Agent::Replies Agent::conclude_check(RobotId peer) {
-  const MergeChecker& checker = checks_.at(peer);
   const std::size_t num_before = ledger_.num_own_checks();
-  ledger_.add_own(with_advice(checker.verdict(map_->id, peer), checker));
+  ledger_.add_own(
+      advised_verdict(checks_.at(peer), {map_->id, peer},
+                      {known(), *search_, discernment(), config_.adaptive.merge_check.spacing_m}));
   checks_.erase(peer);
   to_check_.erase(peer);
   return ledger_.checks_since(map_->id, num_before);
-}
-
-MergeCheck Agent::with_advice(MergeCheck verdict, const MergeChecker& checker) {
-  const std::optional<UndecidedStretch> undecided = checker.undecided();
-  const bool is_nothing_shared =
-      verdict.refused_kind == RefusalKind::no_loop || verdict.refused_kind == RefusalKind::other_tunnel;
-  if (!undecided && !is_nothing_shared) return verdict;
-  const double spacing_m = config_.adaptive.merge_check.spacing_m;
-  const OdometryChain own = chain_by(verdict.a);
-  std::optional<MergeAdvice> advice;
-  if (undecided)
-    advice =
-        where_to_drive(*undecided, own, chain_by(verdict.b), spacing_m, what_own_map_knows(discernment()));
-  // Elsewhere more places bring evidence, and neither metres without a change nor a lead before a rival.
-  if (!advice && (!undecided || undecided->lacks_evidence_alone()))
-    advice = where_to_be_recognised(own, undecided ? undecided->shared : std::vector<std::uint32_t>(),
-                                    undecided ? undecided->missing : verdict.needed, spacing_m,
-                                    landmarks_of(search_->self_distances(), discernment()));
-  const std::string& name_a = known().robots.at(verdict.a).name;
-  const std::string& name_b = known().robots.at(verdict.b).name;
-  if (!advice) {
-    verdict.reason += format(", but no place was found on the path of {} that would tell", name_a);
-    return verdict;
-  }
-  verdict = checker.verdict(verdict.a, verdict.b, in_words(*advice, name_a, name_b));
-  verdict.advice = advice;
-  return verdict;
 }
 
 void Agent::find_revisits() {
@@ -385,7 +313,7 @@ void Agent::look_for_revisits() {
   }
   loops = without_sliding(std::move(loops));
   if (loops.empty()) return;
-  MergeChecker check = checker_of(loops, chain, chain);
+  MergeChecker check = check_of_loops(loops, chain, chain, discernment(), config_.adaptive);
   PlaceComparer comparer(*map_, discernment(), config_.registration_in_use());
   for (auto asked = check.next(kCloudsPerMessage); !asked.empty(); asked = check.next(kCloudsPerMessage))
     check.add(comparer.within_own_map(asked));
@@ -430,25 +358,6 @@ Discernment& Agent::discernment() {
         [search = search_] { return search->self_similarity().look_alikes(search->lanes()); }, features_,
         config_.adaptive);
   return *discernment_;
-}
-
-MergeChecker Agent::checker_of(const std::vector<LoopClosure>& loops, const OdometryChain& own,
-                               const OdometryChain& theirs, const MergeCheck* earlier) {
-  LoopsBetween between{own, theirs, {}, {}, earlier};
-  for (const LoopClosure& loop : loops) {
-    between.loops.push_back(pcm_loop_of(loop));
-    if (loop.from.robot == loop.to.robot)
-      between.known_before.push_back(
-          odometry_evidence(own, between.loops.back(), config_.adaptive.search.revisit));
-  }
-  OwnMeasurements measurements;
-  if (!loops.empty()) {  // without one nothing is compared
-    measurements.reach_m = discernment().reach_m();
-    measurements.measured = [&on_own_map = discernment()]() -> const Measured& {
-      return on_own_map.measured();
-    };
-  }
-  return {std::move(between), std::move(measurements), config_.adaptive};
 }
 
 }  // namespace adit

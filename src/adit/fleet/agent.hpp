@@ -8,45 +8,18 @@
 #include <string>
 #include <vector>
 
+#include "adit/fleet/agent_config.hpp"
 #include "adit/fleet/joint/fleet_estimate.hpp"
 #include "adit/fleet/joint/fleet_solution.hpp"
-#include "adit/fleet/merge/adaptive_config.hpp"
 #include "adit/fleet/merge/discernment.hpp"
 #include "adit/fleet/merge/loop_registration.hpp"
 #include "adit/fleet/merge/merge_checker.hpp"
 #include "adit/fleet/search/candidate_search.hpp"
 #include "adit/fleet/sync/fleet_ledger.hpp"
 #include "adit/fleet/sync/peer_session.hpp"
-#include "adit/place/place_index.hpp"
-#include "adit/registration/registration.hpp"
 #include "adit/robot/robot_map.hpp"
 
 namespace adit {
-
-/// How a robot searches for loops with itself and with others, and tests them.
-struct AgentConfig {
-  /// Not a field of its own: SlamConfig::agent derives it from the keyframe selection.
-  MergePolicy policy = MergePolicy::adaptive;
-  PlaceIndexConfig place;
-  RegistrationConfig registration;  ///< Read under MergePolicy::paper alone, like the next.
-  LoopNoise loop_noise;
-  int max_candidates = 6000;
-  int candidates_per_peer = 8;
-  AdaptiveConfig adaptive;  ///< Read under MergePolicy::adaptive alone.
-
-  /// That of the policy: `adaptive.registration`, or `registration`.
-  [[nodiscard]] const RegistrationConfig& registration_in_use() const {
-    return policy == MergePolicy::adaptive ? adaptive.registration : registration;
-  }
-  /// The paper registers single scans.
-  [[nodiscard]] SubmapConfig submap_in_use() const {
-    return policy == MergePolicy::adaptive ? adaptive.submap : SubmapConfig{.reach_m = 0.0};
-  }
-};
-/// Keys of `place`, `registration` and `adaptive` begin with these names; those of `loop_noise` are
-/// loop_translation and loop_rotation_deg. `policy` has none: it follows the keyframe policy
-/// (SlamConfig::agent).
-Fields fields_of(AgentConfig& config);
 
 /// One robot of the fleet: messages in, messages out; no thread, socket or clock. It knows what its own robot
 /// measured and what messages brought, nothing else. fleet/README.md draws what happens in which room.
@@ -154,8 +127,6 @@ class Agent {
   /// What the check asks for next, beyond what has come; or its verdict.
   Replies go_on_checking(RobotId peer);
   Replies conclude_check(RobotId peer);
-  /// The verdict of a check that is over, with where to drive if that would decide it.
-  [[nodiscard]] MergeCheck with_advice(MergeCheck verdict, const MergeChecker& checker);
 
   [[nodiscard]] Hello hello() const;
   [[nodiscard]] std::vector<Message> addressed(RobotId peer, Replies bodies) const;
@@ -167,8 +138,6 @@ class Agent {
   [[nodiscard]] std::vector<LoopClosure> loops_with(RobotId peer) const;
   [[nodiscard]] OdometryChain chain_by(RobotId robot) const;
   [[nodiscard]] Discernment& discernment();
-  [[nodiscard]] MergeChecker checker_of(const std::vector<LoopClosure>& loops, const OdometryChain& own,
-                                        const OdometryChain& theirs, const MergeCheck* earlier = nullptr);
 
   std::shared_ptr<const RobotMap> map_;
   AgentConfig config_;

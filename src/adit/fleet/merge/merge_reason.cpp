@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The adit authors
 // SPDX-License-Identifier: MIT
-/// The sentence that a merge check ends with: why maps are joined or not, and what would lead to a merge.
+#include "adit/fleet/merge/merge_reason.hpp"
+
 #include <cmath>
 
 #include "adit/core/format.hpp"
-#include "adit/fleet/merge/merge_checker.hpp"
-#include "adit/fleet/merge/merge_evidence.hpp"
+#include "adit/fleet/merge/merge_refusal.hpp"
 
 namespace adit {
 namespace {
@@ -43,19 +43,19 @@ std::string why_walls_differ(const Hypothesis& h, RefusalKind kind) {
           : what_differs(RefusalKind::changed_or_other));
 }
 
-}  // namespace
-
-std::string MergeChecker::what_is_missing(const Hypothesis& h) const {
+/// More of the same stretch, if it goes on as before.
+std::string what_is_missing(const WeighedHypotheses& hypotheses, const Hypothesis& h) {
   constexpr double kFarthestDrive = 1000.0;  // metres that it makes sense to ask for
   constexpr double kRounding = 10.0;         // metres
   const double share = static_cast<double>(h.num_distinctive()) / static_cast<double>(h.compared.size());
   std::vector<TestedPlace> places = h.places();
-  const double copies = share_of_copies_if_true(h);
-  const double wanted = evidence_of_places(places, copies) + needed_ - evidence(h);
+  const double copies = hypotheses.share_of_copies_if_true(h);
+  const double wanted =
+      hypotheses.evidence_of_places(places, copies) + hypotheses.needed() - hypotheses.evidence(h);
   double drive_m = 0.0;
-  while (drive_m <= kFarthestDrive && !(evidence_of_places(places, copies) >= wanted)) {
+  while (drive_m <= kFarthestDrive && !(hypotheses.evidence_of_places(places, copies) >= wanted)) {
     places.push_back({0, 0, PlaceOutcome::distinctive});
-    drive_m += config_.spacing_m / share;
+    drive_m += hypotheses.config().spacing_m / share;
   }
   const double metres = kRounding * std::ceil(drive_m / kRounding);
   if (!(metres <= kFarthestDrive))
@@ -63,26 +63,29 @@ std::string MergeChecker::what_is_missing(const Hypothesis& h) const {
   return format("drive the same stretch for about another {:.0f} m", metres);
 }
 
-std::string MergeChecker::why(MergeDecision decision, const std::vector<std::size_t>& best_first) const {
-  if (decision == MergeDecision::no_loops) return "no loop was accepted";
-  const Hypothesis& h = hypotheses_[best_first.front()];
+}  // namespace
+
+std::string why_in_words(const MergeJudgement& judgement) {
+  if (judgement.decision == MergeDecision::no_loops) return "no loop was accepted";
+  const WeighedHypotheses& hypotheses = judgement.hypotheses;
+  const Hypothesis& h = judgement.best();
   const std::size_t num_agreeing = h.num_agreeing();
-  switch (decision) {
+  switch (judgement.decision) {
     case MergeDecision::other_walls:
-      return why_walls_differ(h, refused_kind(decision, best_first));
+      return why_walls_differ(h, kind_of_refusal(judgement));
     case MergeDecision::scans_differ:
       return format("scans differ at {} of {} places along the stretch that {} loops align: {}",
                     h.num_differing(), h.compared.size(), h.loops.size(),
-                    what_differs(refused_kind(decision, best_first)));
+                    what_differs(kind_of_refusal(judgement)));
     case MergeDecision::nothing_distinctive:
       return format(
           "shared stretch has no along-axis constraint: {} places agree, none of which would show a "
           "displacement",
           num_agreeing);
     case MergeDecision::too_little_evidence:
-      return format("evidence {:.1f} of {:.1f}: {} of {} places agree, {} of them distinctive{}", evidence(h),
-                    needed_, num_agreeing, h.compared.size(), h.num_distinctive(),
-                    what_else(refused_kind(decision, best_first)));
+      return format("evidence {:.1f} of {:.1f}: {} of {} places agree, {} of them distinctive{}",
+                    hypotheses.evidence(h), hypotheses.needed(), num_agreeing, h.compared.size(),
+                    h.num_distinctive(), what_else(kind_of_refusal(judgement)));
     case MergeDecision::nothing_compared:
       return format(
           "nothing was compared: along the stretch that {} loops align no keyframes of both stand "
@@ -91,8 +94,8 @@ std::string MergeChecker::why(MergeDecision decision, const std::vector<std::siz
     case MergeDecision::rival:
       return format(
           "two hypotheses {:.0f} m apart along the tunnel have similar support, evidence {:.1f} and {:.1f}",
-          apart_m(best_first[0], best_first[1]), evidence_among_rivals(h),
-          evidence_among_rivals(hypotheses_[best_first[1]]));
+          hypotheses.apart_m(judgement.order[0], judgement.order[1]), hypotheses.evidence_among_rivals(h),
+          hypotheses.evidence_among_rivals(hypotheses[judgement.order[1]]));
     case MergeDecision::no_loops:
     case MergeDecision::unfinished:
     case MergeDecision::accepted:
@@ -101,28 +104,28 @@ std::string MergeChecker::why(MergeDecision decision, const std::vector<std::siz
   return format(
       "{} of {} places along the shared stretch agree, {} of them distinctive: evidence {:.1f}, needed "
       "{:.1f}",
-      num_agreeing, h.compared.size(), h.num_distinctive(), evidence(h), needed_);
+      num_agreeing, h.compared.size(), h.num_distinctive(), hypotheses.evidence(h), hypotheses.needed());
 }
 
-std::string MergeChecker::remedy(MergeDecision decision, const std::vector<std::size_t>& best_first) const {
-  switch (decision) {
+std::string remedy_in_words(const MergeJudgement& judgement) {
+  switch (judgement.decision) {
     case MergeDecision::no_loops:
       return "drive on until both robots have passed the same place, none is known yet";
     case MergeDecision::other_walls:
-      if (refused_kind(decision, best_first) == RefusalKind::sensor)
+      if (kind_of_refusal(judgement) == RefusalKind::sensor)
         return "calibrate the ranges of both sensors: driving on does not tell";
-      return what_is_missing(hypotheses_[best_first.front()]);
+      return what_is_missing(judgement.hypotheses, judgement.best());
     case MergeDecision::scans_differ:
-      return refused_kind(decision, best_first) == RefusalKind::other_tunnel
+      return kind_of_refusal(judgement) == RefusalKind::other_tunnel
                  ? kUntilItTrulyIs
                  : format("{:.0f} m more of the same stretch without a change would tell",
-                          metres_for_changes(hypotheses_[best_first.front()]));
+                          metres_for_changes(judgement.hypotheses, judgement.best()));
     case MergeDecision::nothing_distinctive:
       return "drive on until both pass a junction or a niche";
     case MergeDecision::too_little_evidence:
-      return refused_kind(decision, best_first) == RefusalKind::other_tunnel
+      return kind_of_refusal(judgement) == RefusalKind::other_tunnel
                  ? kUntilItTrulyIs
-                 : what_is_missing(hypotheses_[best_first.front()]);
+                 : what_is_missing(judgement.hypotheses, judgement.best());
     case MergeDecision::rival:
       return "drive on until both pass something that only one of them explains";
     case MergeDecision::nothing_compared:

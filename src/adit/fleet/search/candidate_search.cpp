@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "adit/core/parallel.hpp"
+#include "adit/fleet/sync/own_map_parts.hpp"
 
 namespace adit {
 
@@ -34,6 +35,13 @@ Fields fields_of(SearchConfig& c) {
   append(fields, "self_similarity", fields_of(c.self_similarity));
   append(fields, "revisit", fields_of(c.revisit));
   return fields;
+}
+
+std::vector<std::uint32_t> query_keyframes(const RobotMap& map, std::size_t stride) {
+  const std::vector<std::uint32_t> keyframes = searchable_keyframes(map);
+  std::vector<std::uint32_t> out;
+  for (std::size_t i = 0; i < keyframes.size(); i += stride) out.push_back(keyframes[i]);
+  return out;
 }
 
 std::vector<LoopCandidate> most_similar_places(const RobotMap& map, const std::vector<std::uint32_t>& queries,
@@ -73,6 +81,15 @@ const SelfSimilarity& CandidateSearch::self_similarity() {
 const std::vector<double>& CandidateSearch::self_distances() {
   if (self_distances_.empty()) self_distances_ = self_similarity().distances();
   return self_distances_;
+}
+
+std::vector<LoopCandidate> CandidateSearch::most_similar(const PeerPlaces& peer,
+                                                         std::size_t least_stride) const {
+  PlaceIndexConfig place = place_;
+  place.max_distance = 1.0;  // ranked, not cut off
+  place.num_candidates = config_.ring_keys;
+  const std::size_t stride = std::max(static_cast<std::size_t>(config_.query_stride), least_stride);
+  return most_similar_places(*map_, query_keyframes(*map_, stride), peer, place, lanes());
 }
 
 std::vector<LoopCandidate> CandidateSearch::most_promising(std::vector<LoopCandidate> found) {

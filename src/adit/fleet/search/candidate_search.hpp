@@ -41,6 +41,9 @@ struct PeerPlaces {
   std::vector<Places::Place> places;  ///< Of a keyframe that is named twice the first one counts.
 };
 
+/// Every so many-th of the keyframes that take part in loop search, in the order driven.
+[[nodiscard]] std::vector<std::uint32_t> query_keyframes(const RobotMap& map, std::size_t stride);
+
 /// The most similar place of the peer to each of the keyframes `queries` of `map`, as seen from each lane
 /// (another one only if it names another place); most similar first.
 [[nodiscard]] std::vector<LoopCandidate> most_similar_places(const RobotMap& map,
@@ -65,7 +68,13 @@ class CandidateSearch {
   /// SelfSimilarity::distances; computed when they are first asked for.
   [[nodiscard]] const std::vector<double>& self_distances();
 
-  /// Of what `most_similar_places` found, those that stand out most from look-alikes in the own map, at most
+  /// What `most_similar_places` finds of the peer's with these settings: as seen from each lane, however
+  /// similar. Every so many-th own keyframe is looked for, as configured, or every `least_stride`-th if those
+  /// are fewer.
+  [[nodiscard]] std::vector<LoopCandidate> most_similar(const PeerPlaces& peer,
+                                                        std::size_t least_stride) const;
+
+  /// Of what `most_similar` found, those that stand out most from look-alikes in the own map, at most
   /// a few of each place.
   [[nodiscard]] std::vector<LoopCandidate> most_promising(std::vector<LoopCandidate> found);
 
