@@ -172,12 +172,6 @@ Trajectory seen_from(const Pose& T_frame_map, Trajectory trajectory) {
   return trajectory;
 }
 
-/// With the robot's name and `more` before the extension.
-fs::path path_of(const fs::path& out, const std::string& robot, const std::string& more = "") {
-  fs::path path = out;
-  return path.replace_filename(out.stem().string() + "_" + robot + more + out.extension().string());
-}
-
 /// A line for each pose: its stamp and the upper triangle of its covariance, right
 /// perturbation, [translation; rotation]; between keyframes that of the nearest in time.
 std::string covariance_csv(const Trajectory& poses, const std::vector<Keyframe>& keyframes,
@@ -233,11 +227,12 @@ Result<Written> convert_poses(const PlacedSession& session, const ConvertOptions
       print_notes("convert", {format("{} is in another map: its poses are in {}", robot.map->name,
                                      frame->name.empty() ? "the frame of that one" : frame->name)});
     const Trajectory poses = seen_from(frame->T_frame_map, at_every_scan(*robot.map, robot.T_world_keyframe));
-    files.push_back(path_of(options.out, robot.map->name));
+    files.push_back(path_beside(options.out, "_" + robot.map->name));
     Result<> done = write_trajectory(files.back(), poses);
     if (done && covariance)
       done = covariances_in(*frame, session, r, *covariance).and_then([&](const auto& covariances) {
-        files.push_back(path_of(options.out, robot.map->name, "_covariance").replace_extension(".csv"));
+        files.push_back(
+            path_beside(options.out, "_" + robot.map->name + "_covariance").replace_extension(".csv"));
         return write_bytes(files.back(), covariance_csv(poses, robot.map->keyframes, covariances));
       });
     if (!done) return tl::unexpected(done.error());

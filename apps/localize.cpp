@@ -11,6 +11,7 @@
 #include "adit/core/json_text.hpp"
 #include "adit/fleet/joint/merge_accuracy.hpp"
 #include "adit/io/tum.hpp"
+#include "adit/robot/full_rate.hpp"
 #include "adit/robot/keyframe_trajectory.hpp"
 #include "command_line.hpp"
 #include "inputs.hpp"
@@ -41,6 +42,17 @@ std::string trajectory_in(const std::string& session, const std::string& robot) 
   return (std::filesystem::path(session) / robot / "trajectory.tum").string();
 }
 
+/// Where the robot was at its keyframes, in `out`, and at every scan, beside it. Returns the paths.
+Result<std::vector<std::string>> write_followed(const std::string& out, const RobotMap& robot,
+                                                const std::vector<Pose>& T_world_keyframe) {
+  const std::string of_scans = path_beside(out, "_scans").string();
+  return write_tum(out, keyframe_trajectory(robot, T_world_keyframe))
+      .and_then([&] { return write_tum(of_scans, at_every_scan(robot, T_world_keyframe)); })
+      .map([&] {
+        return std::vector<std::string>{out, of_scans};
+      });
+}
+
 Result<> localize_command(const LocalizeOptions& options, const Common& common) {
   const RecordingConfig reading = reading_of_new(common, options.recording);
   Result<SavedSessions> saved = open_sessions({options.session});
@@ -67,15 +79,19 @@ Result<> localize_command(const LocalizeOptions& options, const Common& common) 
     for (const std::string& refusal : refusals(session, robot.id)) reasons += "; " + refusal;
     return fail(format("{} was not found in {}{}", robot.name, options.session, reasons));
   }
-  const Trajectory trajectory = keyframe_trajectory(robot, session.solution.T_world_keyframe.at(robot.id));
+  Result<std::vector<std::string>> written;
   if (!options.out.empty())
-    if (const Result<> done = write_tum(options.out, trajectory); !done) return done;
+    written = write_followed(options.out, robot, session.solution.T_world_keyframe.at(robot.id));
+  if (!written) return tl::unexpected(written.error());
   const std::string& frame = session.name_of(component->anchor);
-  nlohmann::ordered_json json{{"robot", robot.name}, {"frame_of", frame}, {"keyframes", trajectory.size()}};
+  nlohmann::ordered_json json{{"robot", robot.name},
+                              {"frame_of", frame},
+                              {"keyframes", robot.keyframes.size()},
+                              {"scans", robot.odometry.size()}};
   json["found_by"] = nlohmann::ordered_json::array();
   if (!common.json)
     std::printf("%s was found in %s: %zu keyframes in the frame of %s's odometry\n", robot.name.c_str(),
-                options.session.c_str(), trajectory.size(), frame.c_str());
+                options.session.c_str(), robot.keyframes.size(), frame.c_str());
   for (const PairOutcome& pair : session.solution.pairs) {
     if (!pair.merged || (pair.a != robot.id && pair.b != robot.id)) continue;
     const std::string& other = session.name_of(pair.a == robot.id ? pair.b : pair.a);
@@ -84,7 +100,11 @@ Result<> localize_command(const LocalizeOptions& options, const Common& common) 
       std::printf("  by the map of %s%s\n", other.c_str(),
                   pair.accuracy ? (": " + to_string(*pair.accuracy)).c_str() : "");
   }
-  if (common.json) std::printf("%s\n", json_text(json, 2).c_str());
+  if (!written->empty()) json["written"] = *written;
+  if (common.json)
+    std::printf("%s\n", json_text(json, 2).c_str());
+  else if (!written->empty())
+    std::printf("written: %s\n", format("{}", fmt::join(*written, ", ")).c_str());
   return {};
 }
 
@@ -98,7 +118,11 @@ void add_localize(Program& program) {
   command.add_option("session", options->session, "Session directory").required();
   command.add_option("input", options->input, "Recording or folder of scans, NAME=FILE to name the robot")
       .required();
-  command.add_option("--out", options->out, "TUM file for where the robot was, in the frame of the map")
+  command
+      .add_option(
+          "--out", options->out,
+          "TUM file for where the robot was at its keyframes, in the frame of the map; NAME_scans.tum "
+          "beside it: at every scan")
       .check(trajectory_name_fault);
   add_recording_options(command, options->recording);
   add_truth_topic(command, options->recording);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <string_view>
 
 #include "adit/core/format.hpp"
@@ -25,6 +24,11 @@ std::string trajectory_name_fault(const std::string& path) {
   const std::string extension = lower_case(fs::path(path).extension().string());
   if (std::ranges::find(kOfOthers, extension) == kOfOthers.end()) return "";
   return path + ": trajectories are written in TUM format, as .tum or .txt; adit convert makes others of it";
+}
+
+fs::path path_beside(const fs::path& out, const std::string& more) {
+  fs::path path = out;
+  return path.replace_filename(out.stem().string() + more + out.extension().string());
 }
 
 void refuse_to_replace_input(const std::string& in, const std::string& out) {

@@ -4,6 +4,7 @@
 /// people need.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace adit::app {
 /// What is wrong with the name of a trajectory (TUM), "" if nothing is: the ending of recordings, clouds,
 /// maps or graphs, one of which it would replace or be taken for.
 [[nodiscard]] std::string trajectory_name_fault(const std::string& path);
+
+/// `out` with `more` before its extension: a further file of one output.
+[[nodiscard]] std::filesystem::path path_beside(const std::filesystem::path& out, const std::string& more);
 
 /// Ends the command, as wrong usage, where `out` is what `in` is read from, or an existing file in that
 /// folder.

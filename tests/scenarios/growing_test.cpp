@@ -8,6 +8,7 @@
 
 #include "adit/core/format.hpp"
 #include "adit/evaluation/ate.hpp"
+#include "adit/io/recording_files.hpp"
 #include "adit/io/robot_map_file.hpp"
 #include "adit/io/session_dir.hpp"
 #include "adit/io/tum.hpp"
@@ -105,6 +106,24 @@ TEST_F(Growing, InStepsGivesWhatAllAtOnceGives) {
   EXPECT_EQ(read_session(in("d"))->components.size(), 1U);
 }
 
+void expect_a_pose_each_scan(const Trajectory& poses, const std::string& drive) {
+  const Result<Recording> recording = open_recording(drive);
+  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_EQ(poses.size(), recording->num_scans());
+  for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_EQ(poses[i].stamp, recording->scan_stamps[i]);
+}
+
+/// Each of the one, with its stamp, is one of the other.
+void expect_poses_among(const Trajectory& few, const Trajectory& many) {
+  EXPECT_LT(few.size(), many.size());
+  for (const StampedPose& pose : few) {
+    const auto same = std::ranges::find(many, pose.stamp, &StampedPose::stamp);
+    ASSERT_NE(same, many.end()) << stamp_text(pose.stamp);
+    EXPECT_LT((pose.T_world_body.inverse() * same->T_world_body).log().norm(), 1e-9)
+        << stamp_text(pose.stamp);
+  }
+}
+
 TEST_F(Growing, ARobotIsFoundInASavedMapOrItIsSaidWhyNot) {
   expect_done("slam " + drive("ahead") + " --out " + in("map"));
   const std::string before = text_of("map/session.toml");
@@ -114,15 +133,25 @@ TEST_F(Growing, ARobotIsFoundInASavedMapOrItIsSaidWhyNot) {
   const nlohmann::json found = nlohmann::json::parse(run.out);
   EXPECT_EQ(found["frame_of"], "ahead");
   EXPECT_EQ(found["found_by"], nlohmann::json::array({"ahead"}));
-  // In the frame of the map: one alignment serves both.
-  const std::vector<Trajectory> estimates = {read_tum(folder_ / "map/ahead/trajectory.tum").value(),
-                                             read_tum(folder_ / "later.tum").value()};
+  EXPECT_EQ(found["written"], nlohmann::json::array({in("later.tum"), in("later_scans.tum")}));
+  const Trajectory at_keyframes = read_tum(folder_ / "later.tum").value();
+  const Trajectory at_scans = read_tum(folder_ / "later_scans.tum").value();
+  expect_a_pose_each_scan(at_scans, drive("later"));
+  expect_poses_among(at_keyframes, at_scans);
+  EXPECT_EQ(found["keyframes"], at_keyframes.size());
+  EXPECT_EQ(found["scans"], at_scans.size());
+  // In the frame of the map: one alignment serves both robots.
+  const Trajectory of_map = read_tum(folder_ / "map/ahead/trajectory.tum").value();
   const std::vector<Trajectory> truths = {read_tum(folder_ / "drives/ahead_truth.tum").value(),
                                           read_tum(folder_ / "drives/later_truth.tum").value()};
-  const Result<std::vector<AteResult>> errors = joint_ate(estimates, truths);
-  ASSERT_TRUE(errors) << errors.error().message;
-  for (const AteResult& error : *errors) EXPECT_LT(error.max_m, 0.3);
-  expect_refused("localize " + in("map") + " " + drive("far"), 1, "far was not found");
+  for (const Trajectory& poses : {at_keyframes, at_scans}) {
+    const Result<std::vector<AteResult>> errors = joint_ate(std::vector{of_map, poses}, truths);
+    ASSERT_TRUE(errors) << errors.error().message;
+    for (const AteResult& error : *errors) EXPECT_LT(error.max_m, 0.3);
+  }
+  expect_refused("localize " + in("map") + " " + drive("far") + " --out " + in("far.tum"), 1,
+                 "far was not found");
+  for (const char* file : {"far.tum", "far_scans.tum"}) EXPECT_FALSE(fs::exists(folder_ / file)) << file;
   expect_refused("localize " + in("map") + " " + drive("ahead"), 1,
                  "is the recording of ahead in " + in("map") + "; where that robot was says " +
                      in("map/ahead/trajectory.tum"));

@@ -4,10 +4,12 @@
 
 #include <bzlib.h>
 #include <liblzf/lzf.h>
+#include <lz4.h>
 #include <lz4frame.h>
 #include <zstd.h>
 
 #include <algorithm>
+#include <cstring>
 #include <memory>
 
 #include "adit/core/check.hpp"
@@ -158,23 +160,89 @@ std::string front_of_zstd(std::string_view bytes, std::size_t size) {
   });
 }
 
+constexpr std::size_t kLargestLz4Block = std::size_t{4} << 20U;
+
+/// The compressed block that a frame of LZ4 is cut in, as far as it is there; "" where it is cut elsewhere.
+std::string_view cut_lz4_block(std::string_view frame) {
+  constexpr std::uint32_t kStored = 1U << 31U;  // the library hands out the bytes of such blocks as they come
+  constexpr unsigned kHasChecksums = 0x10;
+  const std::size_t head = LZ4F_headerSize(frame.data(), frame.size());
+  if (LZ4F_isError(head) != 0) return {};
+  const std::size_t checksum = (static_cast<unsigned char>(frame[4]) & kHasChecksums) != 0 ? 4 : 0;
+  for (std::size_t at = head; at + 4 <= frame.size();) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, frame.data() + at, sizeof(word));  // little-endian, as the machine
+    if (word == 0) return {};
+    const std::size_t size = word & ~kStored;
+    at += sizeof(word);
+    if (size + checksum > frame.size() - at)
+      return (word & kStored) != 0 || size > kLargestLz4Block ? "" : frame.substr(at, size);
+    at += size + checksum;
+  }
+  return {};
+}
+
+/// Adds what can be read of a block that is cut, `out` to have `size` bytes at most. Blocks refer back to
+/// those before them, which are in `out`.
+void append_cut_lz4_block(std::string_view block, std::size_t size, std::string& out) {
+  constexpr std::size_t kReach = std::size_t{64} << 10U;
+  if (block.empty()) return;
+  const std::size_t done = out.size();
+  const std::size_t room = std::min(size - done, kLargestLz4Block);
+  const std::size_t before = std::min(done, kReach);
+  out.resize(done + room);
+  char* const to = out.data() + done;
+  int given = -1;
+  // The library refuses a block that ends inside of a length: it is given less, then.
+  for (std::size_t less = 0; given < 0 && less < block.size(); less = std::max<std::size_t>(1, 2 * less))
+    given = LZ4_decompress_safe_partial_usingDict(block.data(), to, static_cast<int>(block.size() - less),
+                                                  static_cast<int>(room), static_cast<int>(room), to - before,
+                                                  static_cast<int>(before));
+  out.resize(done + static_cast<std::size_t>(std::max(given, 0)));
+}
+
 std::string front_of_lz4(std::string_view bytes, std::size_t size) {
   LZ4F_dctx* context = nullptr;
   ADIT_CHECK(LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) == 0, "out of memory");
   const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> owner(
       context, &LZ4F_freeDecompressionContext);
-  return collected(size, [&](char* to, std::size_t room) {
+  std::string_view rest = bytes;
+  bool is_damaged = false;
+  std::string out = collected(size, [&](char* to, std::size_t room) {
     std::size_t given = 0;
     while (given == 0) {
-      std::size_t taken = bytes.size();
+      std::size_t taken = rest.size();
       given = room;
-      if (LZ4F_isError(LZ4F_decompress(context, to, &given, bytes.data(), &taken, nullptr)) != 0)
-        return std::size_t{0};
-      bytes.remove_prefix(taken);
+      is_damaged = LZ4F_isError(LZ4F_decompress(context, to, &given, rest.data(), &taken, nullptr)) != 0;
+      if (is_damaged) return std::size_t{0};
+      rest.remove_prefix(taken);
       if (taken == 0) break;
     }
     return given;
   });
+  if (!is_damaged) append_cut_lz4_block(cut_lz4_block(bytes), size, out);
+  return out;
+}
+
+std::string front_of_bz2(std::string_view bytes, std::size_t size) {
+  bz_stream stream = {};
+  ADIT_CHECK(BZ2_bzDecompressInit(&stream, 0, 0) == BZ_OK, "out of memory");
+  const std::unique_ptr<bz_stream, decltype(&BZ2_bzDecompressEnd)> owner(&stream, &BZ2_bzDecompressEnd);
+  std::string in(bytes);  // the library's argument is not const
+  stream.next_in = in.data();
+  stream.avail_in = static_cast<unsigned>(in.size());
+  int code = BZ_OK;
+  std::string out = collected(size, [&](char* to, std::size_t room) {
+    if (code != BZ_OK) return std::size_t{0};
+    stream.next_out = to;
+    stream.avail_out = static_cast<unsigned>(room);
+    code = BZ2_bzDecompress(&stream);
+    ADIT_CHECK(code != BZ_MEM_ERROR, "out of memory");
+    return room - stream.avail_out;
+  });
+  // A block is handed out before its checksum is looked at.
+  const bool is_damaged = code != BZ_OK && code != BZ_STREAM_END;
+  return is_damaged ? std::string() : out;
 }
 
 }  // namespace
@@ -212,6 +280,7 @@ Result<std::string> decompress(std::string_view bytes, std::string_view compress
 std::string decompress_front(std::string_view bytes, std::string_view compression, std::size_t size) {
   if (compression == "zstd") return front_of_zstd(bytes, size);
   if (compression == "lz4") return front_of_lz4(bytes, size);
+  if (compression == "bz2") return front_of_bz2(bytes, size);
   return compression.empty() ? std::string(bytes.substr(0, size)) : std::string();
 }
 

@@ -20,8 +20,9 @@ namespace adit {
 /// memory is taken as data come.
 Result<std::string> decompress(std::string_view bytes, std::string_view compression, std::size_t size);
 
-/// Of data that are cut: as many of the `size` bytes as what is there gives, whole blocks of it. Of bz2,
-/// whose blocks are larger than chunks, none; nor of data that are damaged at their begin.
+/// Of data that are cut: as many of the `size` bytes as what is there gives, at most all; of zstd and bz2
+/// whole blocks (bz2: of 100 to 900 kB, larger than most chunks), of lz4 the block that is cut, too. What is
+/// damaged ends it; of bz2 nothing is given then. Memory is taken as data come.
 [[nodiscard]] std::string decompress_front(std::string_view bytes, std::string_view compression,
                                            std::size_t size);
 

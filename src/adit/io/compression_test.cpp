@@ -4,7 +4,10 @@
 
 #include <bzlib.h>
 #include <gtest/gtest.h>
+#include <lz4frame.h>
 #include <sys/resource.h>
+
+#include <algorithm>
 
 #include "adit/core/rng.hpp"
 #include "adit/io/crc32.hpp"
@@ -163,6 +166,70 @@ TEST(Compression, OfDataThatAreCutTheFrontIsGiven) {
     EXPECT_EQ(decompress_front("no such frame", compression, 100), "") << compression;
     EXPECT_EQ(decompress_front("", compression, 100), "") << compression;
   }
+}
+
+/// 210 kB: numbers, of which every compression makes less, and a run that LZ4 counts in some hundred bytes.
+std::string shrinking_text() {
+  Rng rng(5);
+  std::string text;
+  while (text.size() < 150'000) text += std::to_string(rng.below(1000)) + " ";
+  return text.insert(60'000, 60'000, 'x');
+}
+
+std::string in_lz4_frame(const std::string& bytes, const LZ4F_frameInfo_t& frame) {
+  LZ4F_preferences_t how = {};
+  how.frameInfo = frame;
+  std::string out(LZ4F_compressFrameBound(bytes.size(), &how), '\0');
+  out.resize(LZ4F_compressFrame(out.data(), out.size(), bytes.data(), bytes.size(), &how));
+  return out;
+}
+
+TEST(Compression, OfLz4TheBlockThatIsCutIsGivenToo) {
+  const std::string text = shrinking_text();
+  LZ4F_frameInfo_t of_ros1 = {};  // one block holds a chunk
+  of_ros1.blockSizeID = LZ4F_max1MB;
+  of_ros1.blockMode = LZ4F_blockIndependent;
+  of_ros1.contentChecksumFlag = LZ4F_contentChecksumEnabled;
+  LZ4F_frameInfo_t with_checksums = {};  // blocks of 64 kB, which refer back to each other
+  with_checksums.blockChecksumFlag = LZ4F_blockChecksumEnabled;
+  for (const LZ4F_frameInfo_t& frame : {of_ros1, LZ4F_frameInfo_t{}, with_checksums}) {
+    const std::string packed = in_lz4_frame(text, frame);
+    ASSERT_LT(packed.size(), text.size());
+    std::size_t longest = 0;
+    for (std::size_t size = 0; size < packed.size(); size += 211) {
+      const std::string front =
+          decompress_front(std::string_view(packed).substr(0, size), "lz4", text.size());
+      ASSERT_TRUE(text.starts_with(front)) << size;
+      ASSERT_GE(front.size() + 3000, longest) << size;  // some bytes at the cut may be of no use
+      longest = std::max(longest, front.size());
+    }
+    EXPECT_GT(longest + 5000, text.size());
+    EXPECT_EQ(decompress_front(packed, "lz4", text.size()), text);
+    const std::string_view most_of_it = std::string_view(packed).substr(0, packed.size() - 100);
+    EXPECT_EQ(decompress_front(most_of_it, "lz4", 90'000), text.substr(0, 90'000));
+  }
+}
+
+TEST(Compression, OfBz2WholeBlocksAreGivenUnlessTheyAreDamaged) {
+  std::string text = shrinking_text();
+  std::string packed(text.size(), '\0');
+  auto packed_size = static_cast<unsigned>(packed.size());
+  ASSERT_EQ(BZ2_bzBuffToBuffCompress(packed.data(), &packed_size, text.data(),
+                                     static_cast<unsigned>(text.size()), 1, 0, 0),
+            BZ_OK);
+  packed.resize(packed_size);
+  std::size_t last = 0;
+  for (std::size_t size = 0; size < packed.size(); size += packed.size() / 20) {
+    const std::string front = decompress_front(packed.substr(0, size), "bz2", text.size());
+    ASSERT_TRUE(text.starts_with(front)) << size;
+    ASSERT_GE(front.size(), last) << size;
+    last = front.size();
+  }
+  EXPECT_GT(last, 100'000U) << "a block is of 100 kB, of which runs take next to none";
+  EXPECT_EQ(decompress_front(packed, "bz2", text.size()), text);
+  EXPECT_EQ(decompress_front(packed, "bz2", 1000), text.substr(0, 1000));
+  packed[100] = static_cast<char>(packed[100] ^ 1);
+  EXPECT_EQ(decompress_front(packed.substr(0, packed.size() - 100), "bz2", text.size()), "");
 }
 
 }  // namespace

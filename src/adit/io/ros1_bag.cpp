@@ -163,16 +163,37 @@ struct Contents {
   }
 };
 
+/// "" for none.
+std::string compression_of(const Record& chunk) {
+  const std::string compression = text_in(chunk.fields, "compression");
+  return compression == "none" ? "" : compression;
+}
+
+/// Whether the file ends in the data of this compressed chunk. A recorder that was killed leaves 0 as their
+/// size, which it writes when it is done with a chunk.
+bool is_cut_and_packed(const ByteSource& source, const Record& chunk) {
+  return chunk.op == Op::chunk && !compression_of(chunk).empty() &&
+         (chunk.end() > source.size || chunk.size == 0);
+}
+
+/// The front of the records of such a chunk; `stated`: the size of all of them.
+Result<std::string> read_cut_chunk(const ByteSource& source, const Record& chunk, std::uint32_t stated) {
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 28U;  // of a damaged size, too
+  const std::uint64_t most = chunk.size == 0 ? kMost : std::min<std::uint64_t>(stated, kMost);
+  return source.read(chunk.data, std::min(source.size - chunk.data, kMost))
+      .map([&](const std::string& bytes) { return decompress_front(bytes, compression_of(chunk), most); });
+}
+
 /// The expanded records of a chunk.
 Result<std::string> read_chunk(const ByteSource& source, std::uint64_t offset) {
-  const Result<Record> record = read_record(source, offset);
+  const Result<Record> record = read_head(source, offset);
   if (!record) return tl::unexpected(record.error());
   const auto size = number_in<std::uint32_t>(record->fields, "size");
   if (record->op != Op::chunk || !size) return fail_at(offset, "no chunk where the index announces one");
-  const std::string compression = text_in(record->fields, "compression");
+  if (is_cut_and_packed(source, *record)) return read_cut_chunk(source, *record, *size);
   Result<std::string> expanded =
       source.read(record->data, record->size).and_then([&](const std::string& bytes) {
-        return decompress(bytes, compression == "none" ? "" : compression, *size);
+        return decompress(bytes, compression_of(*record), *size);
       });
   if (!expanded) return fail(format("chunk at byte {}", offset), expanded.error());
   return expanded;
@@ -210,17 +231,20 @@ Result<> scan_chunk(const ByteSource& source, std::uint64_t offset, Contents& co
   return {};
 }
 
-/// Goes through the file from its start. What was read before an error stays in `contents`. Of a plain chunk
-/// that is cut the records in front of the cut are taken as if they lay in the file itself.
+/// Goes through the file from its start. What was read before an error stays in `contents`. Of a chunk that
+/// is cut the records in front of the cut are taken; of a plain one as if they lay in the file itself.
 Result<> scan_file(const ByteSource& source, Contents& contents) {
   std::optional<std::uint64_t> cut_chunk;
   for (std::uint64_t at = kMagic.size(); at < source.size;) {
     throw_if_cancelled();
     const Result<Record> record = read_head(source, at);
     if (!record) return tl::unexpected(record.error());
+    if (is_cut_and_packed(source, *record)) {
+      (void)scan_chunk(source, at, contents);  // that it ends inside of a record is known
+      return record->size > 0 ? fail_past_end(at) : fail_at(at, "the recorder did not finish a chunk");
+    }
     if (record->end() > source.size) {
-      const bool is_plain = record->op == Op::chunk && text_in(record->fields, "compression") == "none";
-      if (!is_plain || cut_chunk) return fail_past_end(at);
+      if (record->op != Op::chunk || cut_chunk) return fail_past_end(at);
       cut_chunk = at;
       at = record->data;
       continue;
