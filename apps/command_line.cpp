@@ -49,6 +49,9 @@ Option Command::add_option(const std::string& name, std::optional<std::uint64_t>
 Option Command::add_flag(const std::string& name, bool& value, const std::string& help) const {
   return Option(*app_->add_flag(name, value, help));
 }
+void Command::exclude(const std::string& name, const std::vector<std::string>& others) const {
+  for (const std::string& other : others) app_->get_option(name)->excludes(app_->get_option(other));
+}
 void Command::footer(const std::string& text) const { app_->footer(text); }
 
 namespace {

@@ -49,6 +49,8 @@ class Command {
   Option add_option(const std::string& name, std::optional<std::uint64_t>& value,
                     const std::string& help) const;
   Option add_flag(const std::string& name, bool& value, const std::string& help) const;
+  /// Giving the option `name` together with one of `others` is wrong usage. All of them exist.
+  void exclude(const std::string& name, const std::vector<std::string>& others) const;
   void footer(const std::string& text) const;
 
  private:

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <utility>
 
+#include "adit/core/format.hpp"
 #include "adit/io/bag_topics.hpp"
 #include "adit/io/recording_files.hpp"
 #include "adit/io/routes_yaml.hpp"
@@ -101,8 +102,9 @@ void add_recording_options(const Command& command, RecordingConfig& config) {
                      "Field with the times of points (default: as found)");
   command
       .add_option("--bin-columns", config.bin_columns,
-                  "Columns of .bin clouds, 3 to 8 (default: four or five, as found)")
-      .in_range(3, 8);
+                  format("Columns of .bin clouds, {} to {} (default: four or five, as found)",
+                         kLeastBinColumns, kMostBinColumns))
+      .in_range(kLeastBinColumns, kMostBinColumns);
 }
 
 void add_truth_topic(const Command& command, RecordingConfig& config) {

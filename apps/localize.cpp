@@ -119,10 +119,9 @@ void add_localize(Program& program) {
   command.add_option("input", options->input, "Recording or folder of scans, NAME=FILE to name the robot")
       .required();
   command
-      .add_option(
-          "--out", options->out,
-          "TUM file for where the robot was at its keyframes, in the frame of the map; NAME_scans.tum "
-          "beside it: at every scan")
+      .add_option("--out", options->out,
+                  "TUM file for where the robot was at its keyframes, in the frame of the map; beside it, "
+                  "with _scans at the end of its name, one for every scan")
       .check(trajectory_name_fault);
   add_recording_options(command, options->recording);
   add_truth_topic(command, options->recording);

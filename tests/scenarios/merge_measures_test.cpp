@@ -4,6 +4,9 @@
 // refuse.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <string>
+
 #include "support/files.hpp"
 #include "support/program.hpp"
 #include "support/two_drives.hpp"
@@ -69,26 +72,47 @@ TEST(MergeCalibrationCommand, JudgesTheHypothesesOfWorldsAndBetweenThem) {
   expect_refused(measure(folder, "merge-calibration", "--only two"), 1, "no world 'two'");
 }
 
+/// calibration.json with one hypothesis, made at the default error rate.
+std::string calibration_of(const std::string& robots, const std::string& truth, double evidence) {
+  return R"({"version": 1, "hypotheses": [{"robots": ")" + robots + R"(", "truth": ")" + truth +
+         R"(", "refuted": false, "accepted": false, "evidence": )" + std::to_string(evidence) +
+         R"(, "of_walls": 0.5, "needed": 6.214608098422191, "compared_m": 30.5,)"
+         R"( "distinctive": 3, "changes": 1,)"
+         R"( "things": 0, "wall_patches": 12, "looked_for_again": 0, "found_again": 0,)"
+         R"( "not_found_again": 0, "equal_signs": 0.5, "equal_signs_sigma": 0.1}]})";
+}
+
 TEST(MergeCalibrationCommand, JoinsWhatRunsWrote) {
   const test::TemporaryFolder folder;
   const auto in = [&](const std::string& name) { return (folder / name).string(); };
-  const auto written = [](const std::string& robots, const std::string& truth, double evidence) {
-    return R"({"version": 1, "hypotheses": [{"robots": ")" + robots + R"(", "truth": ")" + truth +
-           R"(", "refuted": false, "accepted": false, "evidence": )" + std::to_string(evidence) +
-           R"(, "of_walls": 0.5, "needed": 6.2, "compared_m": 30.5, "distinctive": 3, "changes": 1,)"
-           R"( "things": 0, "wall_patches": 12, "looked_for_again": 0, "found_again": 0,)"
-           R"( "not_found_again": 0, "equal_signs": 0.5, "equal_signs_sigma": 0.1}]})";
-  };
-  put_file(in("a.json"), written("a/0, a/1", "right", 9.0));
-  put_file(in("b.json"), written("b/0, b/1", "wrong", 1.5));
+  put_file(in("a.json"), calibration_of("a/0, a/1", "right", 9.0));
+  put_file(in("b.json"), calibration_of("b/0, b/1", "wrong", 1.5));
   const std::string join = "merge-calibration --out " + in("out") + " --join " + in("a.json") + " ";
   expect_done(join + in("b.json"));
   const std::string json = get_file(in("out/calibration.json"));
   EXPECT_LT(json.find("a/0, a/1"), json.find("b/0, b/1"));
   EXPECT_NE(get_file(in("out/merge_calibration.svg")).find("1 false and 1 true"), std::string::npos);
   expect_refused(join + in("a.json"), 1, "a.json: ");
-  expect_refused(join + in("b.json") + " --worlds list.toml", 2, "--join");
+  for (const char* ignored : {"--worlds list.toml", "--groups field", "--only a", "--partners 1",
+                              "--lidar os2-32", "--conditions field"})
+    expect_refused(join + in("b.json") + " " + ignored, 2, "--join");
   expect_refused("merge-calibration --out " + in("out"), 2, "--worlds is required");
+}
+
+TEST(MergeCalibrationCommand, JoinsOnlyWhatItsConfigurationFitsAndReplacesNoRun) {
+  const test::TemporaryFolder folder;
+  const std::string run = (folder / "run/calibration.json").string();
+  const std::string other = (folder / "other.json").string();
+  std::filesystem::create_directory(folder / "run");
+  put_file(run, calibration_of("a/0, a/1", "right", 9.0));
+  put_file(other, calibration_of("b/0, b/1", "wrong", 1.5));
+  const std::string join = "merge-calibration --join " + other + " " + run + " --out ";
+  expect_refused(join + (folder / "run").string(), 2, "would be replaced");
+  EXPECT_EQ(get_file(run), calibration_of("a/0, a/1", "right", 9.0));
+  EXPECT_EQ(test::num_entries(folder / "run"), 1U) << "nothing was written";
+  const std::string set = " --set loops.adaptive.merge_check.evidence.error_rate=0.01";
+  expect_refused(join + (folder / "both").string() + set, 1, "error_rate at 0.002, this command has 0.01");
+  EXPECT_FALSE(std::filesystem::exists(folder / "both"));
 }
 
 }  // namespace

@@ -219,19 +219,23 @@ TEST(Session, ExplainsWhatShareOfTheReturnsNothingConfirmed) {
            "robots = ['ada', 'bo', 'cy']\n"
            "[[merges]]\nrobots = ['ada', 'bo']\nreason = 'scans differ'\n"
            "unconfirmed_a = 0.06\nunconfirmed_b = 0.22\n"
-           "[[merges]]\nrobots = ['ada', 'cy']\nreason = 'no loop'\nunconfirmed_a = 0.01\n");
+           "[[merges]]\nrobots = ['ada', 'cy']\nreason = 'no loop'\nunconfirmed_a = 0.01\n"
+           "[[merges]]\nrobots = ['bo', 'cy']\nreason = 'no loop'\n"
+           "unconfirmed_a = nan\nunconfirmed_b = 1.5\n");
   const std::string session = folder.path().string();
   const test::ProgramRun both = run_adit("explain " + session + " ada bo");
   ASSERT_EQ(both.exit_code, 0) << both.err;
   EXPECT_NE(both.out.find("  of the scans compared, 6 % of ada's returns and 22 % of bo's were confirmed by "
-                          "no second look\n"),
+                          "no other return\n"),
             std::string::npos)
       << both.out;
   const test::ProgramRun clean = run_adit("explain " + session + " ada cy");
-  EXPECT_EQ(clean.out.find("second look"), std::string::npos) << clean.out;
+  EXPECT_EQ(clean.out.find("no other return"), std::string::npos) << clean.out;
   const nlohmann::json pairs = nlohmann::json::parse(run_adit("explain " + session + " ada --json").out);
   EXPECT_EQ(pairs.at(0)["unconfirmed"], nlohmann::json::parse("[0.06, 0.22]"));
   EXPECT_EQ(pairs.at(1)["unconfirmed"], nlohmann::json::parse("[0.01, null]"));
+  const nlohmann::json edited = nlohmann::json::parse(run_adit("explain " + session + " bo cy --json").out);
+  EXPECT_EQ(edited.at(0)["unconfirmed"], nlohmann::json::parse("[null, null]")) << "these are no shares";
 }
 
 TEST(Session, RobotsOfOneNameGetDifferentNames) {

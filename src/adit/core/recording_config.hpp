@@ -18,6 +18,12 @@ inline constexpr std::string_view kNoTruth = "none";
 /// As RecordingConfig::wheel: do without wheels.
 inline constexpr std::string_view kNoWheel = "none";
 
+/// How many columns RecordingConfig::bin_columns can state.
+///@{
+inline constexpr int kLeastBinColumns = 3;
+inline constexpr int kMostBinColumns = 8;
+///@}
+
 /// How the joints of wheels move the robot, for wheels that are recorded as sensor_msgs/JointState
 /// (io/joint_odometry.hpp). Names of joints are apart by commas; a minus in front turns a joint round.
 struct JointDriveConfig {
@@ -108,7 +114,7 @@ struct RecordingConfig {
       {"point_time_field", &c.point_time_field, "", 0, 0,
        "field with the times of points, in PointCloud2, .pcd and .ply; empty: the first that is called t, "
        "time, time_offset, offset_time, timestamp or time_stamp"},
-      {"bin_columns", &c.bin_columns, "", 0, 8,
+      {"bin_columns", &c.bin_columns, "", 0, kMostBinColumns,
        "columns of .bin clouds, 3 to 8: x y z, intensity, and others that are not used; 0: four or five, as "
        "the files show"},
       {"stamp_at",

@@ -255,9 +255,9 @@ Agent::Replies Agent::begin_check(RobotId peer) {
     theirs.nodes.pop_back();
   const auto earlier = known().checks.find({map_->id, peer});
   checks_.insert_or_assign(
-      peer,
-      check_of_loops(without_sliding(loops_with(peer)), chain_by(map_->id), chain_of(theirs), discernment(),
-                     config_.adaptive, earlier == known().checks.end() ? nullptr : &earlier->second));
+      peer, merge_checker_of(accepted_without_sliding(loops_with(peer)), chain_by(map_->id), chain_of(theirs),
+                             discernment(), config_.adaptive,
+                             earlier == known().checks.end() ? nullptr : &earlier->second));
   sessions_[peer].await_comparison_of({});  // the peer's map may have grown since a check that was broken off
   for (auto& [robot, session] : sessions_) session.forget_views();
   return go_on_checking(peer);
@@ -311,9 +311,9 @@ void Agent::look_for_revisits() {
     }
     ledger_.add_own(loop);
   }
-  loops = without_sliding(std::move(loops));
+  loops = accepted_without_sliding(std::move(loops));
   if (loops.empty()) return;
-  MergeChecker check = check_of_loops(loops, chain, chain, discernment(), config_.adaptive);
+  MergeChecker check = merge_checker_of(loops, chain, chain, discernment(), config_.adaptive);
   PlaceComparer comparer(*map_, discernment(), config_.registration_in_use());
   for (auto asked = check.next(kCloudsPerMessage); !asked.empty(); asked = check.next(kCloudsPerMessage))
     check.add(comparer.within_own_map(asked));

@@ -28,8 +28,10 @@ Bag bag_of(const std::shared_ptr<const mcap::Reader>& reader) {
   bag.num_chunks = contents.chunks.size();
   bag.own = own_metadata(contents);
   if (!contents.torn.empty())
-    bag.warnings.push_back(
-        format("{}; {} messages in front of the cut are read", contents.torn, contents.messages.size()));
+    bag.warnings.push_back(format(
+        "{}; {} messages in front of the cut are read{}", contents.torn, contents.messages.size(),
+        contents.cut_chunk ? ", those of the chunk that is cut not verified, as its checksum is of all of it"
+                           : ""));
   if (!contents.summary_fault.empty())
     bag.warnings.push_back(index_warning(contents.summary_fault, contents.messages.size(), "mcap recover"));
   TopicIndex topics;

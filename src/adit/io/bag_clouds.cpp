@@ -65,7 +65,9 @@ Result<ros::CloudMessage> first_cloud(const Bag& bag, const TopicIndices& topics
     throw_if_cancelled();
     Result<ros::CloudMessage> cloud = read_cloud_message(bag, message, known);
     if (cloud && !cloud->scan.cloud.empty()) return cloud;
-    const bool lacks_field = !cloud && lacks_stated_field(cloud.error());
+    const bool lacks_field = !cloud && lacks_stated_field(known, [&](const KnownTimes& untimed) {
+      return read_cloud_message(bag, message, untimed);
+    });
     if (!cloud && (first_fault.empty() || lacks_field))
       first_fault = format("scan {}: {}", num, cloud.error().message);
     if (lacks_field) break;

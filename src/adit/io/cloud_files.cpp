@@ -29,9 +29,7 @@ Result<CloudFile> parse(CloudFormat format, std::string_view bytes, const CloudR
     case CloudFormat::kitti:
       break;
   }
-  if (const std::string& field = known.times.field; !field.empty())
-    return fail(no_stated_field(field, "the columns of a .bin have no names; leave the option out"));
-  return read_kitti(bytes, known.bin_columns);
+  return check_bin_reading(known).and_then([&] { return read_kitti(bytes, known.bin_columns); });
 }
 
 std::string bytes_of(CloudFormat format, const PointCloud& cloud, const Pose& viewpoint,
@@ -75,6 +73,12 @@ Result<CloudReading> stated_reading(const RecordingConfig& config) {
     stated.times = std::move(times);
     return stated;
   });
+}
+
+Result<> check_bin_reading(const CloudReading& known) {
+  if (known.times.field.empty()) return {};
+  return fail(
+      no_stated_field(known.times.field, "the columns of a .bin have no names; leave the option out"));
 }
 
 Result<CloudFile> read_cloud_file(const std::filesystem::path& path, const CloudReading& known) {

@@ -25,10 +25,12 @@ enum class CloudFormat { pcd, ply, kitti };
 struct CloudReading {
   KnownTimes times = {};                        ///< Of its points.
   std::optional<std::size_t> bin_columns = {};  ///< Of .bin, 3 to 8 (kitti.hpp).
-  bool are_columns_stated = false;              ///< Rather than found.
+  bool are_columns_stated = false;              ///< Whether `bin_columns` was given by the user.
 };
 /// What `config` states of clouds. Fails on a unit of times or a number of columns that is none.
 [[nodiscard]] Result<CloudReading> stated_reading(const RecordingConfig& config);
+/// Fails where a .bin cannot be read so: a field of times is named, and its columns have no names.
+[[nodiscard]] Result<> check_bin_reading(const CloudReading& known);
 
 /// What a cloud reader found. Points with a NaN or infinite coordinate are left out and counted.
 struct CloudFile {

@@ -9,6 +9,7 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <memory>
 
@@ -162,21 +163,33 @@ std::string front_of_zstd(std::string_view bytes, std::size_t size) {
 
 constexpr std::size_t kLargestLz4Block = std::size_t{4} << 20U;
 
-/// The compressed block that a frame of LZ4 is cut in, as far as it is there; "" where it is cut elsewhere.
-std::string_view cut_lz4_block(std::string_view frame) {
+/// How a frame of LZ4 ends.
+struct Lz4End {
+  bool is_whole = false;            ///< All of its blocks are there, and the mark behind them.
+  std::string_view cut_block = {};  ///< Else the compressed one that it is cut in; "": it is cut elsewhere.
+};
+
+Lz4End end_of_lz4(std::string_view frame) {
+  constexpr std::uint32_t kFrame = 0x184D2204;  // LZ4F_headerSize also takes frames that hold no data
   constexpr std::uint32_t kStored = 1U << 31U;  // the library hands out the bytes of such blocks as they come
   constexpr unsigned kHasChecksums = 0x10;
-  const std::size_t head = LZ4F_headerSize(frame.data(), frame.size());
-  if (LZ4F_isError(head) != 0) return {};
-  const std::size_t checksum = (static_cast<unsigned char>(frame[4]) & kHasChecksums) != 0 ? 4 : 0;
-  for (std::size_t at = head; at + 4 <= frame.size();) {
+  const auto word_at = [&](std::size_t at) {
     std::uint32_t word = 0;
     std::memcpy(&word, frame.data() + at, sizeof(word));  // little-endian, as the machine
-    if (word == 0) return {};
+    return word;
+  };
+  const std::size_t head = LZ4F_headerSize(frame.data(), frame.size());
+  if (LZ4F_isError(head) != 0 || word_at(0) != kFrame) return {};
+  const std::size_t checksum = (static_cast<unsigned char>(frame[4]) & kHasChecksums) != 0 ? 4 : 0;
+  for (std::size_t at = head; at + 4 <= frame.size();) {
+    const std::uint32_t word = word_at(at);
+    if (word == 0) return {.is_whole = true};
     const std::size_t size = word & ~kStored;
     at += sizeof(word);
-    if (size + checksum > frame.size() - at)
-      return (word & kStored) != 0 || size > kLargestLz4Block ? "" : frame.substr(at, size);
+    if (size + checksum > frame.size() - at) {
+      const bool is_compressed = (word & kStored) == 0 && size <= kLargestLz4Block;
+      return {.cut_block = is_compressed ? frame.substr(at, size) : ""};
+    }
     at += size + checksum;
   }
   return {};
@@ -202,25 +215,31 @@ void append_cut_lz4_block(std::string_view block, std::size_t size, std::string&
 }
 
 std::string front_of_lz4(std::string_view bytes, std::size_t size) {
+  constexpr std::size_t kMargin = 64;  // nothing verifies the last bytes: so no message ends with them
   LZ4F_dctx* context = nullptr;
   ADIT_CHECK(LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) == 0, "out of memory");
   const std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> owner(
       context, &LZ4F_freeDecompressionContext);
   std::string_view rest = bytes;
-  bool is_damaged = false;
+  std::size_t hint = 1;  // 0: the frame has ended
   std::string out = collected(size, [&](char* to, std::size_t room) {
     std::size_t given = 0;
-    while (given == 0) {
+    while (given == 0 && hint != 0) {
       std::size_t taken = rest.size();
       given = room;
-      is_damaged = LZ4F_isError(LZ4F_decompress(context, to, &given, rest.data(), &taken, nullptr)) != 0;
-      if (is_damaged) return std::size_t{0};
+      hint = LZ4F_decompress(context, to, &given, rest.data(), &taken, nullptr);
+      if (LZ4F_isError(hint) != 0) return std::size_t{0};
       rest.remove_prefix(taken);
       if (taken == 0) break;
     }
     return given;
   });
-  if (!is_damaged) append_cut_lz4_block(cut_lz4_block(bytes), size, out);
+  const Lz4End end = end_of_lz4(bytes);
+  // Of a frame that is whole, but not the one that was written, nothing tells which bytes are right.
+  if (LZ4F_isError(hint) != 0) return end.is_whole ? std::string() : out;
+  if (hint == 0 || end.is_whole) return out;
+  append_cut_lz4_block(end.cut_block, size, out);
+  if (out.size() < size) out.resize(out.size() - std::min(out.size(), kMargin));
   return out;
 }
 
@@ -278,6 +297,9 @@ Result<std::string> decompress(std::string_view bytes, std::string_view compress
 }
 
 std::string decompress_front(std::string_view bytes, std::string_view compression, std::size_t size) {
+  constexpr std::size_t kMostByChance = 16;  // so many zeros may be data; a loss of power leaves more
+  const std::size_t end = bytes.find_last_not_of('\0') + 1;  // 0 where all are zeros
+  if (bytes.size() - end > kMostByChance) bytes = bytes.substr(0, end);
   if (compression == "zstd") return front_of_zstd(bytes, size);
   if (compression == "lz4") return front_of_lz4(bytes, size);
   if (compression == "bz2") return front_of_bz2(bytes, size);

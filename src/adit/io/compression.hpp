@@ -20,9 +20,18 @@ namespace adit {
 /// memory is taken as data come.
 Result<std::string> decompress(std::string_view bytes, std::string_view compression, std::size_t size);
 
-/// Of data that are cut: as many of the `size` bytes as what is there gives, at most all; of zstd and bz2
-/// whole blocks (bz2: of 100 to 900 kB, larger than most chunks), of lz4 the block that is cut, too. What is
-/// damaged ends it; of bz2 nothing is given then. Memory is taken as data come.
+/// Of data that are cut: as many of the `size` bytes as what is there gives, at most all. More than a few
+/// zeros at its end, as a loss of power leaves them, are not taken for data. What is damaged ends it; but
+/// only where a checksum is there, damage is sure to be found, and else bytes behind it may be wrong.
+///  - "": all bytes.
+///  - zstd: whole blocks, of up to 128 kB, without checksums.
+///  - lz4: whole blocks, and of the one that is cut what stands in front of the cut. Blocks seldom have
+///    checksums, and the one that is cut never has: the last 64 bytes are not given. Of a frame that is whole
+///    but damaged nothing is given.
+///  - bz2: whole blocks, of 100 to 900 kB, which is more than most chunks. They have checksums; where one of
+///    these does not fit, nothing is given.
+///
+/// Memory is taken as data come.
 [[nodiscard]] std::string decompress_front(std::string_view bytes, std::string_view compression,
                                            std::size_t size);
 

@@ -8,6 +8,8 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "adit/core/rng.hpp"
 #include "adit/io/crc32.hpp"
@@ -184,15 +186,25 @@ std::string in_lz4_frame(const std::string& bytes, const LZ4F_frameInfo_t& frame
   return out;
 }
 
+/// As rosbag has them: one block holds a chunk.
+LZ4F_frameInfo_t lz4_of_ros1() {
+  LZ4F_frameInfo_t frame = {};
+  frame.blockSizeID = LZ4F_max1MB;
+  frame.blockMode = LZ4F_blockIndependent;
+  frame.contentChecksumFlag = LZ4F_contentChecksumEnabled;
+  return frame;
+}
+
+/// That, and blocks of 64 kB, which refer back to each other, without and with checksums.
+std::vector<LZ4F_frameInfo_t> kinds_of_lz4() {
+  LZ4F_frameInfo_t with_checksums = {};
+  with_checksums.blockChecksumFlag = LZ4F_blockChecksumEnabled;
+  return {lz4_of_ros1(), LZ4F_frameInfo_t{}, with_checksums};
+}
+
 TEST(Compression, OfLz4TheBlockThatIsCutIsGivenToo) {
   const std::string text = shrinking_text();
-  LZ4F_frameInfo_t of_ros1 = {};  // one block holds a chunk
-  of_ros1.blockSizeID = LZ4F_max1MB;
-  of_ros1.blockMode = LZ4F_blockIndependent;
-  of_ros1.contentChecksumFlag = LZ4F_contentChecksumEnabled;
-  LZ4F_frameInfo_t with_checksums = {};  // blocks of 64 kB, which refer back to each other
-  with_checksums.blockChecksumFlag = LZ4F_blockChecksumEnabled;
-  for (const LZ4F_frameInfo_t& frame : {of_ros1, LZ4F_frameInfo_t{}, with_checksums}) {
+  for (const LZ4F_frameInfo_t& frame : kinds_of_lz4()) {
     const std::string packed = in_lz4_frame(text, frame);
     ASSERT_LT(packed.size(), text.size());
     std::size_t longest = 0;
@@ -208,6 +220,63 @@ TEST(Compression, OfLz4TheBlockThatIsCutIsGivenToo) {
     const std::string_view most_of_it = std::string_view(packed).substr(0, packed.size() - 100);
     EXPECT_EQ(decompress_front(most_of_it, "lz4", 90'000), text.substr(0, 90'000));
   }
+}
+
+TEST(Compression, OfLz4TheLastBytesInFrontOfACutAreNotGiven) {
+  Rng rng(11);
+  std::string noise(10'000, '\0');
+  for (char& c : noise) c = static_cast<char>(1 + rng.below(255));
+  const std::string frame = in_lz4_frame(noise, {});
+  constexpr std::size_t kHead = 11;  // of the frame and of its block, which is stored as it is
+  ASSERT_EQ(frame.substr(kHead, noise.size()), noise);
+  EXPECT_EQ(decompress_front(frame.substr(0, 5000), "lz4", noise.size()), noise.substr(0, 5000 - kHead - 64));
+  EXPECT_EQ(decompress_front(frame.substr(0, 50), "lz4", noise.size()), "");
+}
+
+TEST(Compression, ZerosBehindACutAreNotTakenForData) {
+  const std::string text = shrinking_text();
+  const auto expect_none = [&](const std::string& whole, const std::string& compression) {
+    for (std::size_t size = 0; size < whole.size(); size += 1999) {
+      const std::string cut = whole.substr(0, size);
+      const std::string front = decompress_front(cut, compression, text.size());
+      ASSERT_TRUE(text.starts_with(front)) << compression << " cut at " << size;
+      for (const std::size_t num_zeros : {std::size_t{17}, std::size_t{4096}, 2 * text.size()})
+        ASSERT_EQ(decompress_front(cut + std::string(num_zeros, '\0'), compression, text.size()), front)
+            << compression << " cut at " << size << ", zeros: " << num_zeros;
+    }
+  };
+  for (const LZ4F_frameInfo_t& frame : kinds_of_lz4()) expect_none(in_lz4_frame(text, frame), "lz4");
+  expect_none(compress_zstd(text), "zstd");
+  expect_none(text, "");
+  for (const char* compression : {"", "zstd", "lz4", "bz2"})
+    EXPECT_EQ(decompress_front(std::string(5000, '\0'), compression, 5000), "") << compression;
+}
+
+TEST(Compression, OfLz4WhatStandsInFrontOfADamagedByteIsRight) {
+  const std::string text = shrinking_text();
+  const std::string whole = in_lz4_frame(text, lz4_of_ros1());
+  const std::string cut = whole.substr(0, whole.size() / 4 * 3);
+  int num_wrong = 0;
+  for (std::size_t at = 100; at < cut.size(); at += 997) {
+    std::string damaged = cut;
+    damaged[at] = static_cast<char>(damaged[at] ^ 1);
+    const std::string front = decompress_front(damaged, "lz4", text.size());
+    const std::string before = decompress_front(cut.substr(0, at), "lz4", text.size());
+    const std::size_t num_right = std::min(front.size(), before.size());
+    ASSERT_EQ(front.substr(0, num_right), text.substr(0, num_right)) << at;
+    if (!text.starts_with(front)) ++num_wrong;
+  }
+  EXPECT_GT(num_wrong, 0) << "the checksum stands at the end, which is not there";
+  std::string damaged = whole;
+  damaged[5000] = static_cast<char>(damaged[5000] ^ 1);
+  EXPECT_EQ(decompress_front(damaged, "lz4", text.size()), "") << "here it is";
+}
+
+TEST(Compression, OfLz4FramesThatHoldNoDataNothingIsGiven) {
+  const std::string skippable("\x50\x2A\x4D\x18\x05\0\0\0", 8);
+  for (const std::string& rest :
+       {std::string(), std::string("abc"), std::string("abcde"), std::string(99, 'a')})
+    EXPECT_EQ(decompress_front(skippable + rest, "lz4", 100), "") << rest;
 }
 
 TEST(Compression, OfBz2WholeBlocksAreGivenUnlessTheyAreDamaged) {

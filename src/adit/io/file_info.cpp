@@ -239,7 +239,18 @@ Json bag_json(const Bag& bag, const std::vector<TopicInfo>& topics) {
   return info;
 }
 
-/// What to type next, with the options that were given.
+/// Whether a folder of clouds, or FOLDER@PART, has .bin, which may lie in KITTI's `velodyne`.
+bool has_bin(const fs::path& path) {
+  std::error_code ignored;
+  const std::string name = path.string();
+  const fs::path folder = fs::is_directory(path, ignored) ? path : fs::path(name.substr(0, name.rfind('@')));
+  for (const fs::path& place : {folder, folder / "velodyne"})
+    for (const fs::directory_entry& entry : fs::directory_iterator(place, ignored))
+      if (lower_case(entry.path().extension().string()) == ".bin") return true;
+  return false;
+}
+
+/// What to type next, with the options that were given and are of use.
 std::string next_command(const fs::path& path, const RecordingConfig& config) {
   std::string command = "adit doctor " + shell_quoted(path.string());
   const auto add = [&](const std::string& option, const std::string& value) {
@@ -252,7 +263,7 @@ std::string next_command(const fs::path& path, const RecordingConfig& config) {
   add(" --imu-mount ", config.imu_mount);
   add(" --point-times ", config.point_times);
   add(" --point-time-field ", config.point_time_field);
-  if (config.bin_columns != 0) add(" --bin-columns ", format("{}", config.bin_columns));
+  if (config.bin_columns != 0 && has_bin(path)) add(" --bin-columns ", format("{}", config.bin_columns));
   add(" --tf ", config.tf);
   JointDriveConfig drive = config.drive;
   JointDriveConfig none;

@@ -35,11 +35,14 @@ Result<> read_offsets(const fs::path& path, const CloudFile& file, PointCloud& c
 /// The first cloud that can be read; fails as the first of all does where none can, and as the first without
 /// the field that is stated for times.
 Result<CloudFile> first_readable(const std::vector<fs::path>& clouds, const CloudReading& known) {
-  const auto decides = [](const Result<CloudFile>& one) { return one || lacks_stated_field(one.error()); };
-  Result<CloudFile> first = read_cloud_file(clouds.front(), known);
-  for (std::size_t i = 1; !decides(first) && i < clouds.size(); ++i) {
-    Result<CloudFile> next = read_cloud_file(clouds[i], known);
-    if (decides(next)) return next;
+  Result<CloudFile> first;
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    Result<CloudFile> cloud = read_cloud_file(clouds[i], known);
+    const bool lacks_field = !cloud && lacks_stated_field(known.times, [&](const KnownTimes& untimed) {
+      return read_cloud_file(clouds[i], {untimed, known.bin_columns});
+    });
+    if (cloud || lacks_field) return cloud;
+    if (i == 0) first = std::move(cloud);
   }
   return first;
 }
@@ -89,6 +92,8 @@ std::string offsets_text(const PointCloud& cloud) {
 Result<CloudReading> reading_of(const std::vector<fs::path>& clouds, const CloudReading& stated) {
   const bool are_bin = lower_case(clouds.front().extension().string()) == extension_of(CloudFormat::kitti);
   if (!are_bin) return CloudReading{stated.times};
+  if (const Result<> checked = check_bin_reading(stated); !checked)
+    return fail(clouds.front().filename().string(), checked.error());
   if (stated.bin_columns) return check_kitti_columns(clouds, *stated.bin_columns).map([&] { return stated; });
   return kitti_columns(clouds).map([&](std::size_t columns) { return CloudReading{stated.times, columns}; });
 }

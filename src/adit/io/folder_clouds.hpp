@@ -20,7 +20,7 @@ namespace adit {
 [[nodiscard]] std::string offsets_text(const PointCloud& cloud);
 
 /// How the clouds are read, as far as that is `stated` (stated_reading) or shows before any is. Fails as
-/// kitti_columns does, and check_kitti_columns. At least one cloud.
+/// kitti_columns does, check_kitti_columns and check_bin_reading. At least one cloud.
 [[nodiscard]] Result<CloudReading> reading_of(const std::vector<std::filesystem::path>& clouds,
                                               const CloudReading& stated);
 

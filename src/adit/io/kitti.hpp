@@ -18,12 +18,6 @@
 
 namespace adit {
 
-/// How many columns `read_kitti` takes.
-///@{
-inline constexpr std::size_t kLeastBinColumns = 3;
-inline constexpr std::size_t kMostBinColumns = 8;
-///@}
-
 /// How many columns each point has in these bytes, 4 or 5. Five where the size is a multiple of 20 bytes, and
 /// the fifth number is a ring (whole, from 0 to 255), or a hundred rows have no negative intensity so. Where
 /// the size is a multiple of 16 bytes as well, only if a hundred rows have several rings, or some intensity
@@ -34,13 +28,14 @@ inline constexpr std::size_t kMostBinColumns = 8;
 /// some files have whole rows of four columns alone and others of five.
 [[nodiscard]] Result<std::size_t> kitti_columns(const std::vector<std::filesystem::path>& files);
 
-/// Whether the files of a folder have whole rows of so many columns, as stated. Fails with the first that has
-/// not, and its size.
+/// Whether the files of a folder have whole rows of so many columns, at least one, as stated. Fails, with the
+/// first that has not and its size, where several, and more than a quarter, have not. Fewer are damaged, and
+/// left for `read_kitti` to refuse.
 [[nodiscard]] Result<> check_kitti_columns(const std::vector<std::filesystem::path>& files,
                                            std::size_t columns);
 
-/// `columns`: of each point, where that is known; else kitti_columns. Other sizes are those of truncated
-/// files: an error that names the last whole point.
+/// `columns`: of each point, 3 to 8, where that is known (throws ContractViolation on any other number); else
+/// kitti_columns. Other sizes are those of truncated files: an error that names the last whole point.
 Result<CloudFile> read_kitti(std::string_view bytes, std::optional<std::size_t> columns = {});
 
 /// Points without intensity get 0.

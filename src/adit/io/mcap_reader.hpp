@@ -33,7 +33,8 @@ struct Contents {
   std::vector<Metadata> metadata;             ///< Whole records, in the order of the file or its index.
   std::vector<ChunkIndex> chunks;             ///< In the order of the file or its index.
   std::vector<MessageRef> messages;  ///< By log time; equal times in the order of the file or its indexes.
-  /// Of `chunks`, the one that reaches past the end of the file; the records in front of the cut are read.
+  /// Of `chunks`, the one that reaches past the end of the file; the records in front of the cut are read
+  /// (decompress_front). Its checksum is of all of it, so that nothing verifies these.
   std::optional<std::size_t> cut_chunk;
   std::string torn;           ///< Where the file breaks off and why; "" where it is whole.
   std::string summary_fault;  ///< Why a summary that is there could not be used; "" where it could.

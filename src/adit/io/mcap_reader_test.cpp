@@ -201,6 +201,12 @@ TEST(McapReader, OfAChunkThatIsCutWhatLiesInFrontOfTheCutIsRead) {
       ASSERT_EQ(cut->warnings.size(), 1U);
       EXPECT_NE(cut->warnings[0].find(format("{} messages", cut->messages.size())), std::string::npos)
           << cut->warnings[0];
+      EXPECT_NE(cut->warnings[0].find("those of the chunk that is cut not verified"), std::string::npos)
+          << cut->warnings[0];
+      // As a loss of power leaves it, zeros for data.
+      const Result<Bag> zeros = open_mcap_bag(memory_source(whole.substr(0, size) + std::string(4096, '\0')));
+      ASSERT_TRUE(zeros) << zeros.error().message;
+      EXPECT_EQ(zeros->messages.size(), cut->messages.size()) << compression;
     }
   }
 }

@@ -186,7 +186,7 @@ Result<> check_layout(const PackedCloud& cloud) {
   if (checked && cloud.intensity) checked = check_field(cloud, cloud.intensity, "intensity");
   if (checked && cloud.time) checked = check_field(cloud, cloud.time, "t");
   const std::string& stated = cloud.known_times.field;
-  if (checked && !cloud.time && !stated.empty())
+  if (checked && !cloud.time && !stated.empty() && !cloud.known_times.none)
     return fail(no_stated_field(
         stated,
         format("the fields are: {}; name one of them, or leave the option out", names_text(cloud.names))));
@@ -352,10 +352,10 @@ Result<CloudFile> unpack(PackedCloud packed) {
   CloudFile file;
   load_points(packed, file.cloud);
   std::vector<std::int64_t> times;
+  file.times.field = packed.time_name;
   const bool has_times = packed.time && !packed.known_times.none;
   if (has_times) {
     const std::optional<TimeUnit> known = packed.known_times.unit;
-    file.times.field = packed.time_name;
     file.times.type = to_string(packed.time->type);
     file.times.unit = known ? known : unit_of_times(packed, file.cloud.points);
     const TimeUnit usual = usual_unit(packed.time->type);

@@ -75,8 +75,8 @@ void assign_field(PackedCloud& cloud, std::string_view name, PackedField field);
 /// another clock, or have no stamp, count from the earliest point. Under stamps that holds for all clouds if
 /// it does for the first; where the first one's did not, later ones that are so far away are an error. A
 /// first cloud of a hundred points or more that have one time has no times, nor have those after it. Fails
-/// when x, y or z is absent, or the field that is stated for times, a field reaches past the bytes, or times
-/// span more than 2.1 s. Where no point is finite, the cloud is empty.
+/// when x, y or z is absent, or the field that is stated for times (where these are taken), a field reaches
+/// past the bytes, or times span more than 2.1 s. Where no point is finite, the cloud is empty.
 Result<CloudFile> unpack(PackedCloud packed);
 /// `unpack` of a file: fails where it has no finite point, too.
 Result<CloudFile> unpack_file(const PackedCloud& packed);

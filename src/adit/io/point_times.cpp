@@ -11,7 +11,6 @@ namespace adit {
 namespace {
 
 constexpr std::string_view kOneTime = "is the same for every point";
-constexpr std::string_view kAsStated = "with the times of points, as --point-time-field states";
 
 }  // namespace
 
@@ -52,10 +51,9 @@ KnownTimes known_after(const PointTimes& first, KnownTimes stated) {
 }
 
 std::string no_stated_field(std::string_view field, std::string_view remedy) {
-  return format("no field '{}' {}; {}", printable(field), kAsStated, remedy);
+  return format("no field '{}', which --point-time-field names for the times of points; {}", printable(field),
+                remedy);
 }
-
-bool lacks_stated_field(const Error& error) { return error.message.find(kAsStated) != std::string::npos; }
 
 std::string point_times_text(const PointTimes& times) {
   if (times.field.empty()) return "";

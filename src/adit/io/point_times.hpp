@@ -26,7 +26,8 @@ struct KnownTimes {
   std::optional<TimeUnit> unit = {};  ///< As stated, or as the first cloud of the recording shows it.
   /// Whether the times of the recording's first cloud are of another clock than its stamp.
   std::optional<bool> from_first_point = {};
-  bool none = false;       ///< The first cloud has one time for all its points: the field tells nothing.
+  /// Times are not taken: the first cloud has one for all its points, so that the field tells nothing.
+  bool none = false;
   std::string field = {};  ///< Name of the field that has them, as stated; "": as found.
 };
 /// What `config` states of them. Fails on a unit that is none.
@@ -34,7 +35,7 @@ struct KnownTimes {
 
 /// What a cloud shows of the times of its points.
 struct PointTimes {
-  std::string field = {};             ///< Name of the field; "" where there is none.
+  std::string field = {};             ///< Name of the field, also of times not taken; "": there is none.
   std::string_view type = {};         ///< Of the field, "float64".
   std::optional<TimeUnit> unit = {};  ///< Given, or found; none where there are too few times to tell.
   bool has_usual_unit = true;         ///< Seconds of floats, nanoseconds of integers.
@@ -51,8 +52,16 @@ struct PointTimes {
 
 /// The fault of a cloud without the field that is stated. `remedy` says what the cloud has, and what to do.
 [[nodiscard]] std::string no_stated_field(std::string_view field, std::string_view remedy);
-/// Whether an error says so. Then the other clouds of a recording need not be tried.
-[[nodiscard]] bool lacks_stated_field(const Error& error);
+/// Whether a cloud lacks the field that is stated, so that the others of the recording need not be tried.
+/// `read`, from KnownTimes to a Result with `times`, reads it; where it cannot do that even without times,
+/// the cloud tells nothing.
+template <class Read>
+[[nodiscard]] bool lacks_stated_field(KnownTimes known, const Read& read) {
+  known.none = true;
+  if (known.field.empty()) return false;
+  const auto cloud = read(known);
+  return cloud && cloud->times.field.empty();
+}
 
 /// "timestamp, float64 s, absolute"; "" without a field.
 [[nodiscard]] std::string point_times_text(const PointTimes& times);

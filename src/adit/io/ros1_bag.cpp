@@ -21,6 +21,8 @@ constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 constexpr std::string_view kCopyAgain =
     "copy it again from where it was recorded, as nothing can be read of this one";
+constexpr std::string_view kCopyOnceDone =
+    "nothing can be read of this one; if its recorder still ran, copy it again once that has ended";
 
 /// Values of the field "op".
 enum class Op : std::uint8_t {
@@ -142,6 +144,7 @@ struct Contents {
   TopicIndex topics;
   std::map<std::uint32_t, std::size_t> topic_of_connection;
   std::vector<std::uint64_t> chunks;  ///< Offsets of their records.
+  std::optional<Record> truncated;    ///< The compressed chunk that the file ends in.
   std::vector<Place> places;          ///< BagMessage::where counts these.
 
   [[nodiscard]] Result<> add_message(std::uint32_t connection, Stamp time, Place place) {
@@ -169,28 +172,34 @@ std::string compression_of(const Record& chunk) {
   return compression == "none" ? "" : compression;
 }
 
-/// Whether the file ends in the data of this compressed chunk. A recorder that was killed leaves 0 as their
-/// size, which it writes when it is done with a chunk.
-bool is_cut_and_packed(const ByteSource& source, const Record& chunk) {
+/// A recorder writes the size of a chunk's data when it is done with it, and leaves 0 where it is killed.
+bool is_unfinished(const Record& chunk) { return chunk.size == 0; }
+
+/// Whether the file ends in the data of this compressed chunk. Asked only where a file is gone through: what
+/// an index names has to be whole.
+bool is_truncated_and_compressed(const ByteSource& source, const Record& chunk) {
   return chunk.op == Op::chunk && !compression_of(chunk).empty() &&
-         (chunk.end() > source.size || chunk.size == 0);
+         (chunk.end() > source.size || is_unfinished(chunk));
 }
 
-/// The front of the records of such a chunk; `stated`: the size of all of them.
-Result<std::string> read_cut_chunk(const ByteSource& source, const Record& chunk, std::uint32_t stated) {
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 28U;  // of a damaged size, too
-  const std::uint64_t most = chunk.size == 0 ? kMost : std::min<std::uint64_t>(stated, kMost);
-  return source.read(chunk.data, std::min(source.size - chunk.data, kMost))
-      .map([&](const std::string& bytes) { return decompress_front(bytes, compression_of(chunk), most); });
+/// The front of the records of such a chunk.
+Result<std::string> read_truncated_chunk(const ByteSource& source, const Record& chunk) {
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 28U;          // of a damaged size, too
+  constexpr std::uint64_t kMostUnstated = std::uint64_t{1} << 25U;  // chunks are of 768 kB, or one message
+  const std::uint64_t most = is_unfinished(chunk) ? kMostUnstated : kMost;
+  const std::uint64_t stated = number_in<std::uint32_t>(chunk.fields, "size").value_or(0);
+  return source.read(chunk.data, std::min(source.size - chunk.data, most)).map([&](const std::string& bytes) {
+    return decompress_front(bytes, compression_of(chunk),
+                            is_unfinished(chunk) ? most : std::min(stated, most));
+  });
 }
 
 /// The expanded records of a chunk.
 Result<std::string> read_chunk(const ByteSource& source, std::uint64_t offset) {
-  const Result<Record> record = read_head(source, offset);
+  const Result<Record> record = read_record(source, offset);
   if (!record) return tl::unexpected(record.error());
   const auto size = number_in<std::uint32_t>(record->fields, "size");
   if (record->op != Op::chunk || !size) return fail_at(offset, "no chunk where the index announces one");
-  if (is_cut_and_packed(source, *record)) return read_cut_chunk(source, *record, *size);
   Result<std::string> expanded =
       source.read(record->data, record->size).and_then([&](const std::string& bytes) {
         return decompress(bytes, compression_of(*record), *size);
@@ -212,9 +221,8 @@ Result<> add_connection_record(const ByteSource& source, const Record& record, C
   });
 }
 
-/// Connections and messages of a chunk without index.
-Result<> scan_chunk(const ByteSource& source, std::uint64_t offset, Contents& contents) {
-  Result<std::string> records = read_chunk(source, offset);
+/// Connections and messages of a chunk without index; `records`: the expanded ones.
+Result<> scan_chunk(Result<std::string> records, std::uint64_t offset, Contents& contents) {
   if (!records) return tl::unexpected(records.error());
   const std::size_t chunk = contents.chunks.size();
   contents.chunks.push_back(offset);
@@ -231,32 +239,39 @@ Result<> scan_chunk(const ByteSource& source, std::uint64_t offset, Contents& co
   return {};
 }
 
+tl::unexpected<Error> fail_truncated(const Record& chunk) {
+  return fail(format("the chunk at byte {} {}", chunk.offset,
+                     is_unfinished(chunk) ? "is unfinished" : "reaches past the end of the file"));
+}
+
 /// Goes through the file from its start. What was read before an error stays in `contents`. Of a chunk that
 /// is cut the records in front of the cut are taken; of a plain one as if they lay in the file itself.
 Result<> scan_file(const ByteSource& source, Contents& contents) {
-  std::optional<std::uint64_t> cut_chunk;
+  std::optional<Record> cut_plain;
   for (std::uint64_t at = kMagic.size(); at < source.size;) {
     throw_if_cancelled();
     const Result<Record> record = read_head(source, at);
     if (!record) return tl::unexpected(record.error());
-    if (is_cut_and_packed(source, *record)) {
-      (void)scan_chunk(source, at, contents);  // that it ends inside of a record is known
-      return record->size > 0 ? fail_past_end(at) : fail_at(at, "the recorder did not finish a chunk");
+    if (is_truncated_and_compressed(source, *record)) {
+      contents.truncated = *record;
+      // That it ends inside of a record is known.
+      (void)scan_chunk(read_truncated_chunk(source, *record), at, contents);
+      return fail_truncated(*record);
     }
     if (record->end() > source.size) {
-      if (record->op != Op::chunk || cut_chunk) return fail_past_end(at);
-      cut_chunk = at;
+      if (record->op != Op::chunk || cut_plain) return fail_past_end(at);
+      cut_plain = *record;
       at = record->data;
       continue;
     }
     Result<> added;
-    if (record->op == Op::chunk) added = scan_chunk(source, at, contents);
+    if (record->op == Op::chunk) added = scan_chunk(read_chunk(source, at), at, contents);
     if (record->op == Op::connection) added = add_connection_record(source, *record, contents);
     if (record->op == Op::message) added = add_message_record(*record, contents, {std::nullopt, at});
     if (!added) return added;
     at = record->end();
   }
-  return cut_chunk ? fail_past_end(*cut_chunk) : Result<>();
+  return cut_plain ? fail_truncated(*cut_plain) : Result<>();
 }
 
 /// The messages of one chunk, from the index records behind it.
@@ -317,6 +332,19 @@ Result<> read_lists(const ByteSource& source, const Record& header, std::uint64_
   return {};
 }
 
+/// The error or, where messages could be read, the warning of a file that breaks off.
+std::string torn_text(const Contents& contents, const std::string& fault) {
+  const bool has_more = !contents.truncated || !is_unfinished(*contents.truncated);  // where it was recorded
+  const std::size_t num_messages = contents.bag.messages.size();
+  if (num_messages == 0)
+    return format("the file breaks off before its first whole message: {}; {}", fault,
+                  has_more ? kCopyAgain : kCopyOnceDone);
+  const bool is_unverified = contents.truncated && compression_of(*contents.truncated) == "lz4";
+  return format("the file breaks off: {}; the {} messages before the break are read{}{}", fault, num_messages,
+                is_unverified ? ", those of that chunk not verified, as its checksum stands at its end" : "",
+                has_more ? "; where the recording went on, copy the file again" : "");
+}
+
 Result<Contents> read_contents(const ByteSource& source) {
   const Result<std::string> magic = source.read(0, std::min<std::uint64_t>(source.size, kMagic.size()));
   if (!magic) return tl::unexpected(magic.error());
@@ -335,15 +363,10 @@ Result<Contents> read_contents(const ByteSource& source) {
   }
   const Result<> scanned = scan_file(source, contents);
   const std::size_t num_messages = contents.bag.messages.size();
-  if (num_messages == 0)
-    return fail(format("the file breaks off before its first whole message: {}; {}",
-                       scanned ? format("it ends at byte {}", source.size) : scanned.error().message,
-                       kCopyAgain));
+  const std::string fault = scanned ? format("it ends at byte {}", source.size) : scanned.error().message;
+  if (num_messages == 0) return fail(torn_text(contents, fault));
   if (!scanned)
-    contents.bag.warnings.push_back(format(
-        "the file breaks off: {}; {} messages in front of that are read; where the recording went on, copy "
-        "the file again",
-        scanned.error().message, num_messages));
+    contents.bag.warnings.push_back(torn_text(contents, fault));
   else if (!listed)
     contents.bag.warnings.push_back(index_warning(listed.error().message, num_messages, "rosbag reindex"));
   return contents;
@@ -352,17 +375,25 @@ Result<Contents> read_contents(const ByteSource& source) {
 /// Reads messages, and keeps the chunks that were read last.
 class Messages {
  public:
-  Messages(ByteSource source, std::vector<std::uint64_t> chunks, std::vector<Place> places)
-      : source_(std::move(source)), chunks_(std::move(chunks)), places_(std::move(places)) {}
+  Messages(ByteSource source, std::vector<std::uint64_t> chunks, std::optional<Record> truncated,
+           std::vector<Place> places)
+      : source_(std::move(source)),
+        chunks_(std::move(chunks)),
+        truncated_(std::move(truncated)),
+        places_(std::move(places)) {}
 
   Result<std::string> read(std::uint64_t where) {
     const Place place = places_.at(where);
     if (!place.chunk) return read_message(source_, place.offset);
-    const std::size_t chunk = *place.chunk;
-    return recent_.get(chunk, [&] { return read_chunk(source_, chunks_[chunk]); })
-        .and_then([&](const RecentChunks::Records& records) {
-          return read_message(memory_source(records), place.offset);
-        });
+    const std::uint64_t chunk = chunks_[*place.chunk];
+    const Result<RecentChunks::Records> records = recent_.get(*place.chunk, [&] {
+      const bool is_truncated = truncated_ && truncated_->offset == chunk;
+      return is_truncated ? read_truncated_chunk(source_, *truncated_) : read_chunk(source_, chunk);
+    });
+    if (!records) return tl::unexpected(records.error());
+    Result<std::string> message = read_message(memory_source(*records), place.offset);
+    if (!message) return fail(format("chunk at byte {}", chunk), message.error());
+    return message;
   }
 
  private:
@@ -375,6 +406,7 @@ class Messages {
 
   ByteSource source_;
   std::vector<std::uint64_t> chunks_;
+  std::optional<Record> truncated_;
   std::vector<Place> places_;
   RecentChunks recent_;
 };
@@ -386,8 +418,9 @@ Result<Bag> open_ros1_bag(ByteSource source) {
   const std::uint64_t num_bytes = source.size;
   return ros1::read_contents(source).map([&](ros1::Contents contents) {
     std::ranges::stable_sort(contents.bag.messages, {}, &BagMessage::log_time);
-    const auto messages = std::make_shared<ros1::Messages>(std::move(source), std::move(contents.chunks),
-                                                           std::move(contents.places));
+    const auto messages =
+        std::make_shared<ros1::Messages>(std::move(source), std::move(contents.chunks),
+                                         std::move(contents.truncated), std::move(contents.places));
     contents.bag.storage = "ros1";
     contents.bag.num_bytes = num_bytes;
     contents.bag.read = [messages](const BagMessage& message) { return messages->read(message.where); };

@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "adit/io/ros1_bag.hpp"
 
-#include <bzlib.h>
 #include <gtest/gtest.h>
-#include <lz4frame.h>
 
 #include <set>
 
@@ -16,37 +14,18 @@
 #include "support/data.hpp"
 #include "support/files.hpp"
 #include "support/foreign_mcap.hpp"
+#include "support/ros1_records.hpp"
 
 namespace adit {
 namespace {
 
-/// Numbers without alignment, texts behind their length.
-class Ros1Writer {
- public:
-  template <class T>
-  Ros1Writer& number(T value) {
-    append_little_endian(bytes_, value);
-    return *this;
-  }
-  Ros1Writer& text(std::string_view value) {
-    number(static_cast<std::uint32_t>(value.size()));
-    bytes_.append(value);
-    return *this;
-  }
-  Ros1Writer& header(Stamp stamp, std::string_view frame) {
-    number(std::uint32_t{42}).number(static_cast<std::uint32_t>(stamp.ns / 1'000'000'000));
-    return number(static_cast<std::uint32_t>(stamp.ns % 1'000'000'000)).text(frame);
-  }
-  Ros1Writer& pose(const Pose& pose) {
-    for (const double value : pose.translation()) number(value);
-    for (const double value : pose.rotation().coeffs()) number(value);
-    return *this;
-  }
-  [[nodiscard]] const std::string& bytes() const { return bytes_; }
-
- private:
-  std::string bytes_;
-};
+using test::ros1::bag_header;
+using test::ros1::chunk_info_record;
+using test::ros1::chunk_record;
+using test::ros1::connection_record;
+using test::ros1::index_record;
+using test::ros1::message_record;
+using test::ros1::Ros1Writer;
 
 std::string cloud(const Scan& scan) {
   Ros1Writer w;
@@ -72,48 +51,6 @@ std::string odometry(Stamp stamp, const Pose& pose) {
 
 std::string transform(const std::string& frame, const std::string& child, const Pose& pose) {
   return Ros1Writer().number(std::uint32_t{1}).header({5}, frame).text(child).pose(pose).bytes();
-}
-
-std::string field(std::string_view name, std::string_view value) {
-  return Ros1Writer().text(format("{}={}", name, value)).bytes();
-}
-template <class T>
-std::string field_of(std::string_view name, T value) {
-  return field(name, Ros1Writer().number(value).bytes());
-}
-std::string record(const std::string& header, std::string_view data) {
-  return Ros1Writer().text(header).text(data).bytes();
-}
-
-struct Ros1Message {
-  std::uint32_t connection;
-  Stamp time;
-  std::string data;
-};
-
-std::string message_record(const Ros1Message& message) {
-  const std::uint64_t time = static_cast<std::uint64_t>(message.time.ns / 1'000'000'000) |
-                             static_cast<std::uint64_t>(message.time.ns % 1'000'000'000) << 32U;
-  return record(
-      field_of("op", std::uint8_t{2}) + field_of("conn", message.connection) + field_of("time", time),
-      message.data);
-}
-
-std::string connection_record(std::uint32_t id, const std::string& topic, const std::string& type) {
-  return record(field_of("op", std::uint8_t{7}) + field_of("conn", id) + field("topic", topic),
-                field("topic", topic) + field("type", type));
-}
-
-std::string bag_header(std::uint64_t index_at, std::uint32_t num_connections, std::uint32_t num_chunks) {
-  return record(field_of("op", std::uint8_t{3}) + field_of("index_pos", index_at) +
-                    field_of("conn_count", num_connections) + field_of("chunk_count", num_chunks),
-                std::string(100, ' '));
-}
-
-std::string chunk_record(const std::string& records) {
-  return record(field_of("op", std::uint8_t{5}) + field("compression", "none") +
-                    field_of("size", static_cast<std::uint32_t>(records.size())),
-                records);
 }
 
 /// A bag as a recorder leaves it that was killed: one plain chunk, no index.
@@ -155,15 +92,10 @@ IndexedBag indexed_bag(std::uint32_t times_each_chunk_is_named = 1) {
       records += message_record({c, {(10 * c + m) * 1'000'000'000LL}, format("message {} {}", c, m)});
     }
     for (std::uint32_t i = 0; i < times_each_chunk_is_named; ++i)
-      chunks += record(field_of("op", std::uint8_t{6}) + field_of("ver", std::uint32_t{1}) +
-                           field_of("chunk_pos", std::uint64_t{first + body.size()}) +
-                           field_of("count", std::uint32_t{1}),
-                       Ros1Writer().number(c).number(std::uint32_t{3}).bytes());
+      chunks += chunk_info_record(first + body.size(), c, 3);
     connections += connection;
     body += chunk_record(records);
-    body += record(field_of("op", std::uint8_t{4}) + field_of("ver", std::uint32_t{1}) + field_of("conn", c) +
-                       field_of("count", std::uint32_t{3}),
-                   entries);
+    body += index_record(c, 3, entries);
   }
   const std::size_t index_at = first + body.size();
   return {magic + bag_header(index_at, 2, 2 * times_each_chunk_is_named) + body + connections + chunks,
@@ -213,101 +145,6 @@ TEST(Ros1Bag, EveryTruncationIsReadSoFarOrAnError) {
     for (const BagMessage& message : bag->messages) ASSERT_TRUE(bag->read(message)) << "cut at " << size;
   }
   EXPECT_EQ(num_read, whole.messages.size() - 1) << "the last message reaches to the end";
-}
-
-/// As recorders pack a chunk: lz4 in one block; bz2 in blocks of 100 kB, as 900 kB are more than most chunks.
-std::string packed_as(const std::string& compression, std::string records) {
-  if (compression == "bz2") {
-    auto size = static_cast<unsigned>(records.size() + records.size() / 100 + 600);
-    std::string out(size, '\0');
-    EXPECT_EQ(BZ2_bzBuffToBuffCompress(out.data(), &size, records.data(),
-                                       static_cast<unsigned>(records.size()), 1, 0, 0),
-              BZ_OK);
-    return out.substr(0, size);
-  }
-  LZ4F_preferences_t how = {};
-  how.frameInfo.blockSizeID = LZ4F_max1MB;
-  how.frameInfo.blockMode = LZ4F_blockIndependent;
-  how.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
-  std::string out(LZ4F_compressFrameBound(records.size(), &how), '\0');
-  out.resize(LZ4F_compressFrame(out.data(), out.size(), records.data(), records.size(), &how));
-  return out;
-}
-
-/// A kilobyte, of which every compression makes less.
-std::string numbered_text(std::size_t m) {
-  Rng rng(m);
-  std::string text = format("message {} ", m);
-  while (text.size() < 1000) text += format("{} ", rng.below(1000));
-  return text;
-}
-
-constexpr std::uint32_t kNumTexts = 300;
-
-/// A bag without index, and where the data of its chunk begin. `is_finished`: the recorder stated their size.
-struct PackedBag {
-  std::string bytes;
-  std::size_t data = 0;
-};
-
-PackedBag packed_bag(const std::string& compression, bool is_finished = true) {
-  std::string records = connection_record(0, "/notes", "std_msgs/String");
-  for (std::uint32_t m = 0; m < kNumTexts; ++m)
-    records += message_record({0, {m * 1'000'000'000LL}, numbered_text(m)});
-  const std::string packed = packed_as(compression, records);
-  const std::string head = record(
-      field_of("op", std::uint8_t{5}) + field("compression", compression) +
-          field_of("size", is_finished ? static_cast<std::uint32_t>(records.size()) : std::uint32_t{0}),
-      is_finished ? packed : "");
-  const std::string front = "#ROSBAG V2.0\n" + bag_header(0, 0, 0);
-  return {front + head + (is_finished ? "" : packed),
-          front.size() + head.size() - (is_finished ? packed.size() : 0)};
-}
-
-/// At least so many messages, the first ones, and one warning that says how many.
-void expect_front_of_texts(const Result<Bag>& bag, double at_least) {
-  if (!bag) {
-    EXPECT_LE(at_least, 0.0) << bag.error().message;
-    EXPECT_NE(bag.error().message.find("copy it again"), std::string::npos) << bag.error().message;
-    return;
-  }
-  EXPECT_GE(static_cast<double>(bag->messages.size()), at_least);
-  for (std::size_t m = 0; m < bag->messages.size(); ++m)
-    ASSERT_EQ(bag->read(bag->messages[m]), numbered_text(m)) << m;
-  ASSERT_EQ(bag->warnings.size(), 1U);
-  EXPECT_TRUE(bag->warnings[0].starts_with("the file breaks off: byte ")) << bag->warnings[0];
-  EXPECT_NE(bag->warnings[0].find(format("{} messages", bag->messages.size())), std::string::npos)
-      << bag->warnings[0];
-}
-
-TEST(Ros1Bag, OfAPackedChunkThatIsCutWhatLiesInFrontOfTheCutIsRead) {
-  for (const std::string compression : {"bz2", "lz4"}) {
-    const double lost = compression == "bz2" ? 110.0 : 5.0;  // messages: a block, or what stands at the cut
-    for (const bool is_finished : {true, false}) {
-      const auto [bytes, data] = packed_bag(compression, is_finished);
-      for (const double share : {0.0, 0.3, 0.5, 0.7, 0.9, 0.99}) {
-        const std::size_t size =
-            data + static_cast<std::size_t>(share * static_cast<double>(bytes.size() - data));
-        const Result<Bag> cut = open_ros1_bag(memory_source(bytes.substr(0, size)));
-        ASSERT_NO_FATAL_FAILURE(expect_front_of_texts(cut, share * kNumTexts - lost))
-            << compression << " cut at " << size;
-      }
-      // The data are whole, but a recorder that did not finish the chunk may have had more.
-      const Result<Bag> whole = open_ros1_bag(memory_source(bytes));
-      ASSERT_TRUE(whole) << whole.error().message;
-      EXPECT_EQ(whole->messages.size(), kNumTexts);
-      EXPECT_EQ(whole->warnings.size(), is_finished ? 0U : 1U);
-    }
-  }
-}
-
-TEST(Ros1Bag, ADamagedByteInAPackedChunkIsAnError) {
-  for (const std::string compression : {"bz2", "lz4"}) {
-    PackedBag bag = packed_bag(compression);
-    char& byte = bag.bytes[(bag.data + bag.bytes.size()) / 2];
-    byte = static_cast<char>(byte ^ 1);
-    EXPECT_ERROR(open_ros1_bag(memory_source(bag.bytes)), "chunk at byte");
-  }
 }
 
 TEST(Ros1Bag, WithoutAWholeMessageTheErrorSaysWhatToDo) {

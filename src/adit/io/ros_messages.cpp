@@ -227,7 +227,7 @@ Result<CloudMessage> decode_livox(std::string_view message, MessageEncoding enco
   packed.num_points = reader.number<std::uint32_t>();
   packed.bytes = reader.rest();
   packed.order = reader.order();
-  packed.known_times = {TimeUnit::nanoseconds, known.from_first_point, false, known.field};
+  packed.known_times = {TimeUnit::nanoseconds, known.from_first_point, known.none, known.field};
   const std::size_t stride = encoding == MessageEncoding::cdr ? 20 : 19;  // CDR pads to a multiple of four
   assign_field(packed, "offset_time", {ScalarType::uint32, 0, stride});
   assign_field(packed, "x", {ScalarType::float32, 4, stride});

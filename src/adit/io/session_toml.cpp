@@ -261,6 +261,12 @@ MergeAdvice advice_in(const toml::table& table) {
   return advice;
 }
 
+/// None where the table has no share, or a number that is none: the file may have been edited.
+std::optional<double> share_in(const toml::table& table, const char* key) {
+  const std::optional<double> share = table[key].value<double>();
+  return share && *share >= 0.0 && *share <= 1.0 ? share : std::nullopt;
+}
+
 SavedMerge merge_in(const toml::table& table) {
   SavedMerge merge;
   const std::vector<std::string> robots = strings_of(table["robots"].node());
@@ -272,7 +278,7 @@ SavedMerge merge_in(const toml::table& table) {
   check.reason = table["reason"].value_or(std::string());
   check.refused_kind = refusal_kind(table["refused_kind"].value_or(std::string()));
   if (const toml::table* advice = table["where_to_drive"].as_table()) check.advice = advice_in(*advice);
-  check.unconfirmed = {table["unconfirmed_a"].value<double>(), table["unconfirmed_b"].value<double>()};
+  check.unconfirmed = {share_in(table, "unconfirmed_a"), share_in(table, "unconfirmed_b")};
   if (const toml::array* hypotheses = table["hypotheses"].as_array())
     for (const toml::node& node : *hypotheses)
       if (const toml::table* h = node.as_table()) check.hypotheses.push_back(hypothesis_in(*h));

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +34,10 @@ std::string bin_rows(int num_rows, int num_columns) {
   return bytes;
 }
 
+std::size_t size_of_first(const std::string& path, const RecordingConfig& config) {
+  return open_recording(path, config).value().read_scan(0).value().cloud.size();
+}
+
 std::string notes_of(const Recording& recording) {
   return format("{}", fmt::join(recording.assumptions, "\n"));
 }
@@ -41,10 +46,10 @@ TEST(StatedLayouts, ColumnsOfFilesThatFitSeveral) {
   const TemporaryFolder folder;
   for (const char* name : {"0.bin", "1.bin"}) put_file(folder / name, bin_rows(8, 5));
   const std::string path = folder.path().string();
-  EXPECT_EQ(open_recording(path)->read_scan(0)->cloud.size(), 10U) << "too few to tell: four";
+  EXPECT_EQ(size_of_first(path, {}), 10U) << "too few to tell: four";
   const Recording five = open_recording(path, {.bin_columns = 5}).value();
   for (std::size_t i = 0; i < 2; ++i) {
-    const PointCloud cloud = five.read_scan(i)->cloud;
+    const PointCloud cloud = five.read_scan(i).value().cloud;
     ASSERT_EQ(cloud.size(), 8U);
     EXPECT_EQ(cloud.points.back(), Eigen::Vector3f(7.5F, 1.0F, 2.0F));
     EXPECT_EQ(cloud.intensities, std::vector<float>(8, 3.0F));
@@ -56,8 +61,8 @@ TEST(StatedLayouts, ColumnsOfFilesThatFitSeveral) {
       << notes_of(five);
   // Also where more rows would show five.
   for (const char* name : {"0.bin", "1.bin"}) put_file(folder / name, bin_rows(120, 5));
-  EXPECT_EQ(open_recording(path)->read_scan(0)->cloud.size(), 120U);
-  EXPECT_EQ(open_recording(path, {.bin_columns = 4})->read_scan(0)->cloud.size(), 150U);
+  EXPECT_EQ(size_of_first(path, {}), 120U);
+  EXPECT_EQ(size_of_first(path, {.bin_columns = 4}), 150U);
 }
 
 TEST(StatedLayouts, ColumnsThatAreNotFound) {
@@ -66,7 +71,7 @@ TEST(StatedLayouts, ColumnsThatAreNotFound) {
   for (const int num_columns : {3, 6, 8}) {
     for (const char* name : {"0.bin", "1.bin"}) put_file(folder / name, bin_rows(10, num_columns));
     const Recording recording = open_recording(path, {.bin_columns = num_columns}).value();
-    const PointCloud cloud = recording.read_scan(1)->cloud;
+    const PointCloud cloud = recording.read_scan(1).value().cloud;
     ASSERT_EQ(cloud.size(), 10U);
     EXPECT_EQ(cloud.points.back(), Eigen::Vector3f(9.5F, 1.0F, 2.0F));
     EXPECT_EQ(cloud.intensities, std::vector<float>(num_columns > 3 ? 10 : 0, 3.0F));
@@ -80,15 +85,18 @@ TEST(StatedLayouts, ColumnsThatDoNotFitAreAnError) {
   const TemporaryFolder folder;
   put_file(folder / "0.bin", bin_rows(6, 5));
   put_file(folder / "1.bin", bin_rows(8, 5));
+  put_file(folder / "2.bin", bin_rows(7, 5));
   const std::string path = folder.path().string();
-  EXPECT_ERROR(open_recording(path, {.bin_columns = 6}),
-               "1.bin: 160 bytes are no whole rows of 6 columns (24 bytes each), as --bin-columns states; "
-               "state how many there are, or leave the option out");
+  EXPECT_ERROR(
+      open_recording(path, {.bin_columns = 6}),
+      "1.bin: 160 bytes are not a whole number of rows of 6 columns (24 bytes each), as --bin-columns "
+      "(recording.bin_columns) states, and so it is in 2 of 3 files; state how many there are, or "
+      "leave the option out");
   EXPECT_ERROR(open_recording(path, {.bin_columns = 2}), "recording.bin_columns: 2 is not 3 to 8, or 0");
   EXPECT_ERROR(
       open_recording(path, {.point_time_field = "time"}),
-      "0.bin: no field 'time' with the times of points, as --point-time-field states; the columns of "
-      "a .bin have no names; leave the option out");
+      "0.bin: no field 'time', which --point-time-field names for the times of points; the columns of a "
+      ".bin have no names; leave the option out");
   // Of one cloud alone.
   const std::string cloud = (folder / "1.bin").string();
   EXPECT_ERROR(file_info(cloud, {.bin_columns = 6}),
@@ -98,6 +106,23 @@ TEST(StatedLayouts, ColumnsThatDoNotFitAreAnError) {
   const std::string info = file_info(cloud, {.bin_columns = 5}).value();
   EXPECT_NE(info.find("\"points\": 8"), std::string::npos) << info;
   EXPECT_NE(info.find("\"bin_columns\": 5"), std::string::npos) << info;
+}
+
+TEST(StatedLayouts, AFileThatWasCutIsAScanThatCannotBeRead) {
+  const TemporaryFolder folder;
+  for (const char* name : {"0.bin", "1.bin", "2.bin"}) put_file(folder / name, bin_rows(10, 4));
+  const std::string cut = bin_rows(10, 4);
+  put_file(folder / "3.bin", cut.substr(0, cut.size() - 7));
+  const std::string path = folder.path().string();
+  for (const int num_columns : {0, 4}) {
+    const Recording recording = open_recording(path, {.bin_columns = num_columns}).value();
+    ASSERT_EQ(recording.num_scans(), 4U);
+    EXPECT_EQ(recording.read_scan(2).value().cloud.size(), 10U);
+    EXPECT_ERROR(recording.read_scan(3), "3.bin: 153 bytes are not a whole number of points of 4 columns");
+  }
+  // Every second file has whole rows of eight, too.
+  put_file(folder / "1.bin", bin_rows(11, 4));
+  EXPECT_ERROR(open_recording(path, {.bin_columns = 8}), "in 2 of 4 files");
 }
 
 /// 200 points whose field `t` counts half a millisecond each, and another one the half of that.
@@ -131,19 +156,23 @@ TEST(StatedLayouts, TheFieldOfTimesInAFolder) {
   for (const std::string extension : {".pcd", ".ply"}) {
     SCOPED_TRACE(extension);
     const TemporaryFolder folder;
-    for (const char* name : {"0", "1", "2"}) {
-      const std::filesystem::path path = folder / (name + extension);
-      extension == ".pcd" ? put_pcd_with_two_times(path) : put_ply_with_two_times(path);
-    }
+    const auto put = extension == ".pcd" ? put_pcd_with_two_times : put_ply_with_two_times;
+    for (const char* name : {"0", "1", "2"}) put(folder / (name + extension));
     const std::string path = folder.path().string();
     EXPECT_EQ(last_time(open_recording(path).value()), 500'000 * (kNumTimed - 1));
     const Recording other = open_recording(path, {.point_time_field = "fired_us"}).value();
     EXPECT_EQ(last_time(other), 250'000 * (kNumTimed - 1)) << "microseconds, as they show";
     const Result<Recording> missing = open_recording(path, {.mount = "0,0,1", .point_time_field = "when"});
     EXPECT_ERROR(missing,
-                 "no field 'when' with the times of points, as --point-time-field states; the fields "
-                 "are: x, y, z, t, fired_us; name one of them, or leave the option out");
+                 "no field 'when', which --point-time-field names for the times of points; the fields are: "
+                 "x, y, z, t, fired_us; name one of them, or leave the option out");
     EXPECT_ERROR(missing, "0" + extension + ": no field");
+    // As the first that can be read says, not as the first of all.
+    put_file(folder / ("0" + extension), "damaged");
+    EXPECT_ERROR(open_recording(path, {.mount = "0,0,1", .point_time_field = "when"}),
+                 "1" + extension + ": no field");
+    EXPECT_TRUE(open_recording(path, {.mount = "0,0,1", .point_time_field = "fired_us"}));
+    put(folder / ("0" + extension));
     // Of one cloud alone.
     const std::string cloud = (folder / ("0" + extension)).string();
     EXPECT_NE(file_info(cloud, {}).value().find("t, int32 ns, from the stamp"), std::string::npos);
@@ -181,9 +210,26 @@ TEST(StatedLayouts, TheFieldOfTimesInABag) {
   const Bag bag = open_mcap_bag(memory_source(file.bytes())).value();
   EXPECT_EQ(topics_of(bag, {}).front().point_times_from, "t, int32 ns, from the stamp");
   EXPECT_EQ(topics_of(bag, stated).front().point_times_from, "sweeptime, float32 s, from the stamp");
-  EXPECT_ERROR(file.read({.point_time_field = "when"}),
-               "/points, scan 0: no field 'when' with the times of points, as --point-time-field states; the "
-               "fields are: x, y, z, sweeptime, t; name one of them, or leave the option out");
+  EXPECT_ERROR(
+      file.read({.point_time_field = "when"}),
+      "/points, scan 0: no field 'when', which --point-time-field names for the times of points; the "
+      "fields are: x, y, z, sweeptime, t; name one of them, or leave the option out");
+}
+
+TEST(StatedLayouts, TheNextCommandStatesColumnsWhereThereAreSome) {
+  const TemporaryFolder folder;
+  const std::filesystem::path bins = folder / "kitti/velodyne";
+  const std::filesystem::path pcds = folder / "pcds";
+  for (const std::filesystem::path& path : {bins, pcds}) std::filesystem::create_directories(path);
+  for (const char* name : {"0.bin", "1.bin", "2.bin"}) put_file(bins / name, bin_rows(10, 5));
+  for (const char* name : {"0.pcd", "1.pcd"}) put_pcd_with_two_times(pcds / name);
+  const RecordingConfig five{.mount = "0,0,1", .bin_columns = 5};
+  const auto states_five = [&](const std::string& path) {
+    return file_info(path, five).value().find(" --bin-columns 5") != std::string::npos;
+  };
+  for (const std::string& path : {bins.string(), bins.string() + "@even", bins.parent_path().string()})
+    EXPECT_TRUE(states_five(path)) << path;
+  EXPECT_FALSE(states_five(pcds.string()));
 }
 
 }  // namespace

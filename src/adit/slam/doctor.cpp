@@ -88,10 +88,11 @@ Diagnosis point_times(const Recording& recording, const ScansSeen& seen) {
         check, Health::spoils, "all points of a sweep have the same time",
         "let the driver write when each point was measured; that of the whole sweep is no time of a point"};
   if (!seen.has_times)
-    return {check, Health::noted,
-            "points have no times, so that the robot's motion within a sweep bends the scans",
-            "let the driver write a time for each point (Ouster t, Velodyne time, Hesai timestamp); where a "
-            "field of another name has it, --point-time-field"};
+    return {
+        check, Health::noted,
+        "points have no times, so that the robot's motion within a sweep bends the scans",
+        "let the driver write a time for each point (Ouster t, Velodyne time, Hesai timestamp), or name the "
+        "field that has them with --point-time-field"};
   const std::string sentence =
       format("from {:.3f} s of a sweep, of which one comes every {:.3f} s", seen.sweep_s, interval);
   constexpr double kLeast = 0.2;  // of the interval; some drivers send a part of a turn

@@ -11,6 +11,7 @@
 #include "adit/core/parallel.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/core/robot_ids.hpp"
+#include "adit/fleet/merge/scan_quality.hpp"
 #include "adit/odometry/steady_motion.hpp"
 #include "adit/robot/scan_loop.hpp"
 #include "adit/robot/sensor_checks.hpp"
@@ -43,13 +44,10 @@ std::vector<Recording> with_sound_sensors(std::vector<Recording> recordings,
   return recordings;
 }
 
-/// Clean scans of a simulated mine lose 0.1 % of their returns (decision 0038), so this is not the mine.
-constexpr double kNotableShare = 0.03;
-
 /// A note where a robot's scans are not as good as they should be.
 void note_quality(const RobotMap& map, std::vector<std::string>& notes) {
   const double mean = mean_of_judged(map.unconfirmed).value_or(0.0);
-  if (mean < kNotableShare) return;
+  if (mean < kNotableUnconfirmed) return;
   notes.push_back(
       format("{}: {:.0f} % of the LiDAR's returns were confirmed by no other and are left out of the map, as "
              "dust, rain and moving things are",

@@ -55,10 +55,12 @@ struct CalibrationStudy {
 [[nodiscard]] std::vector<Table> calibration_tables(const std::vector<JudgedHypothesis>& hypotheses);
 /// The hypotheses for programs.
 [[nodiscard]] std::string calibration_json(const std::vector<JudgedHypothesis>& hypotheses);
-/// Reads what `calibration_json` wrote. Fails on other content.
+/// Reads what `calibration_json` wrote. Fails on content of another version, and on damaged content, naming
+/// the file, the hypothesis (counted from 0) and the fault.
 [[nodiscard]] Result<std::vector<JudgedHypothesis>> read_calibration(const std::filesystem::path& file);
 /// Those of several such files, in the order of the files. Fails, naming the file, where it has hypotheses
-/// about two robots that one before it has, too, which would count twice, or needed other evidence.
+/// about two robots that one before it has, too, in either order, which would count twice, or needed other
+/// evidence.
 [[nodiscard]] Result<std::vector<JudgedHypothesis>> joined_calibrations(
     const std::vector<std::string>& files);
 
@@ -74,9 +76,8 @@ struct CalibrationStep {
   /// Of the share, as `share_upper_limit` has it at 95 %: above it but where all reach the evidence.
   [[nodiscard]] double upper_limit() const;
 };
-/// How many hypotheses of that truth reach an evidence, from a claimed rate of 1 down to 1e-5, where
-/// figures of rates end (kLeastRate). None
-/// without such hypotheses.
+/// How many hypotheses of that truth reach an evidence, from a claimed rate of 1 down to 1e-5, where figures
+/// of rates end (kLeastRate). None without such hypotheses.
 [[nodiscard]] std::vector<CalibrationStep> calibration_steps(const std::vector<JudgedHypothesis>& hypotheses,
                                                              HypothesisTruth truth);
 /// Claimed against observed wrong acceptance, an SVG document: the share of false hypotheses that reach an

@@ -180,21 +180,38 @@ TEST(JoinedCalibrations, RefuseWhatWouldCountTwiceOrIsOfAnotherRun) {
   const std::string other = (folder / "other.json").string();
   test::put_file(first, calibration_json(hypotheses_about("a/0, a/1")));
   EXPECT_ERROR(joined_calibrations({first, first}), "about a/0, a/1, too");
+  test::put_file(other, calibration_json(hypotheses_about("a/1, a/0")));
+  EXPECT_ERROR(joined_calibrations({first, other}), "about a/1, a/0, too");
   std::vector<JudgedHypothesis> stricter = hypotheses_about("b/0, b/1");
   for (JudgedHypothesis& h : stricter) h.needed = 9.2;
   test::put_file(other, calibration_json(stricter));
   EXPECT_ERROR(joined_calibrations({first, other}), "other.json: 9.20 of evidence was needed, 6.90 in");
   EXPECT_ERROR(joined_calibrations({first, (folder / "gone.json").string()}), "gone.json");
-  std::vector<JudgedHypothesis> endless = hypotheses_about("c/0, c/1");
-  endless.front().evidence = std::numeric_limits<double>::infinity();
+}
+
+TEST(JoinedCalibrations, SayWhatIsWrongWithAFileAndWhere) {
+  const test::TemporaryFolder folder;
+  const std::string file = (folder / "other.json").string();
+  const auto expect_refused = [&](const std::string& text, const std::string& fault) {
+    test::put_file(file, text);
+    EXPECT_ERROR(read_calibration(file), "other.json: " + fault);
+  };
+  const auto with = [](const std::string& old, const std::string& changed) {
+    std::string text = calibration_json(hypotheses_about("a/0, a/1"));
+    const std::size_t second = text.find(old, text.find(old) + old.size());
+    return text.replace(second, old.size(), changed);
+  };
   const std::string whole = calibration_json(hypotheses_about("a/0, a/1"));
-  for (const std::string& text :
-       {std::string(), std::string("{\"version\": 2, \"hypotheses\": []}"), whole.substr(0, 500),
-        std::string("{\"version\": 1, \"hypotheses\": [{\"truth\": \"maybe\"}]}"),
-        calibration_json(endless)}) {
-    test::put_file(other, text);
-    EXPECT_ERROR(read_calibration(other), "other.json: no hypotheses of this version");
-  }
+  expect_refused("{\"version\": 2, \"hypotheses\": []}", "no hypotheses of this version; give");
+  for (const std::string& damaged : {std::string(), whole.substr(0, 500)})
+    expect_refused(damaged, "no calibration.json of merge-calibration, or a damaged one: ");
+  expect_refused("{\"version\": 1}", "no calibration.json of merge-calibration, or a damaged one: ");
+  expect_refused(with("\"truth\": \"wrong\"", "\"truth\": \"maybe\""), "hypothesis 1: truth is 'maybe', not");
+  expect_refused(with("\"evidence\": 0.0", "\"evidence\": \"0\""), "hypothesis 1: ");
+  expect_refused(with("\"needed\"", "\"wanted\""), "hypothesis 1: ");
+  std::vector<JudgedHypothesis> endless = hypotheses_about("c/0, c/1");
+  endless[2].evidence = std::numeric_limits<double>::infinity();
+  expect_refused(calibration_json(endless), "hypothesis 2: ");
 }
 
 TEST(MergeCalibration, NoHypothesisBetweenWorldsIsRight) {

@@ -20,8 +20,8 @@ struct PageFigure {
 };
 
 /// Puts the tables between the lines that mark `section` in a Markdown page (`with_section`); the rest of the
-/// page stays. Figures are written first. Fails where the page cannot be read or written, or lacks the marks,
-/// and then writes nothing, and where a figure cannot be written.
+/// page stays. Without the marks nothing is written; figures are written before the page. Fails where the
+/// page cannot be read or written, or lacks the marks, and where a figure cannot be written.
 Result<> write_tables(const std::filesystem::path& page, std::string_view section,
                       const std::vector<Table>& tables, const std::vector<PageFigure>& figures = {});
 

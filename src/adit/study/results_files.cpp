@@ -147,30 +147,38 @@ MergeRun run_of(const Json& json) {
   return run;
 }
 
+/// What calibration.json has of a hypothesis beside its robots and the truth: `field(key, member)` for each.
+/// Described once, so that reading and writing cannot differ; when it reads, `Judged` is mutable.
+template <class Judged, class Field>
+void for_judged_fields(Judged& h, const Field& field) {
+  field("refuted", h.refuted);
+  field("accepted", h.accepted);
+  field("evidence", h.evidence);
+  field("of_walls", h.walls);
+  field("needed", h.needed);
+  field("compared_m", h.counts.compared_m);
+  field("distinctive", h.counts.num_distinctive);
+  field("changes", h.counts.num_changes);
+  field("things", h.counts.num_things);
+  field("wall_patches", h.counts.num_wall_patches);
+  field("looked_for_again", h.counts.num_looked_for);
+  field("found_again", h.counts.num_found_again);
+  field("not_found_again", h.counts.num_not_found);
+  field("equal_signs", h.counts.equal_signs);
+  field("equal_signs_sigma", h.counts.equal_signs_sigma);
+}
+
 Json json_of(const JudgedHypothesis& h) {
-  return {{"robots", h.robots},
-          {"truth", kHypothesisTruths[static_cast<std::size_t>(h.truth)]},
-          {"refuted", h.refuted},
-          {"accepted", h.accepted},
-          {"evidence", h.evidence},
-          {"of_walls", h.walls},
-          {"needed", h.needed},
-          {"compared_m", h.counts.compared_m},
-          {"distinctive", h.counts.num_distinctive},
-          {"changes", h.counts.num_changes},
-          {"things", h.counts.num_things},
-          {"wall_patches", h.counts.num_wall_patches},
-          {"looked_for_again", h.counts.num_looked_for},
-          {"found_again", h.counts.num_found_again},
-          {"not_found_again", h.counts.num_not_found},
-          {"equal_signs", h.counts.equal_signs},
-          {"equal_signs_sigma", h.counts.equal_signs_sigma}};
+  Json json = {{"robots", h.robots}, {"truth", kHypothesisTruths[static_cast<std::size_t>(h.truth)]}};
+  for_judged_fields(h, [&](const char* key, const auto& value) { json[key] = value; });
+  return json;
 }
 
 /// Throws on an unknown one.
 HypothesisTruth hypothesis_truth(const std::string& name) {
   const auto found = std::ranges::find(kHypothesisTruths, name);
-  if (found == kHypothesisTruths.end()) throw std::runtime_error("unknown truth " + name);
+  if (found == kHypothesisTruths.end())
+    throw std::runtime_error(format("truth is '{}', not right, near or wrong", name));
   return static_cast<HypothesisTruth>(found - kHypothesisTruths.begin());
 }
 
@@ -178,22 +186,29 @@ JudgedHypothesis judged_of(const Json& json) {
   JudgedHypothesis h;
   get(json, "robots", h.robots);
   h.truth = hypothesis_truth(json.at("truth").get<std::string>());
-  get(json, "refuted", h.refuted);
-  get(json, "accepted", h.accepted);
-  get(json, "evidence", h.evidence);
-  get(json, "of_walls", h.walls);
-  get(json, "needed", h.needed);
-  get(json, "compared_m", h.counts.compared_m);
-  get(json, "distinctive", h.counts.num_distinctive);
-  get(json, "changes", h.counts.num_changes);
-  get(json, "things", h.counts.num_things);
-  get(json, "wall_patches", h.counts.num_wall_patches);
-  get(json, "looked_for_again", h.counts.num_looked_for);
-  get(json, "found_again", h.counts.num_found_again);
-  get(json, "not_found_again", h.counts.num_not_found);
-  get(json, "equal_signs", h.counts.equal_signs);
-  get(json, "equal_signs_sigma", h.counts.equal_signs_sigma);
+  for_judged_fields(h, [&](const char* key, auto& value) { get(json, key, value); });
   return h;
+}
+
+Result<std::vector<JudgedHypothesis>> judged_hypotheses(const Json& list) {
+  std::vector<JudgedHypothesis> all;
+  for (const Json& hypothesis : list) {
+    try {
+      all.push_back(judged_of(hypothesis));
+    } catch (const std::exception& error) {
+      return fail(format("hypothesis {}: {}", all.size(), error.what()));
+    }
+  }
+  return all;
+}
+
+/// The same whichever robot comes first: that only says which one searched.
+std::string in_order_of_names(const std::string& robots) {
+  constexpr std::string_view kBetween = ", ";
+  const std::size_t end = robots.find(kBetween);
+  if (end == std::string::npos) return robots;
+  const auto [first, second] = std::minmax({robots.substr(0, end), robots.substr(end + kBetween.size())});
+  return format("{}{}{}", first, kBetween, second);
 }
 
 Json json_of(const UncertaintyRow& row) {
@@ -285,34 +300,35 @@ std::string calibration_json(const std::vector<JudgedHypothesis>& hypotheses) {
 Result<std::vector<JudgedHypothesis>> read_calibration(const std::filesystem::path& file) {
   const Result<std::string> bytes = read_bytes(file);
   if (!bytes) return tl::unexpected(bytes.error());
-  const auto refused =
-      fail(file.string() + ": no hypotheses of this version; give calibration.json of merge-calibration");
   try {
     const Json content = Json::parse(*bytes);
-    if (content.at("version") != kCalibrationVersion) return refused;
-    std::vector<JudgedHypothesis> all;
-    for (const Json& hypothesis : content.at("hypotheses")) all.push_back(judged_of(hypothesis));
+    if (content.at("version") != kCalibrationVersion)
+      return fail(file.string() +
+                  ": no hypotheses of this version; give calibration.json of merge-calibration");
+    Result<std::vector<JudgedHypothesis>> all = judged_hypotheses(content.at("hypotheses"));
+    if (!all) return fail(file.string(), all.error());
     return all;
-  } catch (const std::exception&) {
-    return refused;
+  } catch (const std::exception& error) {
+    return fail(format("{}: no calibration.json of merge-calibration, or a damaged one: {}", file.string(),
+                       error.what()));
   }
 }
 
 Result<std::vector<JudgedHypothesis>> joined_calibrations(const std::vector<std::string>& files) {
   std::vector<JudgedHypothesis> all;
-  std::map<std::string, std::string> file_of;  // By the robots.
+  std::map<std::string, std::string> file_of;  // by the robots, in the order of their names
   for (const std::string& file : files) {
     const Result<std::vector<JudgedHypothesis>> more = read_calibration(file);
     if (!more) return tl::unexpected(more.error());
     for (const JudgedHypothesis& h : *more)
-      if (const auto known = file_of.find(h.robots); known != file_of.end())
+      if (const auto known = file_of.find(in_order_of_names(h.robots)); known != file_of.end())
         return fail(format("{}: {} has hypotheses about {}, too, and they would count twice; leave one out",
                            file, known->second, h.robots));
     if (!all.empty() && !more->empty() && more->front().needed != all.front().needed)
       return fail(format(
           "{}: {:.2f} of evidence was needed, {:.2f} in {}; join runs of one version and configuration", file,
-          more->front().needed, all.front().needed, file_of.at(all.front().robots)));
-    for (const JudgedHypothesis& h : *more) file_of.emplace(h.robots, file);
+          more->front().needed, all.front().needed, file_of.at(in_order_of_names(all.front().robots))));
+    for (const JudgedHypothesis& h : *more) file_of.emplace(in_order_of_names(h.robots), file);
     all.insert(all.end(), more->begin(), more->end());
   }
   return all;

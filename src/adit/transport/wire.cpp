@@ -313,7 +313,8 @@ Result<Message> decode(std::span<const std::byte> bytes) {
   }
   constexpr std::size_t kTail = sizeof(std::uint64_t);
   const std::span<const std::byte> content = bytes.first(bytes.size() - std::min(bytes.size(), kTail));
-  if (content.empty() || wire::Reader(bytes.last(kTail)).scalar<std::uint64_t>() != checksum(content)) {
+  if (content.empty() ||
+      wire::Reader(bytes.last(kTail), version).scalar<std::uint64_t>() != checksum(content)) {
     return fail(format("message of {} bytes is cut or damaged: its checksum does not fit", bytes.size()));
   }
   wire::Reader in(content.subspan(1), version);

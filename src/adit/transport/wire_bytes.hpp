@@ -16,8 +16,6 @@
 #include <utility>
 #include <vector>
 
-#include "adit/fleet/sync/protocol.hpp"
-
 namespace adit::wire {
 
 static_assert(std::endian::native == std::endian::little,
@@ -49,8 +47,7 @@ class Writer {
 class Reader {
  public:
   /// `bytes` must outlive the reader. `version`: of the protocol that they follow.
-  explicit Reader(std::span<const std::byte> bytes, std::uint8_t version = kProtocolVersion)
-      : bytes_(bytes), version_(version) {}
+  Reader(std::span<const std::byte> bytes, std::uint8_t version) : bytes_(bytes), version_(version) {}
   /// That of the protocol.
   [[nodiscard]] std::uint8_t version() const { return version_; }
   /// The next number or enumerator; enumerators are not checked.
@@ -102,7 +99,7 @@ inline void get(Reader& in, std::string& text) {
 }
 ///@}
 
-/// A share from 0 to 1, behind whether there is one; messages of older versions have neither.
+/// A share from 0 to 1, preceded by a flag byte; absent before version 12.
 ///@{
 template <class Share>
 void put_share(Writer& out, const std::optional<Share>& share) {

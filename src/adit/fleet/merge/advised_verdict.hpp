@@ -19,9 +19,10 @@ struct Advisor {
   double spacing_m = 0.0;    ///< MergeCheckConfig::spacing_m.
 };
 
-/// The verdict of `checker`, which is over, about `robots` (own, peer). A refusal ends with
-/// where the peer should drive, by `where_to_drive` or `where_to_be_recognised`, or says that no such place
-/// was found.
+/// The verdict of `checker`, which is over, about `robots` (own, peer). A refusal that more evidence
+/// would decide (MergeChecker::undecided), or whose kind is `no_loop` or `other_tunnel`, ends with where the
+/// peer should drive, by `where_to_drive` or `where_to_be_recognised`, or says that no such place was found.
+/// Others keep what would help anywhere.
 [[nodiscard]] MergeCheck advised_verdict(const MergeChecker& checker, RobotPair robots,
                                          const Advisor& advisor);
 

@@ -9,16 +9,16 @@
 
 namespace adit {
 
-std::vector<LoopClosure> without_sliding(std::vector<LoopClosure> loops) {
+std::vector<LoopClosure> accepted_without_sliding(std::vector<LoopClosure> loops) {
   std::erase_if(loops, [](const LoopClosure& loop) {
     return loop.verdict != LoopVerdict::accepted || loop.is_free_to_slide();
   });
   return loops;
 }
 
-MergeChecker check_of_loops(const std::vector<LoopClosure>& loops, const OdometryChain& own,
-                            const OdometryChain& theirs, Discernment& discernment,
-                            const AdaptiveConfig& config, const MergeCheck* earlier) {
+MergeChecker merge_checker_of(const std::vector<LoopClosure>& loops, const OdometryChain& own,
+                              const OdometryChain& theirs, Discernment& discernment,
+                              const AdaptiveConfig& config, const MergeCheck* earlier) {
   LoopsBetween between{own, theirs, {}, {}, earlier};
   for (const LoopClosure& loop : loops) {
     between.loops.push_back(pcm_loop_of(loop));

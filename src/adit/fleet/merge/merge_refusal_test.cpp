@@ -135,7 +135,7 @@ TEST(MergeRefusal, WallsThatSensorsMayMoveAreNotSaidToBeOfAnotherTunnel) {
 
 TEST(MergeRefusal, DustIsToldWhereItMayHaveMadeTheDifferenceAndDecidesNothing) {
   const auto tells_dust = [](const MergeCheck& check) {
-    return check.reason.find("confirmed by no second look") != std::string::npos;
+    return check.reason.find("confirmed by no other return") != std::string::npos;
   };
   for (const std::uint32_t every : {3U, 4U}) {  // scans differ too often, or leave too little evidence
     const double chance_to_go_on = every == 3 ? 0.4 : 0.5;
@@ -146,7 +146,7 @@ TEST(MergeRefusal, DustIsToldWhereItMayHaveMadeTheDifferenceAndDecidesNothing) {
     EXPECT_FALSE(clear.unconfirmed.a || clear.unconfirmed.b);
     EXPECT_FALSE(tells_dust(clear));
     EXPECT_NE(dusty.reason.find("; of the scans compared, 6 % and 22 % of the returns were confirmed by no "
-                                "second look"),
+                                "other return"),
               std::string::npos)
         << dusty.reason;
     EXPECT_NE(dusty.reason.find("when it has settled; "), std::string::npos) << dusty.reason;
@@ -157,8 +157,7 @@ TEST(MergeRefusal, DustIsToldWhereItMayHaveMadeTheDifferenceAndDecidesNothing) {
   EXPECT_FALSE(tells_dust(check_of_changes(1, 0.5, 0.25F, 0.25F))) << "another tunnel";
   const MergeCheck sensor = told_of_walls(0.03, 0.25F).check;
   EXPECT_EQ(sensor.refused_kind, RefusalKind::sensor);
-  EXPECT_NE(sensor.reason.find("25 % and an unknown share of the returns"), std::string::npos)
-      << sensor.reason;
+  EXPECT_NE(sensor.reason.find("25 % of the first robot's returns were"), std::string::npos) << sensor.reason;
 }
 
 }  // namespace

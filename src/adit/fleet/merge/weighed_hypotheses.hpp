@@ -60,7 +60,7 @@ class WeighedHypotheses {
   [[nodiscard]] double most_evidence_of_scans(const Hypothesis& hypothesis) const;
   /// Against it, where few loops found it; part of the prior.
   [[nodiscard]] double evidence_of_few_loops(const Hypothesis& hypothesis) const;
-  /// As if so many times the walls had been seen.
+  /// That of the relief of walls, if `times` as many patches had been compared.
   [[nodiscard]] double evidence_of_walls(const Hypothesis& hypothesis, double times = 1.0) const;
   /// What that can become, whatever is seen of its walls.
   [[nodiscard]] double most_evidence_of_walls(const Hypothesis& hypothesis) const;
@@ -68,10 +68,10 @@ class WeighedHypotheses {
   [[nodiscard]] double evidence_of_places(const std::vector<TestedPlace>& places, double copies) const;
   /// Of the look-alikes between both maps, if this alignment is the true one: then all others are false.
   [[nodiscard]] double share_of_copies_if_true(const Hypothesis& hypothesis) const;
-  /// Of look-alikes, on the own map.
+  /// How often look-alikes of the own map go on agreeing.
   [[nodiscard]] ChancesToGoOn chances() const { return own_.measured().look_alikes.chances(); }
 
-  /// By what tells them apart.
+  /// By how much evidence among rivals `best` leads `other`.
   [[nodiscard]] double lead(const Hypothesis& best, const Hypothesis& other) const;
   /// Evidence by which a hypothesis has to lead every other one.
   [[nodiscard]] double least_lead() const;

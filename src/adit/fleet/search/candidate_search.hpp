@@ -69,8 +69,7 @@ class CandidateSearch {
   [[nodiscard]] const std::vector<double>& self_distances();
 
   /// What `most_similar_places` finds of the peer's with these settings: as seen from each lane, however
-  /// similar. Every so many-th own keyframe is looked for, as configured, or every `least_stride`-th if those
-  /// are fewer.
+  /// similar. Every max(query_stride, least_stride)-th own keyframe is looked for.
   [[nodiscard]] std::vector<LoopCandidate> most_similar(const PeerPlaces& peer,
                                                         std::size_t least_stride) const;
 

@@ -21,10 +21,13 @@
 
 namespace adit {
 
-/// In every encoded message. Those of versions before the oldest are refused, and those of later ones.
+/// In every encoded message. Those of versions before the oldest are refused, and those of later ones. So a
+/// robot of this version reads what one of the oldest says, which does not read it in turn: all robots of a
+/// fleet have to be updated together. What an older version saved stays readable.
 ///@{
 inline constexpr std::uint8_t kProtocolVersion = 12;
-inline constexpr std::uint8_t kOldestProtocolVersion = 11;  ///< Says no unconfirmed shares; else the same.
+/// Lacks the unconfirmed shares; otherwise identical.
+inline constexpr std::uint8_t kOldestProtocolVersion = 11;
 ///@}
 /// The most that one message holds; longer lists are sent in parts.
 ///@{
