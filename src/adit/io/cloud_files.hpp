@@ -27,7 +27,8 @@ struct CloudReading {
   std::optional<std::size_t> bin_columns = {};  ///< Of .bin, 3 to 8 (kitti.hpp).
   bool are_columns_stated = false;              ///< Whether `bin_columns` was given by the user.
 };
-/// What `config` states of clouds. Fails on a unit of times or a number of columns that is none.
+/// What `config` states of clouds. Fails as stated_times does, and where `bin_columns` is neither 0 nor 3
+/// to 8.
 [[nodiscard]] Result<CloudReading> stated_reading(const RecordingConfig& config);
 /// Fails where a .bin cannot be read so: a field of times is named, and its columns have no names.
 [[nodiscard]] Result<> check_bin_reading(const CloudReading& known);

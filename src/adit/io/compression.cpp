@@ -102,17 +102,28 @@ Result<std::string> decompress_lz4(std::string_view bytes, std::size_t size) {
   return out;
 }
 
+/// A stream of the library over bytes that it keeps.
+struct Bz2Reader {
+  explicit Bz2Reader(std::string_view bytes) : in(bytes) {
+    ADIT_CHECK(BZ2_bzDecompressInit(&stream, 0, 0) == BZ_OK, "out of memory");
+    stream.next_in = in.data();
+    stream.avail_in = static_cast<unsigned>(in.size());
+  }
+  ~Bz2Reader() { BZ2_bzDecompressEnd(&stream); }
+  Bz2Reader(const Bz2Reader&) = delete;
+  Bz2Reader& operator=(const Bz2Reader&) = delete;
+
+  std::string in;  ///< A copy: the library's argument is not const.
+  bz_stream stream = {};
+};
+
 /// A few bytes of bzip2 can stand for so much that `check_claim` passes a damaged size: memory is taken only
 /// as data come.
 Result<std::string> decompress_bz2(std::string_view bytes, std::size_t size) {
   if (const Result<> possible = check_claim(bytes, size, kMostOfBz2); !possible)
     return tl::unexpected(possible.error());
-  bz_stream stream = {};
-  ADIT_CHECK(BZ2_bzDecompressInit(&stream, 0, 0) == BZ_OK, "out of memory");
-  const std::unique_ptr<bz_stream, decltype(&BZ2_bzDecompressEnd)> owner(&stream, &BZ2_bzDecompressEnd);
-  std::string in(bytes);  // the library's argument is not const
-  stream.next_in = in.data();
-  stream.avail_in = static_cast<unsigned>(in.size());
+  Bz2Reader reader(bytes);
+  bz_stream& stream = reader.stream;
   const std::size_t most = size + 1;  // a byte more tells whether the data end there
   std::string out(std::min(most, kFirst), '\0');
   for (std::size_t done = 0;;) {
@@ -244,12 +255,8 @@ std::string front_of_lz4(std::string_view bytes, std::size_t size) {
 }
 
 std::string front_of_bz2(std::string_view bytes, std::size_t size) {
-  bz_stream stream = {};
-  ADIT_CHECK(BZ2_bzDecompressInit(&stream, 0, 0) == BZ_OK, "out of memory");
-  const std::unique_ptr<bz_stream, decltype(&BZ2_bzDecompressEnd)> owner(&stream, &BZ2_bzDecompressEnd);
-  std::string in(bytes);  // the library's argument is not const
-  stream.next_in = in.data();
-  stream.avail_in = static_cast<unsigned>(in.size());
+  Bz2Reader reader(bytes);
+  bz_stream& stream = reader.stream;
   int code = BZ_OK;
   std::string out = collected(size, [&](char* to, std::size_t room) {
     if (code != BZ_OK) return std::size_t{0};

@@ -102,8 +102,7 @@ Result<> check_kitti_columns(const std::vector<std::filesystem::path>& files, st
 
 Result<CloudFile> read_kitti(std::string_view bytes, std::optional<std::size_t> columns) {
   const std::size_t num_columns = columns ? *columns : kitti_columns(bytes);
-  ADIT_CHECK(num_columns >= kLeastBinColumns && num_columns <= kMostBinColumns,
-             "a number of columns that no .bin has");
+  ADIT_CHECK(num_columns >= kLeastBinColumns && num_columns <= kMostBinColumns, "3 to 8 columns");
   const std::size_t row = sizeof(float) * num_columns;
   if (bytes.size() % row != 0) {
     return fail(

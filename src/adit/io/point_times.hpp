@@ -30,12 +30,12 @@ struct KnownTimes {
   bool none = false;
   std::string field = {};  ///< Name of the field that has them, as stated; "": as found.
 };
-/// What `config` states of them. Fails on a unit that is none.
+/// What `config` states of them. Fails where `point_times` is not "", s, ms, us or ns.
 [[nodiscard]] Result<KnownTimes> stated_times(const RecordingConfig& config);
 
 /// What a cloud shows of the times of its points.
 struct PointTimes {
-  std::string field = {};             ///< Name of the field, also of times not taken; "": there is none.
+  std::string field = {};             ///< Name of the field, also of times not taken; "": no field.
   std::string_view type = {};         ///< Of the field, "float64".
   std::optional<TimeUnit> unit = {};  ///< Given, or found; none where there are too few times to tell.
   bool has_usual_unit = true;         ///< Seconds of floats, nanoseconds of integers.

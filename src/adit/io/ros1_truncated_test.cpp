@@ -212,7 +212,7 @@ TEST(Ros1Truncated, AChunkThatAnIndexNamesHasToBeWhole) {
     std::string entry;
     append_little_endian(entry, std::uint64_t{5} << 32U);
     append_little_endian(entry, static_cast<std::uint32_t>(records.size()));
-    // Its data are missing; what stands behind it is none of them.
+    // Its data are missing; the bytes behind it belong to other records.
     const std::string chunk = chunk_record(compression, records.size() + message.size(), "") +
                               index_record(0, 1, entry) + compressed_as(compression, records + message);
     const std::string bytes = std::string(test::ros1::kMagic) + bag_header(chunk_at + chunk.size(), 1, 1) +

@@ -261,7 +261,7 @@ MergeAdvice advice_in(const toml::table& table) {
   return advice;
 }
 
-/// None where the table has no share, or a number that is none: the file may have been edited.
+/// Only what lies between 0 and 1: a person may have edited the file.
 std::optional<double> share_in(const toml::table& table, const char* key) {
   const std::optional<double> share = table[key].value<double>();
   return share && *share >= 0.0 && *share <= 1.0 ? share : std::nullopt;
