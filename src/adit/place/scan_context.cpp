@@ -134,40 +134,60 @@ ADIT_WIDE_VECTORS void find_cells(const PolarGrid& grid, const Eigen::Vector3f* 
 
 int positive_modulo(int a, int n) { return ((a % n) + n) % n; }
 
+const simd::Float8& load8(const float* x) { return *reinterpret_cast<const simd::Float8*>(x); }
+
+/// Sum of a[i] b[i]. Lane by lane, so that the order of additions does not depend on the machine.
+ADIT_WIDE_VECTORS float dot(const float* a, const float* b, std::size_t n) {
+  constexpr std::size_t kLanes = 8;
+  constexpr std::size_t kSums = 4;  // none waits for the one before
+  simd::Float8 sums[kSums] = {};
+  std::size_t i = 0;
+  for (; i + kSums * kLanes <= n; i += kSums * kLanes)
+    for (std::size_t s = 0; s < kSums; ++s) sums[s] += load8(a + i + s * kLanes) * load8(b + i + s * kLanes);
+  for (; i + kLanes <= n; i += kLanes) sums[0] += load8(a + i) * load8(b + i);
+  const simd::Float8 lanes = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  float sum = 0.0F;
+  for (std::size_t l = 0; l < kLanes; ++l) sum += lanes[l];
+  for (; i < n; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
 /// The dot product of `a` with `b` turned back by `shift` entries: sum of a[i] b[(i + shift) mod n].
 float shifted_dot(const std::vector<float>& a, const std::vector<float>& b, std::size_t shift) {
-  const auto n = static_cast<Eigen::Index>(a.size());
-  const auto k = static_cast<Eigen::Index>(shift);
-  const Eigen::Map<const Eigen::VectorXf> va(a.data(), n);
-  const Eigen::Map<const Eigen::VectorXf> vb(b.data(), n);
-  return va.head(n - k).dot(vb.tail(n - k)) + va.tail(k).dot(vb.head(k));
+  const std::size_t n = a.size();
+  return dot(a.data(), b.data() + shift, n - shift) + dot(a.data() + (n - shift), b.data(), shift);
+}
+
+/// The same for all shifts at once; `b_twice` is b, twice over.
+ADIT_WIDE_VECTORS void add_shifted_dots(const float* a, const float* b_twice, std::size_t n,
+                                        float* __restrict sums) {
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t shift = 0; shift < n; ++shift) sums[shift] += a[i] * b_twice[i + shift];
+}
+
+/// How many entries of both are above zero.
+ADIT_WIDE_VECTORS int num_positive_in_both(const float* a, const float* b, std::size_t n) {
+  int num = 0;
+  for (std::size_t i = 0; i < n; ++i) num += static_cast<int>(a[i] > 0.0F) & static_cast<int>(b[i] > 0.0F);
+  return num;
 }
 
 int num_shared_sectors(const ScanContext& query, const ScanContext& match, int shift) {
   const std::size_t n = query.norms.size();
   const auto turn = static_cast<std::size_t>(shift);
-  const auto seen = [&](std::size_t q, std::size_t m) {
-    return query.norms[q] > 0.0F && match.norms[m] > 0.0F ? 1 : 0;
-  };
-  int shared = 0;
-  for (std::size_t s = 0; s + turn < n; ++s) shared += seen(s, s + turn);
-  for (std::size_t s = n - turn; s < n; ++s) shared += seen(s, s + turn - n);
-  return shared;
+  const float* seen = query.norms.data();
+  return num_positive_in_both(seen, match.norms.data() + turn, n - turn) +
+         num_positive_in_both(seen + (n - turn), match.norms.data(), turn);
 }
 
 /// The shift at which the sector keys are nearest: their norms do not change, so it is where their product is
 /// greatest.
 int aligned_shift(const ScanContext& query, const ScanContext& match) {
-  int best = 0;
-  float greatest = -1.0F;
-  for (int shift = 0; shift < query.num_sectors; ++shift) {
-    const float product = shifted_dot(query.sector_key, match.sector_key, static_cast<std::size_t>(shift));
-    if (product > greatest) {
-      greatest = product;
-      best = shift;
-    }
-  }
-  return best;
+  std::vector<float> twice = match.sector_key;
+  twice.insert(twice.end(), match.sector_key.begin(), match.sector_key.end());
+  std::vector<float> products(query.sector_key.size(), 0.0F);
+  add_shifted_dots(query.sector_key.data(), twice.data(), products.size(), products.data());
+  return static_cast<int>(std::ranges::max_element(products) - products.begin());
 }
 
 ContextMatch best_around(const ScanContext& query, const ScanContext& match, int center, int reach) {
