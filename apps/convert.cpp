@@ -369,6 +369,7 @@ Result<> convert(const ConvertOptions& options, const Common& common) {
   if (from == Kind::cloud && to == Kind::cloud) return convert_cloud(in, out, how);
   if (from == Kind::trajectory && to == Kind::trajectory) return convert_trajectory(in, out);
   if (from == Kind::graph && to == Kind::graph) return convert_graph(in, fs::path(in).stem().string(), out);
+  if (Result<> whole = check_not_metadata(in); !whole) return whole;
   usage_error(format("{} cannot become {}: {}", in, out, outputs_of(from)));
 }
 

@@ -70,6 +70,7 @@ void add_georeference(Program& program) {
       "Columns of the CSV: name, x, y, z (target frame, metres), sigma; where needed sigma_z, role (control "
       "or "
       "check), mark_x mark_y mark_z (in map.ply, or with robot and stamp in the frame of that robot's base), "
+      "mark_frame (base, or lidar where such a mark is in the LiDAR's own frame, as in the recorded scan), "
       "mark_sigma. With robot and stamp alone the robot itself was there. adit convert then writes clouds "
       "and "
       "poses in the target frame.");

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "adit/core/format.hpp"
+#include "adit/io/bag.hpp"
 #include "adit/io/bag_topics.hpp"
 #include "adit/io/recording_files.hpp"
 #include "adit/io/routes_yaml.hpp"
@@ -16,9 +17,11 @@
 namespace adit::app {
 namespace {
 
+/// The metadata.yaml of a bag is none: where it is opened as a recording, it is said what to give instead.
 bool is_routes_file(const std::string& input) {
   const std::string extension = std::filesystem::path(input).extension().string();
-  return extension == ".yaml" || extension == ".yml";
+  if (extension != ".yaml" && extension != ".yml") return false;
+  return check_not_metadata(name_and_path(input).second).has_value();
 }
 
 Result<Inputs> simulated(const std::string& routes_file, const ScenarioConfig& simulation) {
@@ -42,6 +45,7 @@ void print_remarks(const std::string& input, const Recording& recording) {
 Result<Inputs> open_robots(const std::string& path, RecordingConfig config) {
   if (!config.topics_under.empty())
     return fail("recording.topics_under names one robot, and --namespaces asks for all; give one of them");
+  if (const Result<> whole = check_not_metadata(path); !whole) return tl::unexpected(whole.error());
   if (!is_bag_file(path) && !is_bag_folder(path))
     return fail(path + ": is no bag; --namespaces is for bags of several robots");
   const Result<Bag> bag = open_bag(path);

@@ -98,6 +98,9 @@ class TopicIndex {
 /// Fails, with the remedy, on a file that was compressed as a whole (.db3.zstd, .bag.gz).
 [[nodiscard]] Result<> check_not_packed(const std::filesystem::path& path);
 
+/// Fails, naming the folder to give, on the metadata.yaml of a bag folder, which is no recording by itself.
+[[nodiscard]] Result<> check_not_metadata(const std::filesystem::path& path);
+
 /// Whether `folder` is a bag folder: it has the metadata.yaml of rosbag2, or no files of clouds but of bags.
 [[nodiscard]] bool is_bag_folder(const std::filesystem::path& folder);
 

@@ -300,6 +300,15 @@ bool is_bag_folder(const fs::path& folder) {
   return has_files && files_in(folder, is_cloud_file).empty();
 }
 
+Result<> check_not_metadata(const fs::path& path) {
+  std::error_code ignored;
+  if (path.filename() != kMetadata || !fs::is_regular_file(path, ignored)) return {};
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!is_bag_folder(folder)) return {};
+  return fail(format("{}: belongs to a bag and is no recording by itself; give the folder of the bag: {}",
+                     path.string(), shell_quoted(folder.string())));
+}
+
 Result<Bag> open_bag(const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_directory(path, ignored)) return open_file(path).map(expanding);

@@ -10,6 +10,7 @@
 #include "adit/io/bag_topics.hpp"
 #include "adit/io/file_info.hpp"
 #include "adit/io/recording_files.hpp"
+#include "adit/io/text.hpp"
 #include "support/files.hpp"
 #include "support/foreign_mcap.hpp"
 #include "support/sqlite_bag.hpp"
@@ -111,6 +112,27 @@ TEST(Bag, WhatAFolderLacksIsNamed) {
   test::put_file(folder / "b.db3", "no database at all");
   EXPECT_ERROR(open_bag(folder / "b.db3"), "b.db3: not a bag of rosbag2");
   EXPECT_ERROR(open_bag(folder / "none.db3"), "none.db3: cannot be opened");
+}
+
+TEST(Bag, OfItsMetadataItIsSaidWhichFolderToGive) {
+  const test::TemporaryFolder folder;
+  const fs::path metadata = folder / "metadata.yaml";
+  const Bag bag = a_bag();
+  write_db3(folder / "a_0.db3", bag, bag.messages);
+  for (const std::string& content : {metadata_naming({"a_0.db3"}), std::string()}) {
+    test::put_file(metadata, content);
+    const std::string sentence =
+        "metadata.yaml: belongs to a bag and is no recording by itself; give the "
+        "folder of the bag: " +
+        shell_quoted(folder.path().string());
+    EXPECT_ERROR(open_recording(metadata.string()), sentence);
+    EXPECT_ERROR(file_info(metadata.string(), {}), sentence);
+  }
+  fs::remove(folder / "a_0.db3");
+  test::put_file(metadata, "robots: []\n");
+  EXPECT_TRUE(check_not_metadata(metadata)) << "of something else";
+  EXPECT_TRUE(check_not_metadata(folder / "none/metadata.yaml"));
+  EXPECT_TRUE(check_not_metadata("metadata.yaml")) << "not there";
 }
 
 TEST(Bag, AFileOfAnotherKindThanItsEndingIsNamed) {

@@ -17,8 +17,8 @@ namespace adit {
 namespace {
 
 constexpr std::array kNeededColumns = {"name", "x", "y", "z", "sigma"};
-constexpr std::array kFurtherColumns = {"sigma_z", "role",   "robot",   "stamp",     "mark_x",
-                                        "mark_y",  "mark_z", "comment", "mark_sigma"};
+constexpr std::array kFurtherColumns = {"sigma_z", "role",   "robot",      "stamp",      "mark_x",
+                                        "mark_y",  "mark_z", "mark_frame", "mark_sigma", "comment"};
 const std::map<std::string, std::string> kOtherColumnNames = {
     {"easting", "x"}, {"northing", "y"}, {"height", "z"}, {"elevation", "z"}};
 
@@ -94,6 +94,22 @@ class ControlRow {
   std::string error_;
 };
 
+/// A mark in a map has the map's frame alone. A row without a mark is about the robot's base; that the LiDAR
+/// is meant has to be said by numbers.
+bool is_in_lidar_frame(ControlRow& row, const ControlMark& mark, bool has_position) {
+  const std::string frame = lower_case(row.text("mark_frame"));
+  if (frame.empty()) return false;
+  if (frame != "base" && frame != "lidar")
+    row.wrong(format("mark_frame is '{}'; it is base or lidar", frame));
+  else if (!mark.stamp)
+    row.wrong(
+        "mark_frame is of marks in a scan: give its robot and stamp, or leave mark_frame empty for a mark "
+        "in map.ply");
+  else if (frame == "lidar" && !has_position)
+    row.wrong("mark_frame is lidar, and mark_x, mark_y and mark_z are missing; 0, 0, 0 is the LiDAR itself");
+  return frame == "lidar";
+}
+
 ControlMark mark_of(ControlRow& row) {
   ControlMark mark;
   mark.robot = row.text("robot");
@@ -112,6 +128,7 @@ ControlMark mark_of(ControlRow& row) {
     row.wrong(
         "nothing says where the point is in the map: give mark_x, mark_y and mark_z as picked in map.ply, or "
         "robot and stamp of a known pose");
+  mark.is_in_lidar_frame = is_in_lidar_frame(row, mark, has_position);
   return mark;
 }
 

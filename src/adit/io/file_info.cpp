@@ -134,7 +134,7 @@ Result<Json> robot_map_info(const fs::path& path) {
 }
 
 Result<Json> routes_info(const fs::path& path) {
-  return read_routes(path).map([](const RoutesFile& file) {
+  return check_not_metadata(path).and_then([&] { return read_routes(path); }).map([](const RoutesFile& file) {
     Json robots = Json::array();
     for (const Route& route : file.routes) {
       robots.push_back({{"name", route.name},

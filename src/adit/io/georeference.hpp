@@ -22,6 +22,7 @@ struct ControlMark {
       stamp;  ///< With one `position` is in the base frame of the robot then, else in its map.
   Vector3 position = Vector3::Zero();  ///< Metres.
   double sigma = 0.05;                 ///< Of picking it, along each axis, metres.
+  bool is_in_lidar_frame = false;      ///< With a stamp: `position` is in the LiDAR's frame, not the base's.
 };
 
 /// A point with surveyed coordinates that was found in a map or a scan.
@@ -36,7 +37,8 @@ struct ControlPoint {
 
 /// Control points as comma-separated values (docs/commands.md, "Control points"). Fails with line and remedy
 /// on a column that is missing or unknown, a cell that is no number, a standard deviation that is not
-/// positive, a mark that nothing says the place of, and a name that occurs twice.
+/// positive, a mark that nothing says the place of, a frame of a mark that is in no scan, and a name that
+/// occurs twice.
 [[nodiscard]] Result<std::vector<ControlPoint>> parse_control_points(std::string_view csv);
 /// The same of a file, which errors name.
 [[nodiscard]] Result<std::vector<ControlPoint>> read_control_points(const std::filesystem::path& path);

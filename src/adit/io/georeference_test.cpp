@@ -38,6 +38,22 @@ TEST(ControlPoints, SayWhereAPointIsInBothFrames) {
   EXPECT_EQ((*points)[3].mark.position, Vector3::Zero());
 }
 
+TEST(ControlPoints, MarksInAScanMayBeInTheFrameOfTheLidar) {
+  const std::string heading = "name,x,y,z,sigma,robot,stamp,mark_x,mark_y,mark_z,mark_frame\n";
+  const auto points = parse_control_points(heading +
+                                           "A,1,2,3,0.01,red,7,4,5,6,lidar\nB,1,2,3,0.01,red,7,4,5,6,Base\n"
+                                           "C,1,2,3,0.01,red,7,4,5,6\nD,1,2,3,0.01,red,7,,,,base\n");
+  ASSERT_TRUE(points) << points.error().message;
+  EXPECT_TRUE(points->at(0).mark.is_in_lidar_frame);
+  EXPECT_EQ(points->at(0).mark.position, Vector3(4, 5, 6));
+  for (const std::size_t i : {1U, 2U, 3U}) EXPECT_FALSE(points->at(i).mark.is_in_lidar_frame) << i;
+  EXPECT_ERROR(parse_control_points(heading + "A,1,2,3,0.01,red,7,4,5,6,map\n"),
+               "line 2: mark_frame is 'map'; it is base or lidar");
+  EXPECT_ERROR(parse_control_points(heading + "A,1,2,3,0.01,red,,4,5,6,lidar\n"),
+               "mark_frame is of marks in a scan: give its robot and stamp");
+  EXPECT_ERROR(parse_control_points(heading + "A,1,2,3,0.01,red,7,,,,lidar\n"), "0, 0, 0 is the LiDAR");
+}
+
 TEST(ControlPoints, WhatIsWrongIsNamedWithItsLine) {
   const std::string heading = "name,x,y,z,sigma,mark_x,mark_y,mark_z,robot,stamp,role\n";
   EXPECT_ERROR(parse_control_points(""), "empty");

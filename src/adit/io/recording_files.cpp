@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "adit/core/format.hpp"
+#include "adit/io/bag.hpp"
 #include "adit/io/bag_recording.hpp"
 #include "adit/io/scan_folder.hpp"
 #include "adit/io/text.hpp"
@@ -109,6 +110,7 @@ Result<Recording> open_folder(const std::string& input, const RecordingConfig& c
   if (is_whole) return read_scan_folder(input, {}, reading);
   if (is_part) return open_part(input.substr(0, at), input.substr(at + 1), reading);
   if (const Result<> plain = check_not_packed(input); !plain) return tl::unexpected(plain.error());
+  if (const Result<> whole = check_not_metadata(input); !whole) return tl::unexpected(whole.error());
   if (std::filesystem::exists(input, ignored))
     return fail(input + ": is not a recording; a bag (.mcap, .db3, .bag or folder) or a folder of clouds is");
   return fail(input +

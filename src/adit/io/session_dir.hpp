@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct RobotProvenance {
   std::string lidar;      ///< As the recording names it; "" when unknown.
   std::size_t scans = 0;  ///< Of its recording; 0 of a robot that could not be mapped.
   std::string failure;    ///< One line that names the robot; "" when it was mapped.
+  /// The mount; none where the LiDAR moves on the robot, and where an earlier version mapped it.
+  std::optional<Pose> T_base_lidar = {};
 
   /// Whether it is about the map of that name: a robot that failed may have had the name, too.
   [[nodiscard]] bool is_of_map(const std::string& map) const { return name == map && failure.empty(); }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
 
 #include "adit/core/format.hpp"
@@ -182,6 +183,23 @@ TEST(SessionDir, TheProvenanceSaysWhatShareOfTheReturnsNothingConfirmed) {
   ASSERT_TRUE(merges) << merges.error().message;
   EXPECT_EQ(merges->front().check.unconfirmed.a, 0.063);
   EXPECT_FALSE(merges->front().check.unconfirmed.b);
+}
+
+TEST(SessionDir, TheProvenanceSaysWhereTheLidarSits) {
+  Session session = session_of_two();
+  const Pose mount(so3::exp({0.02, -0.3, 1.1}), {0.3, -0.1, 0.9});
+  session.provenance.robots = {{"ada", "plane-icp", "", 12, "", mount}, {"bo", "plane-icp", "", 12, ""}};
+  const std::string toml = session_toml(session);
+  const Result<SessionHeader> header = parse_session_toml(toml);
+  ASSERT_TRUE(header) << header.error().message;
+  ASSERT_EQ(header->provenance.robots.size(), 2U);
+  const std::optional<Pose>& read = header->provenance.robots[0].T_base_lidar;
+  ASSERT_TRUE(read) << toml;
+  EXPECT_LT((read->inverse() * mount).log().norm(), 1e-12);
+  EXPECT_FALSE(header->provenance.robots[1].T_base_lidar);
+  const Result<SessionHeader> edited = parse_session_toml("[[mapping]]\nname = 'ada'\nmount = '0.3 0'\n");
+  ASSERT_TRUE(edited) << edited.error().message;
+  EXPECT_FALSE(edited->provenance.robots.at(0).T_base_lidar);
 }
 
 TEST(SessionDir, ARulingIsNoOutcomeOfTheTest) {

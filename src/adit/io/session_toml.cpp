@@ -16,6 +16,7 @@
 
 #include "adit/core/format.hpp"
 #include "adit/core/version.hpp"
+#include "adit/io/mount.hpp"
 #include "adit/io/toml_depth.hpp"
 
 namespace adit {
@@ -102,6 +103,7 @@ toml::array mapping_of(const Session& session) {
       entry.insert("odometry", robot.odometry);
       entry.insert("lidar", robot.lidar);
       entry.insert("scans", static_cast<std::int64_t>(robot.scans));
+      if (robot.T_base_lidar) entry.insert("mount", mount_text(*robot.T_base_lidar));
     }
     for (const auto& map : session.maps)
       if (robot.is_of_map(map->name)) insert_share(entry, "unconfirmed", mean_of_judged(map->unconfirmed));
@@ -189,6 +191,12 @@ std::uint32_t count_of(const toml::node* node) {
 
 std::uint32_t count_in(const toml::table& table, const char* key) { return count_of(table.get(key)); }
 
+/// None where it is missing, as in sessions of earlier versions, or is no mount.
+std::optional<Pose> saved_mount(const toml::table& mapping) {
+  const Result<Pose> T_base_lidar = parse_mount(mapping["mount"].value_or(std::string()));
+  return T_base_lidar ? std::optional(*T_base_lidar) : std::nullopt;
+}
+
 std::vector<RobotProvenance> mapping_in(const toml::table& table) {
   std::vector<RobotProvenance> robots;
   const toml::array* mapping = table["mapping"].as_array();
@@ -198,7 +206,7 @@ std::vector<RobotProvenance> mapping_in(const toml::table& table) {
     if (entry == nullptr) continue;
     robots.push_back({(*entry)["name"].value_or(std::string()), (*entry)["odometry"].value_or(std::string()),
                       (*entry)["lidar"].value_or(std::string()), count_in(*entry, "scans"),
-                      (*entry)["failed"].value_or(std::string())});
+                      (*entry)["failed"].value_or(std::string()), saved_mount(*entry)});
   }
   return robots;
 }

@@ -48,22 +48,38 @@ BoundControl bound_to(const PlacedSession& session, ControlPoint point, const Pl
   point.mark.robot = map.name;
   point.mark.stamp = map.keyframes[place.keyframe].stamp;
   point.mark.position = in_keyframe;
+  point.mark.is_in_lidar_frame = false;
   return {std::move(point), place};
 }
 
-/// A mark in the base frame of a robot: bound to the keyframe nearest in time.
+/// Where a mark in a scan is in the base frame of its robot.
+Result<Vector3> in_base_frame(const PlacedSession& session, const ControlMark& mark) {
+  if (!mark.is_in_lidar_frame) return mark.position;
+  const std::vector<RobotProvenance>& mapped = session.saved.provenance.robots;
+  const auto of_map =
+      std::ranges::find_if(mapped, [&](const RobotProvenance& robot) { return robot.is_of_map(mark.robot); });
+  if (of_map != mapped.end() && of_map->T_base_lidar) return *of_map->T_base_lidar * mark.position;
+  return fail(format(
+      "its mark is in the LiDAR's frame, and the session does not say where the LiDAR of {} sits: it moves "
+      "on the robot, or an earlier version of adit mapped it; give the mark in the base frame, or map the "
+      "recording again",
+      mark.robot));
+}
+
+/// A mark in a scan: bound to the keyframe nearest in time.
 Result<BoundControl> bind_in_scan(const PlacedSession& session, const ControlPoint& point,
                                   std::size_t robot) {
   const PlacedRobot& placed = session.robots[robot];
   const Result<Pose> T_map_base =
       pose_at(at_every_scan(*placed.map, placed.T_world_keyframe), *point.mark.stamp);
   if (!T_map_base) return fail(placed.map->name, T_map_base.error());
+  const Result<Vector3> in_base = in_base_frame(session, point.mark);
+  if (!in_base) return tl::unexpected(in_base.error());
   const auto nearest = std::ranges::min_element(placed.map->keyframes, {}, [&](const Keyframe& keyframe) {
     return std::chrono::abs(keyframe.stamp - *point.mark.stamp);
   });
   const Place place{robot, static_cast<std::size_t>(nearest - placed.map->keyframes.begin())};
-  return bound_to(session, point, place,
-                  place.T_map_keyframe(session).inverse() * (*T_map_base * point.mark.position));
+  return bound_to(session, point, place, place.T_map_keyframe(session).inverse() * (*T_map_base * *in_base));
 }
 
 /// A mark picked in a map: bound to the keyframe nearest to it.

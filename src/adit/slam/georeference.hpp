@@ -24,8 +24,8 @@ struct Georeferencing {
 /// picking it and that of the place in the map, whose covariance is the pose graph's (graph_optimized.g2o),
 /// the first keyframe of the map being its origin: far marks of a map that drifts count less. The maps
 /// themselves stay as they are: a rigid transform takes no bend out of them. The session is read, not written
-/// (write_georeferences). Fails, naming the point, where a mark is nowhere in the session, and as fit_control
-/// and crs_wkt do.
+/// (write_georeferences). Fails, naming the point, where a mark is nowhere in the session, or in the frame of
+/// a LiDAR whose mount the session does not say, and as fit_control and crs_wkt do.
 [[nodiscard]] Result<Georeferencing> georeference(const std::filesystem::path& session,
                                                   const std::vector<ControlPoint>& points,
                                                   const std::string& crs);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <optional>
 #include <utility>
 
 #include "adit/core/format.hpp"
@@ -91,6 +92,10 @@ void note_gaps(const Recording& recording, std::vector<std::string>& notes) {
                recording.name, to_seconds(longest), begin.seconds()));
 }
 
+std::optional<Pose> fixed_mount(const Recording& recording) {
+  return recording.lidar_moves ? std::nullopt : std::optional(recording.T_base_lidar);
+}
+
 /// Turns whatever goes wrong into an error of this robot, so that the others go on.
 Result<RobotMap> map_one(const Recording& recording, RobotId id, const RobotSlamConfig& config,
                          const Phase& phase, LeftOut& left_out) {
@@ -153,7 +158,8 @@ Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig
     note_quality(*maps[i], mapping.notes);
     note_slips(*maps[i], recordings[i], mapping.notes);
     mapping.robots.push_back({std::make_shared<const RobotMap>(select_keyframes(*maps[i], config.keyframes)),
-                              std::string(to_string(configs[i].odometry.method)), recordings[i].lidar});
+                              std::string(to_string(configs[i].odometry.method)), recordings[i].lidar,
+                              fixed_mount(recordings[i])});
   }
   if (!mapping.robots.empty()) return mapping;
   if (mapping.failed.empty()) return fail("no recording was given");

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,10 @@ namespace adit {
 
 /// The map of one robot, reduced to the keyframes of the policy, and the odometry that made it.
 struct MappedRobot {
-  std::shared_ptr<const RobotMap> map;  ///< Without keyframes where the policy left none.
-  std::string odometry;                 ///< The method that ran.
-  std::string lidar;                    ///< As the recording names it; "" when unknown.
+  std::shared_ptr<const RobotMap> map;    ///< Without keyframes where the policy left none.
+  std::string odometry;                   ///< The method that ran.
+  std::string lidar;                      ///< As the recording names it; "" when unknown.
+  std::optional<Pose> T_base_lidar = {};  ///< The mount; none where the LiDAR moves on the robot.
 };
 
 /// A recording that could not be mapped.

@@ -91,6 +91,16 @@ TEST(Mapping, ASensorThatWouldSpoilTheMapIsNotedUnlessChecksAreOff) {
   for (const std::string& note : unchecked->notes) EXPECT_EQ(note.find("imu"), std::string::npos) << note;
 }
 
+TEST(Mapping, TheMountIsThatOfTheRecordedCloudsOrUnknown) {
+  Recording on_a_mast = drive("bo", 0.1);
+  on_a_mast.lidar_moves = true;
+  const Result<Mapping> mapping = map_robots({drive("ada"), on_a_mast}, SlamConfig{});
+  ASSERT_TRUE(mapping) << mapping.error().message;
+  ASSERT_TRUE(mapping->robots.at(0).T_base_lidar);
+  EXPECT_EQ(mapping->robots[0].T_base_lidar->translation(), Vector3(0, 0, 1));
+  EXPECT_FALSE(mapping->robots.at(1).T_base_lidar);
+}
+
 TEST(Mapping, WhereNoRobotIsLeftThereIsNoMap) {
   EXPECT_ERROR(map_robots({broken("bo")}, SlamConfig{}), "scan 3 is damaged");
   EXPECT_ERROR(map_robots({}, SlamConfig{}), "no recording");

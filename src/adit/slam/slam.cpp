@@ -44,7 +44,7 @@ Provenance provenance_of(const std::vector<SavedFleet>& saved, const Mapping& ma
   }
   for (const MappedRobot& robot : mapping.robots)
     provenance.robots.push_back(
-        {robot.map->name, robot.odometry, robot.lidar, robot.map->odometry.size(), ""});
+        {robot.map->name, robot.odometry, robot.lidar, robot.map->odometry.size(), "", robot.T_base_lidar});
   for (const FailedRobot& robot : mapping.failed)
     provenance.robots.push_back({robot.name, "", "", 0, robot.reason});
   for (const RepeatedRobot& robot : repeated)  // saved ones have theirs
