@@ -157,7 +157,6 @@ RobotMap drive(const Mine& mine, RobotId id) {
     const Stamp stamp{std::int64_t{k} * 1'000'000'000};
     auto cloud = std::make_shared<PointCloud>(mine.seen_from(truth[k], mix64(id.value, k)));
     map.places.push_back(describe(*cloud, map.scan_context));
-    map.tunnel.push_back({});
     map.searchable.push_back(true);
     map.unconfirmed.push_back(0.0F);
     map.step_covariances.push_back(covariance);

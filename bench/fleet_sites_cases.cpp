@@ -62,7 +62,6 @@ RobotMap site_robot(const Tunnel& site, const LidarConfig& lidar, int on_site, R
     }
     const Stamp stamp{static_cast<std::int64_t>(k) * 1'000'000'000};
     map.places.push_back(describe(*clouds[k], map.scan_context));
-    map.tunnel.push_back({});
     map.searchable.push_back(true);
     map.unconfirmed.emplace_back();
     map.step_covariances.push_back(covariance);

@@ -73,6 +73,20 @@ TEST_F(BadInput, UnknownKinds) {
   expect_refused("info " + path("a.db3.zstd"), 1, "unpack it: zstd -d");
 }
 
+TEST_F(BadInput, TheMetadataOfABagInPlaceOfItsFolder) {
+  std::filesystem::create_directories(path("bag"));
+  const std::string metadata = path("bag/metadata.yaml");
+  put_file(metadata, "rosbag2_bagfile_information:\n  relative_file_paths: [a_0.db3]\n");
+  for (const std::string& command :
+       {"slam " + metadata + " --out " + out(), "slam a=" + metadata + " --out " + out(),
+        "slam " + metadata + " " + path("b.mcap") + " --out " + out(),
+        "slam --namespaces " + metadata + " --out " + out(), "info " + metadata, "doctor " + metadata,
+        "odometry " + metadata + " --method kiss-icp --out " + existing(),
+        "convert " + metadata + " " + path("b.mcap")})
+    expect_refused(command, 1,
+                   "metadata.yaml: belongs to a bag and is no recording by itself; give the folder");
+}
+
 TEST_F(BadInput, Clouds) {
   put_file(path("empty.pcd"), "");
   put_file(path("none.pcd"),

@@ -134,21 +134,23 @@ TEST(Conformance, ErrorsOverIrregularStepsAreThoseOfEvosDefinition) {
              nlohmann::json::parse(test::get_file(kCases / "evo/irregular_errors.json")));
 }
 
-TEST(Conformance, AMapOfTheFirstLayoutIsReadForEver) {
-  const Result<RobotMap> map = read_robot_map(kCases / "robot_map_7.adit");
-  ASSERT_TRUE(map) << map.error().message;
-  EXPECT_EQ(map->id, (RobotId{2}));
-  EXPECT_EQ(map->viewpoint, Vector3(0.1, 0.2, 0.9));
-  ASSERT_EQ(map->slips.size(), 1U);
-  EXPECT_EQ(map->slips.front().counted_m, 0.25);
-  ASSERT_EQ(map->keyframes.size(), 2U);
-  EXPECT_EQ(map->keyframes[1].id, (KeyframeId{{2}, 1}));
-  EXPECT_EQ(map->keyframes[1].stamp.ns, 1'200'000'000);
-  EXPECT_EQ(map->keyframes[1].cloud->points[1], Eigen::Vector3f(4.0F, 5.0F, 7.0F));
-  EXPECT_EQ(map->step_covariances[1], 0.01 * Matrix6::Identity());
-  EXPECT_TRUE(map->tunnel[1].tunnel_like);
-  EXPECT_TRUE(map->searchable[0]);
-  EXPECT_EQ(map->unconfirmed[1], 0.125F);
+TEST(Conformance, MapsOfAllLayoutsAreReadForEver) {
+  for (const char* name : {"robot_map_7.adit", "robot_map_8.adit"}) {
+    SCOPED_TRACE(name);
+    const Result<RobotMap> map = read_robot_map(kCases / name);
+    ASSERT_TRUE(map) << map.error().message;
+    EXPECT_EQ(map->id, (RobotId{2}));
+    EXPECT_EQ(map->viewpoint, Vector3(0.1, 0.2, 0.9));
+    ASSERT_EQ(map->slips.size(), 1U);
+    EXPECT_EQ(map->slips.front().counted_m, 0.25);
+    ASSERT_EQ(map->keyframes.size(), 2U);
+    EXPECT_EQ(map->keyframes[1].id, (KeyframeId{{2}, 1}));
+    EXPECT_EQ(map->keyframes[1].stamp.ns, 1'200'000'000);
+    EXPECT_EQ(map->keyframes[1].cloud->points[1], Eigen::Vector3f(4.0F, 5.0F, 7.0F));
+    EXPECT_EQ(map->step_covariances[1], 0.01 * Matrix6::Identity());
+    EXPECT_TRUE(map->searchable[0]);
+    EXPECT_EQ(map->unconfirmed[1], 0.125F);
+  }
 }
 
 }  // namespace

@@ -84,7 +84,6 @@ inline RobotMap drive(const BoxWorld& world, RobotId id, const std::vector<Pose>
     const Stamp stamp{static_cast<std::int64_t>(k) * 1'000'000'000};
     auto cloud = std::make_shared<PointCloud>(world.seen_from(T_world_base[k], mix64(id.value, k)));
     map.places.push_back(describe(*cloud, map.scan_context));
-    map.tunnel.push_back({});
     map.searchable.push_back(true);
     map.unconfirmed.push_back(0.0F);
     map.step_covariances.push_back(covariance);

@@ -213,8 +213,6 @@ inline DriftRobot drive_through(const PointCloud& whole, const DriftDrive& drive
     }
     const Stamp stamp{static_cast<std::int64_t>(k) * 1'000'000'000};
     out.places.push_back(describe(*clouds[k], out.scan_context));
-    out.tunnel.push_back(
-        tunnel_filter(*clouds[k], config.tunnel_filter).value_or(TunnelVerdict{Vector3::Zero(), true}));
     out.searchable.push_back(true);
     out.unconfirmed.emplace_back();
     out.step_covariances.push_back(covariance);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "adit/core/decompositions.hpp"
 #include "adit/core/format.hpp"
@@ -24,9 +25,12 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers stand in the file as they do in memory");
 
-/// Its last digit counts the layouts that there have been. A change of RobotMap raises it, and what layout 7
-/// and later ones lack is then filled in: sessions keep such files.
-constexpr std::string_view kMagic = "adit map 7\n";
+/// The last digit counts the layouts that there have been. A change of RobotMap raises it, and what layout 7
+/// and later ones lack or have too much is then filled in or passed over: sessions keep such files.
+///@{
+constexpr std::string_view kMagic = "adit map 8\n";
+constexpr std::string_view kMagicOf7 = "adit map 7\n";
+///@}
 
 /// Appends what `transfer` names.
 class Writer {
@@ -195,8 +199,16 @@ void share_if_judged(Archive& archive, Share& value) {
   if constexpr (Archive::kReads) value = share < 0.0F ? std::nullopt : std::optional(share);
 }
 
+/// What the paper's filter said of each keyframe, which layout 7 has: it is found again from the clouds.
 template <class Archive, class Map>
-void transfer(Archive& archive, Map& map) {
+void pass_over_verdicts(Archive& archive, const Map& map) {
+  std::vector<std::array<char, 3 * sizeof(double) + 1>> verdicts;  // extents and a flag
+  if (size_of_each(archive, map, verdicts))
+    for (auto& verdict : verdicts) archive.raw(verdict.data(), verdict.size());
+}
+
+template <class Archive, class Map>
+void transfer(Archive& archive, Map& map, std::string_view magic) {
   archive.number(map.id.value);
   text(archive, map.name);
   trajectory(archive, map.odometry);
@@ -214,12 +226,7 @@ void transfer(Archive& archive, Map& map) {
   scan_context_config(archive, map.scan_context);
   if (size_of_each(archive, map, map.places))
     for (auto& entry : map.places) place(archive, entry);
-  if (size_of_each(archive, map, map.tunnel))
-    for (auto& verdict : map.tunnel) {
-      archive.raw(verdict.extents.data(), 3 * sizeof(double));
-      const bool tunnel_like = flag(archive, verdict.tunnel_like);
-      if constexpr (Archive::kReads) verdict.tunnel_like = tunnel_like;
-    }
+  if (magic == kMagicOf7) pass_over_verdicts(archive, map);
   if (size_of_each(archive, map, map.searchable))
     for (std::size_t k = 0; k < map.searchable.size(); ++k) {
       const bool searchable = flag(archive, map.searchable[k]);
@@ -271,7 +278,6 @@ Result<> check_keyframe(const RobotMap& map, std::size_t k) {
       std::pair(!is_usable(map.step_covariances[k], k), "its step's covariance is not positive definite"),
       std::pair(!map.pose_noise[k].allFinite(), "its pose's noise is not finite"),
       std::pair(!is_whole(map.places[k], map.scan_context), "its place does not fit the grid of places"),
-      std::pair(!map.tunnel[k].extents.allFinite(), "its extents are not finite"),
       std::pair(map.unconfirmed[k] && !(*map.unconfirmed[k] <= 1.0F),
                 "its share of unconfirmed returns is no share")};
   for (const auto& [is_there, fault] : faults)
@@ -295,7 +301,7 @@ Result<> check_map(RobotMap& map) {
 
 std::string robot_map_bytes(const RobotMap& map) {
   Writer content;
-  transfer(content, map);
+  transfer(content, map, kMagic);
   const std::string plain = content.take();
   Writer file;
   file.raw(kMagic.data(), kMagic.size());
@@ -307,7 +313,8 @@ std::string robot_map_bytes(const RobotMap& map) {
 }
 
 Result<RobotMap> parse_robot_map(std::string_view bytes) {
-  if (!bytes.starts_with(kMagic))
+  const std::string_view magic = bytes.substr(0, kMagic.size());
+  if (magic != kMagic && magic != kMagicOf7)
     return fail("not a robot's map, or one of a later version of adit, or of one before layout 7");
   bytes.remove_prefix(kMagic.size());
   std::uint64_t size = 0;
@@ -322,7 +329,7 @@ Result<RobotMap> parse_robot_map(std::string_view bytes) {
   if (crc32(*plain) != sum) return fail("the map is damaged; map the recording again");
   Reader content(*plain);
   RobotMap map;
-  transfer(content, map);
+  transfer(content, map, magic);
   if (!content.done()) return fail("the map is damaged; map the recording again");
   if (const Result<> checked = check_map(map); !checked)
     return fail(format("the map is damaged: {}; map the recording again", checked.error().message));

@@ -49,7 +49,6 @@ RobotMap random_map() {
     map.step_covariances.push_back(Matrix6::Identity() * rng.uniform());
     map.pose_noise.push_back(Matrix6::Identity() * rng.uniform());
     map.places.push_back(describe(cloud, {}));
-    map.tunnel.push_back({Vector3(3.0, 2.0, rng.uniform()), k % 2 == 0});
     map.searchable.push_back(k % 3 == 0);
     map.unconfirmed.push_back(0.01F * static_cast<float>(k));
   }
@@ -72,7 +71,6 @@ TEST(RobotMapFile, ReadsBackBitForBit) {
   EXPECT_TRUE(again->places[3].unit_columns == map.places[3].unit_columns);
   EXPECT_TRUE(again->keyframes[2].T_odom_base.matrix() == map.keyframes[2].T_odom_base.matrix());
   EXPECT_EQ(again->searchable, map.searchable);
-  EXPECT_EQ(again->tunnel[1].tunnel_like, map.tunnel[1].tunnel_like);
 }
 
 TEST(RobotMapFile, AScanThatWasNotJudgedIsReadAsSuch) {
@@ -115,24 +113,19 @@ std::string edited(const RobotMap& map, const Edit& edit) {
   return out + compress_zstd(plain);
 }
 
-// The end of a map of five keyframes: tunnel (extents, flag), searchable, unconfirmed, viewpoint.
+// The end of a map of five keyframes: places, searchable, unconfirmed, viewpoint.
 constexpr std::size_t kViewpoint = 24;
 constexpr std::size_t kUnconfirmed = 8 + 5 * 4;
 constexpr std::size_t kSearchable = 8 + 5;
-constexpr std::size_t kTunnel = 8 + 5 * 25;
 constexpr std::size_t kPlaces = 8 + 5 * (2 * 4 + 4 * 8 + (20 * 60 + 60 + 20 + 60) * 4);
 
 TEST(RobotMapFile, FlagsAreZeroOrOne) {
   const RobotMap map = random_map();
   EXPECT_TRUE(parse_robot_map(edited(map, [](std::string&) {})));
-  for (const std::size_t from_end : {kViewpoint + kUnconfirmed + 1,                   // searchable
-                                     kViewpoint + kUnconfirmed + kSearchable + 1}) {  // tunnel_like
-    EXPECT_TRUE(
-        parse_robot_map(edited(map, [&](std::string& plain) { plain[plain.size() - from_end] = 1; })));
-    EXPECT_ERROR(
-        parse_robot_map(edited(map, [&](std::string& plain) { plain[plain.size() - from_end] = 2; })),
-        "the map is damaged; map the recording again");
-  }
+  constexpr std::size_t kLastFlag = kViewpoint + kUnconfirmed + 1;  // from the end
+  EXPECT_TRUE(parse_robot_map(edited(map, [&](std::string& plain) { plain[plain.size() - kLastFlag] = 1; })));
+  EXPECT_ERROR(parse_robot_map(edited(map, [&](std::string& plain) { plain[plain.size() - kLastFlag] = 2; })),
+               "the map is damaged; map the recording again");
 }
 
 /// The most memory that the program has had, bytes.
@@ -145,7 +138,7 @@ std::size_t peak_memory() {
 TEST(RobotMapFile, AFewBytesDoNotMakeMillionsOfPlaces) {
   constexpr std::uint64_t kMany = 8'000'000;
   const std::string bytes = edited(random_map(), [&](std::string& plain) {
-    const std::size_t at = plain.size() - kViewpoint - kUnconfirmed - kSearchable - kTunnel - kPlaces;
+    const std::size_t at = plain.size() - kViewpoint - kUnconfirmed - kSearchable - kPlaces;
     ASSERT_EQ(plain[at], 5);
     std::memcpy(plain.data() + at, &kMany, sizeof(kMany));
     plain.append(kMany, '\0');
@@ -178,8 +171,6 @@ TEST(RobotMapFile, WhatItsUsersRelyOnIsChecked) {
   expect_refused([](RobotMap& map) { map.viewpoint.x() = kNan; }, "the position of the LiDAR is not finite");
   expect_refused([](RobotMap& map) { map.pose_noise[1](2, 3) = kNan; },
                  "keyframe 1: its pose's noise is not finite");
-  expect_refused([](RobotMap& map) { map.tunnel[0].extents.z() = kNan; },
-                 "keyframe 0: its extents are not finite");
   for (const float share : {1.5F, std::numeric_limits<float>::quiet_NaN()})
     expect_refused([share](RobotMap& map) { map.unconfirmed[3] = share; },
                    "keyframe 3: its share of unconfirmed returns is no share");

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "adit/core/format.hpp"
+#include "adit/core/parallel.hpp"
 
 namespace adit {
 namespace {
@@ -24,12 +25,21 @@ void append_keyframe(RobotMap& to, const RobotMap& from, std::size_t k, const Ma
   to.step_covariances.push_back(covariance);
   to.pose_noise.push_back(from.pose_noise[k]);
   to.places.push_back(from.places[k]);
-  to.tunnel.push_back(from.tunnel[k]);
   to.searchable.push_back(true);
   to.unconfirmed.push_back(from.unconfirmed[k]);
 }
 
-RobotMap without_tunnel_keyframes(const RobotMap& map) {
+/// One per keyframe. They are the paper's policies' alone, which is why a map does not hold them.
+std::vector<std::uint8_t> are_tunnel_like(const RobotMap& map, const TunnelFilterConfig& filter) {
+  std::vector<std::uint8_t> are(map.keyframes.size());
+  parallel_for_each(are.size(), [&](std::size_t k) {
+    const Result<TunnelVerdict> verdict = tunnel_filter(*map.keyframes[k].cloud, filter);
+    are[k] = !verdict || verdict->tunnel_like ? 1 : 0;
+  });
+  return are;
+}
+
+RobotMap without_tunnel_keyframes(const RobotMap& map, const std::vector<std::uint8_t>& are_tunnel_like) {
   RobotMap kept;
   kept.id = map.id;
   kept.name = map.name;
@@ -47,7 +57,7 @@ RobotMap without_tunnel_keyframes(const RobotMap& map) {
       const Matrix6 carry = T_prev_k.inverse().adjoint();
       covariance = carry * covariance * carry.transpose() + map.step_covariances[k];
     }
-    if (map.tunnel[k].tunnel_like) continue;
+    if (are_tunnel_like[k] != 0) continue;
     append_keyframe(kept, map, k, kept.keyframes.empty() ? Matrix6(Matrix6::Zero()) : covariance);
     covariance.setZero();
   }
@@ -79,12 +89,15 @@ Result<KeyframeSelection> keyframe_selection(std::string_view name) {
       "unknown keyframe policy '{}'; known are adaptive, all, tunnel_filter, tunnel_filter_keep", name));
 }
 
-RobotMap select_keyframes(const RobotMap& map, KeyframeSelection selection) {
-  if (selection == KeyframeSelection::tunnel_filter) return without_tunnel_keyframes(map);
+RobotMap select_keyframes(const RobotMap& map, KeyframeSelection selection,
+                          const TunnelFilterConfig& filter) {
+  if (selection == KeyframeSelection::tunnel_filter)
+    return without_tunnel_keyframes(map, are_tunnel_like(map, filter));
   RobotMap selected = map;
-  for (std::size_t k = 0; k < selected.keyframes.size(); ++k) {
-    selected.searchable[k] =
-        selection != KeyframeSelection::tunnel_filter_keep || !selected.tunnel[k].tunnel_like;
+  selected.searchable.assign(map.keyframes.size(), true);
+  if (selection == KeyframeSelection::tunnel_filter_keep) {
+    const std::vector<std::uint8_t> leave = are_tunnel_like(map, filter);
+    for (std::size_t k = 0; k < leave.size(); ++k) selected.searchable[k] = leave[k] == 0;
   }
   return selected;
 }

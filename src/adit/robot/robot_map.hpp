@@ -36,8 +36,7 @@ struct RobotMap {
   ScanContextConfig scan_context;  ///< What `places` were described with.
   /// Of the keyframes' clouds before they were thinned, with z upwards where gravity was felt.
   std::vector<ScanContext> places;
-  std::vector<TunnelVerdict> tunnel;  ///< Tunnel-like, too, where a cloud has too few points for a box.
-  std::vector<bool> searchable;       ///< Takes part in loop search.
+  std::vector<bool> searchable;  ///< Takes part in loop search.
   /// Share of the scan's returns that nothing confirmed (dust, drops, what moves); they are not in the cloud.
   /// None where the scan was too thin to be judged (ScanView::is_dense).
   std::vector<std::optional<float>> unconfirmed;
@@ -66,7 +65,10 @@ enum class KeyframeSelection {
 [[nodiscard]] Result<KeyframeSelection> keyframe_selection(std::string_view name);
 
 /// The map under that policy. Where keyframes leave, the others are numbered anew and covariances are
-/// composed over the gaps. A map whose keyframes all leave is returned empty.
-[[nodiscard]] RobotMap select_keyframes(const RobotMap& map, KeyframeSelection selection);
+/// composed over the gaps. A map whose keyframes all leave is returned empty. A keyframe is tunnel-like by
+/// `filter`, and where its cloud has no point near enough to tell. Throws ContractViolation when `filter` is
+/// out of its ranges.
+[[nodiscard]] RobotMap select_keyframes(const RobotMap& map, KeyframeSelection selection,
+                                        const TunnelFilterConfig& filter);
 
 }  // namespace adit

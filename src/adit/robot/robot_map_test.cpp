@@ -26,7 +26,19 @@ Matrix6 random_covariance(Rng& rng) {
   return root * root.transpose() + 1e-4 * Matrix6::Identity();
 }
 
-/// A winding drive in space with full covariances; the keyframes in `tunnel` are tunnel-like.
+constexpr TunnelFilterConfig kFilter{.width_threshold_m = 2.0};
+
+/// The corners of a box of that width and height.
+std::shared_ptr<const PointCloud> box(float width_m) {
+  auto cloud = std::make_shared<PointCloud>();
+  for (const float x : {-5.0F, 5.0F})
+    for (const float y : {-width_m / 2.0F, width_m / 2.0F})
+      for (const float z : {0.0F, width_m}) cloud->points.emplace_back(x, y, z);
+  return cloud;
+}
+
+/// A winding drive in space with full covariances; the keyframes in `tunnel` are tunnel-like by `kFilter`,
+/// the last of them as it saw nothing.
 RobotMap winding_drive(const std::vector<std::uint32_t>& tunnel) {
   Rng rng(17);
   RobotMap map;
@@ -40,9 +52,12 @@ RobotMap winding_drive(const std::vector<std::uint32_t>& tunnel) {
     map.pose_noise.push_back(random_covariance(rng));
     if (k > 0) T_odom_base = T_odom_base * Pose::exp(random_twist(rng, 1.0));
     const Stamp stamp{k * 100};
-    map.keyframes.push_back({{map.id, k}, stamp, T_odom_base, std::make_shared<const PointCloud>()});
+    map.keyframes.push_back({{map.id, k}, stamp, T_odom_base, nullptr});
+    if (std::ranges::find(tunnel, k) == tunnel.end())
+      map.keyframes.back().cloud = box(4.0F);
+    else
+      map.keyframes.back().cloud = k == tunnel.back() ? std::make_shared<const PointCloud>() : box(1.0F);
     map.places.push_back(from_heights(2, 3, std::vector<float>(6, static_cast<float>(k) + 1.0F)));
-    map.tunnel.push_back({Vector3::Constant(k), std::ranges::find(tunnel, k) != tunnel.end()});
     map.searchable.push_back(true);
     map.unconfirmed.push_back(0.0F);
     map.odometry.push_back({stamp, T_odom_base});
@@ -77,7 +92,7 @@ Matrix6 dense_covariance(const RobotMap& map, std::size_t a, std::size_t b) {
 TEST(RobotMap, CovariancesComposeOverTheGapsThatTunnelKeyframesLeave) {
   const RobotMap map = winding_drive({0, 3, 4, 5, 8, 11});
   const std::vector<std::size_t> kept = {1, 2, 6, 7, 9, 10};
-  const RobotMap selected = select_keyframes(map, KeyframeSelection::tunnel_filter);
+  const RobotMap selected = select_keyframes(map, KeyframeSelection::tunnel_filter, kFilter);
   ASSERT_EQ(selected.keyframes.size(), kept.size());
   EXPECT_TRUE(selected.step_covariances[0].isZero());
   for (std::size_t i = 1; i < kept.size(); ++i) {
@@ -89,7 +104,7 @@ TEST(RobotMap, CovariancesComposeOverTheGapsThatTunnelKeyframesLeave) {
 TEST(RobotMap, KeyframesThatStayAreNumberedAnewAndKeepTheirContent) {
   const RobotMap map = winding_drive({0, 3, 4, 5, 8, 11});
   const std::vector<std::size_t> kept = {1, 2, 6, 7, 9, 10};
-  const RobotMap selected = select_keyframes(map, KeyframeSelection::tunnel_filter);
+  const RobotMap selected = select_keyframes(map, KeyframeSelection::tunnel_filter, kFilter);
   ASSERT_EQ(selected.keyframes.size(), kept.size());
   for (std::uint32_t i = 0; i < kept.size(); ++i) {
     EXPECT_EQ(selected.keyframes[i].id, (KeyframeId{{3}, i}));
@@ -97,7 +112,6 @@ TEST(RobotMap, KeyframesThatStayAreNumberedAnewAndKeepTheirContent) {
     EXPECT_EQ(selected.keyframes[i].cloud, map.keyframes[kept[i]].cloud);
     EXPECT_EQ(selected.places[i].norms, map.places[kept[i]].norms);
     EXPECT_TRUE(selected.searchable[i]);
-    EXPECT_FALSE(selected.tunnel[i].tunnel_like);
   }
   EXPECT_EQ(selected.name, map.name);
   EXPECT_EQ(selected.odometry.size(), map.odometry.size());
@@ -108,7 +122,8 @@ TEST(RobotMap, KeyframesThatStayAreNumberedAnewAndKeepTheirContent) {
 TEST(RobotMap, AllKeyframesTunnelLikeLeaveAnEmptyMap) {
   std::vector<std::uint32_t> everyone(kKeyframes);
   for (std::uint32_t k = 0; k < kKeyframes; ++k) everyone[k] = k;
-  const RobotMap selected = select_keyframes(winding_drive(everyone), KeyframeSelection::tunnel_filter);
+  const RobotMap selected =
+      select_keyframes(winding_drive(everyone), KeyframeSelection::tunnel_filter, kFilter);
   EXPECT_TRUE(selected.keyframes.empty());
   EXPECT_TRUE(selected.step_covariances.empty());
   EXPECT_EQ(selected.name, "robot_3");
@@ -116,8 +131,8 @@ TEST(RobotMap, AllKeyframesTunnelLikeLeaveAnEmptyMap) {
 
 TEST(RobotMap, KeepingTunnelKeyframesOnlyBarsThemFromTheSearch) {
   const RobotMap map = winding_drive({2, 7});
-  const RobotMap kept = select_keyframes(map, KeyframeSelection::tunnel_filter_keep);
-  const RobotMap all = select_keyframes(kept, KeyframeSelection::all);
+  const RobotMap kept = select_keyframes(map, KeyframeSelection::tunnel_filter_keep, kFilter);
+  const RobotMap all = select_keyframes(kept, KeyframeSelection::all, kFilter);
   ASSERT_EQ(kept.keyframes.size(), kKeyframes);
   for (std::uint32_t k = 0; k < kKeyframes; ++k) {
     EXPECT_EQ(kept.searchable[k], k != 2 && k != 7);

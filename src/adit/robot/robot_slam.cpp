@@ -98,7 +98,6 @@ void RobotSlam::add_keyframe(const OdometryStep& step) {
   uncertainty_.begin_edge();
   map_.keyframes.push_back(std::move(keyframe));
   map_.places.emplace_back();
-  map_.tunnel.emplace_back();
   map_.unconfirmed.emplace_back();
   describe_keyframe(k, look);
   last_look_ = std::move(look);
@@ -134,10 +133,6 @@ void RobotSlam::describe_keyframe(std::size_t k, const Look& look) {
   // Places are described with z upwards, however the robot stands, where it feels what is up.
   const Pose level = look.up ? levelled(*look.up) : Pose();
   map_.places[k] = describe(transformed(level, look.cloud), config_.scan_context, level * map_.viewpoint);
-  // A cloud with too few points for a bounding box does not describe the place: it takes no part in the loop
-  // search.
-  map_.tunnel[k] =
-      tunnel_filter(thinned, config_.tunnel_filter).value_or(TunnelVerdict{Vector3::Zero(), true});
   // That nothing left a thin scan does not make it a clean one.
   map_.unconfirmed[k].reset();
   if (look.view.is_dense())

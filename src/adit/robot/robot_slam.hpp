@@ -22,7 +22,7 @@ struct RobotSlamConfig {
   OdometryConfig odometry;
   KeyframePolicyConfig keyframes;
   ConfirmConfig confirm;
-  TunnelFilterConfig tunnel_filter;
+  TunnelFilterConfig tunnel_filter;  ///< Of the paper's policies, which select keyframes of the map.
   /// A VLP-16 looks 15 degrees up, an OS2 11, a Livox Mid-360 52 (decision 0051).
   ScanContextConfig scan_context{.max_elevation_deg = 15.0};
   PathNoise noise;

@@ -66,7 +66,6 @@ void expect_sound(const RobotMap& map, const Recording& recording) {
   EXPECT_EQ(map.odometry.size(), recording.num_scans());
   ASSERT_GE(map.keyframes.size(), 5U);
   EXPECT_EQ(map.places.size(), map.keyframes.size());
-  EXPECT_EQ(map.tunnel.size(), map.keyframes.size());
   EXPECT_EQ(map.searchable.size(), map.keyframes.size());
   ASSERT_EQ(map.step_covariances.size(), map.keyframes.size());
   ASSERT_EQ(map.pose_noise.size(), map.keyframes.size());

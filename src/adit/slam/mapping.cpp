@@ -157,7 +157,8 @@ Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig
       mapping.notes.push_back(format("{}: {}", recordings[i].name, *sentence));
     note_quality(*maps[i], mapping.notes);
     note_slips(*maps[i], recordings[i], mapping.notes);
-    mapping.robots.push_back({std::make_shared<const RobotMap>(select_keyframes(*maps[i], config.keyframes)),
+    mapping.robots.push_back({std::make_shared<const RobotMap>(
+                                  select_keyframes(*maps[i], config.keyframes, config.robot.tunnel_filter)),
                               std::string(to_string(configs[i].odometry.method)), recordings[i].lidar,
                               fixed_mount(recordings[i])});
   }

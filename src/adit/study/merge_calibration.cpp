@@ -72,10 +72,11 @@ void judge_check(const CheckedPair& pair, const TrueRuns& runs, std::vector<Judg
                    hypothesis.evidence, pair.check.needed, hypothesis.counts, hypothesis.walls, pair.robots});
 }
 
-std::vector<std::shared_ptr<const RobotMap>> adaptive_maps(const std::vector<RobotRun>& runs) {
+std::vector<std::shared_ptr<const RobotMap>> maps_of(const std::vector<RobotRun>& runs,
+                                                     const SlamConfig& config) {
   std::vector<const RobotRun*> all;
   for (const RobotRun& run : runs) all.push_back(&run);
-  return selected_maps(all, KeyframeSelection::adaptive);
+  return selected_maps(all, config);
 }
 
 std::shared_ptr<const RobotMap> with_id(const RobotMap& map, RobotId id) {
@@ -191,8 +192,8 @@ Result<std::vector<JudgedHypothesis>> hypotheses_within(const CalibrationStudy& 
                                                         const ListedWorld& world) {
   const Result<std::vector<RobotRun>> runs = driven(study, world);
   if (!runs) return tl::unexpected(runs.error());
-  const Result<Meeting> meeting =
-      hold_meeting(adaptive_maps(*runs), with_policy(KeyframeSelection::adaptive, study.config).slam);
+  const SlamConfig config = with_policy(KeyframeSelection::adaptive, study.config).slam;
+  const Result<Meeting> meeting = hold_meeting(maps_of(*runs, config), config);
   if (!meeting) return tl::unexpected(meeting.error());
   TrueRuns truths;
   for (const RobotRun& run : *runs) truths.emplace(run.map->id, &run);
@@ -213,8 +214,8 @@ Result<std::vector<JudgedHypothesis>> hypotheses_between(const CalibrationStudy&
   const Result<std::vector<RobotRun>> theirs = driven(study, other);
   if (!theirs) return tl::unexpected(theirs.error());
   const SlamConfig config = with_policy(KeyframeSelection::adaptive, study.config).slam;
-  std::vector<std::shared_ptr<const RobotMap>> maps = adaptive_maps(*ours);
-  for (const auto& map : adaptive_maps(*theirs))
+  std::vector<std::shared_ptr<const RobotMap>> maps = maps_of(*ours, config);
+  for (const auto& map : maps_of(*theirs, config))
     maps.push_back(with_id(*map, {static_cast<std::uint8_t>(maps.size())}));
   const std::size_t num_ours = ours->size();
   const Phase phase(format("{} against {}", one.name, other.name),

@@ -135,7 +135,7 @@ Result<MergeRun> run_merges(const std::vector<RobotRun>& runs, const MergeTruth&
   std::vector<const RobotRun*> all;
   for (const RobotRun& run : runs) all.push_back(&run);
   const double start_s = processor_s();
-  const Result<Meeting> meeting = hold_meeting(selected_maps(all, config.keyframes), config);
+  const Result<Meeting> meeting = hold_meeting(selected_maps(all, config), config);
   if (!meeting) return tl::unexpected(meeting.error());
   const FleetGraph& known = meeting->agents.front().known();
   const FleetSolution solution = solve(known, config.back_end);

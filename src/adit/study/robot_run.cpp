@@ -147,10 +147,11 @@ Result<std::vector<RobotRun>> run_robots(const std::vector<Recording>& recording
 }
 
 std::vector<std::shared_ptr<const RobotMap>> selected_maps(const std::vector<const RobotRun*>& runs,
-                                                           KeyframeSelection selection) {
+                                                           const SlamConfig& config) {
   std::vector<std::shared_ptr<const RobotMap>> maps;
   for (const RobotRun* run : runs) {
-    maps.push_back(std::make_shared<const RobotMap>(select_keyframes(*run->map_for(selection), selection)));
+    maps.push_back(std::make_shared<const RobotMap>(
+        select_keyframes(*run->map_for(config.keyframes), config.keyframes, config.robot.tunnel_filter)));
   }
   return maps;
 }

@@ -31,8 +31,8 @@ struct RobotRun {
 [[nodiscard]] Result<std::vector<RobotRun>> run_robots(const std::vector<Recording>& recordings,
                                                        const RunConfig& config);
 
-/// The maps of those robots under a keyframe policy.
+/// The maps of those robots under the keyframe policy of `config`.
 [[nodiscard]] std::vector<std::shared_ptr<const RobotMap>> selected_maps(
-    const std::vector<const RobotRun*>& runs, KeyframeSelection policy);
+    const std::vector<const RobotRun*>& runs, const SlamConfig& config);
 
 }  // namespace adit

@@ -32,11 +32,27 @@ Result<> save_session(const std::filesystem::path& folder, const Session& sessio
   return make_folder(folder).and_then([&] { return write_session(folder, session, map_files); });
 }
 
+/// What one policy makes of all robots.
+struct UnderPolicy {
+  SlamConfig config;
+  std::vector<std::shared_ptr<const RobotMap>> maps;
+};
+
+std::vector<UnderPolicy> under_policies(const Study& study, const std::vector<const RobotRun*>& runs) {
+  std::vector<UnderPolicy> all;
+  for (const KeyframeSelection policy : study.policies) {
+    SlamConfig config = with_policy(policy, study.config).slam;
+    std::vector<std::shared_ptr<const RobotMap>> maps = selected_maps(runs, config);
+    all.push_back({std::move(config), std::move(maps)});
+  }
+  return all;
+}
+
 /// The two solutions of a pair under one policy, without and with PCM, and the session of the latter.
-Result<> study_pair(const Study& study, const std::vector<const RobotRun*>& runs, KeyframeSelection policy,
-                    StudyResult& result) {
-  const SlamConfig config = with_policy(policy, study.config).slam;
-  const Result<Meeting> meeting = hold_meeting(selected_maps(runs, policy), config);
+Result<> study_pair(const Study& study, const std::vector<const RobotRun*>& runs, const SlamConfig& config,
+                    std::vector<std::shared_ptr<const RobotMap>> maps, StudyResult& result) {
+  const std::string policy(to_string(config.keyframes));
+  const Result<Meeting> meeting = hold_meeting(std::move(maps), config);
   if (!meeting) return tl::unexpected(meeting.error());
   for (const bool pcm_on : {false, true}) {
     BackEndConfig back_end = config.back_end;
@@ -44,26 +60,26 @@ Result<> study_pair(const Study& study, const std::vector<const RobotRun*>& runs
     const Result<JudgedSolution> judged = judge(runs, *meeting, meeting->agents.front().solve(back_end));
     if (!judged) return tl::unexpected(judged.error());
     PairResult pair = pair_result(runs, *meeting, *judged);
-    pair.keyframes = to_string(policy);
+    pair.keyframes = policy;
     pair.pcm = pcm_on;
     result.pairs.push_back(std::move(pair));
     if (!pcm_on) continue;
     const Session session{provenance_of(study, config, runs), meeting->maps, meeting->agents.front().known(),
                           judged->solution, judged->loop_classes};
-    const std::filesystem::path folder = study.folder / "pairs" /
-                                         format("{}-{}", runs[0]->result.name, runs[1]->result.name) /
-                                         std::string(to_string(policy));
+    const std::filesystem::path folder =
+        study.folder / "pairs" / format("{}-{}", runs[0]->result.name, runs[1]->result.name) / policy;
     if (const Result<> saved = save_session(folder, session, MapFiles::leave_out); !saved) return saved;
   }
   return {};
 }
 
-Result<> study_pairs(const Study& study, const std::vector<RobotRun>& runs, StudyResult& result) {
-  const Phase phase("pairs of robots", runs.size() * (runs.size() - 1) / 2 * study.policies.size());
+Result<> study_pairs(const Study& study, const std::vector<const RobotRun*>& runs,
+                     const std::vector<UnderPolicy>& policies, StudyResult& result) {
+  const Phase phase("pairs of robots", runs.size() * (runs.size() - 1) / 2 * policies.size());
   for (std::size_t a = 0; a < runs.size(); ++a) {
     for (std::size_t b = a + 1; b < runs.size(); ++b) {
-      for (const KeyframeSelection policy : study.policies) {
-        const Result<> done = study_pair(study, {&runs[a], &runs[b]}, policy, result);
+      for (const auto& [config, maps] : policies) {
+        const Result<> done = study_pair(study, {runs[a], runs[b]}, config, {maps[a], maps[b]}, result);
         if (!done) return done;
         phase.advance();
       }
@@ -73,16 +89,15 @@ Result<> study_pairs(const Study& study, const std::vector<RobotRun>& runs, Stud
 }
 
 Result<> study_joint(const Study& study, const TriangleMesh& mesh, const std::vector<const RobotRun*>& runs,
-                     StudyResult& result) {
-  const KeyframeSelection policy = study.policies.back();
-  const SlamConfig config = with_policy(policy, study.config).slam;
-  const Result<Meeting> meeting = hold_meeting(selected_maps(runs, policy), config);
+                     const UnderPolicy& policy, StudyResult& result) {
+  const SlamConfig& config = policy.config;
+  const Result<Meeting> meeting = hold_meeting(policy.maps, config);
   if (!meeting) return tl::unexpected(meeting.error());
   const FleetGraph& known = meeting->agents.front().known();
   const Result<JudgedSolution> judged = judge(runs, *meeting, meeting->agents.front().solve(config.back_end));
   if (!judged) return tl::unexpected(judged.error());
   JointResult& joint = result.joint.emplace(joint_result(runs, *meeting, *judged));
-  joint.keyframes = to_string(policy);
+  joint.keyframes = to_string(config.keyframes);
   const Result<TrueSurface> surface = TrueSurface::build(mesh);
   if (!surface) return tl::unexpected(surface.error());
   joint.map_accuracy = map_accuracies(runs, *meeting, *judged, joint, *surface, study.config.sight);
@@ -138,8 +153,9 @@ Result<StudyResult> run_study(const Study& study, const World& world) {
   result.floor_plan = floor_plan_of(world.mesh);
   for (const RobotRun& run : *runs) result.robots.push_back(run.result);
   Result<> done = write_trajectories(*runs, study.folder);
-  if (done) done = study_pairs(study, *runs, result);
-  if (done && runs->size() > 1) done = study_joint(study, world.mesh, all, result);
+  const std::vector<UnderPolicy> policies = under_policies(study, all);
+  if (done) done = study_pairs(study, all, policies, result);
+  if (done && runs->size() > 1) done = study_joint(study, world.mesh, all, policies.back(), result);
   if (!done) return tl::unexpected(done.error());
   return result;
 }
