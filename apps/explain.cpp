@@ -51,35 +51,30 @@ std::string why(const SavedMerge& merge) {
 Table hypotheses_of(const SavedMerge& merge) {
   Table table{
       .title = {},
-      .caption =
-          format("One line for each alignment that loops put forward and that was tested (at "
-                 "most {}), the best first. A merge needs an evidence of {:.1f}, and every "
-                 "other alignment has to stay well behind. Evidence is the logarithm of "
-                 "a likelihood ratio: of loops and places, where only distinctive places that "
-                 "agree speak for it and changes against it, and of the relief of walls "
-                 "(equal signs: the share of patches on which two pairs of scans find the wall "
-                 "displaced to the same side; half for one wall). Movable objects (vehicles, pallets) "
-                 "come and go and say nothing. Few loops speak against an alignment, unless registration "
-                 "without a guess finds "
-                 "more of its places again than it misses.",
-                 kHypothesesPerCheck, merge.check.needed),
+      .caption = format("One line for each alignment that loops put forward and that was tested (at "
+                        "most {}), the best first. A merge needs an evidence of {:.1f}, and every "
+                        "other alignment has to stay well behind. Evidence is the logarithm of "
+                        "a likelihood ratio: of loops and places, where only distinctive places that "
+                        "agree speak for it and changes against it, and of the relief of walls "
+                        "(equal signs: the share of patches on which two pairs of scans find the wall "
+                        "displaced to the same side; half for one wall). Movable objects (vehicles, pallets) "
+                        "come and go and say nothing. Few loops speak against an alignment.",
+                        kHypothesesPerCheck, merge.check.needed),
       .groups = {},
       .header = {"alignment", "loops", "evidence", "of walls", "compared m", "places", "agree", "distinctive",
-                 "changes", "movable objects", "patches", "equal signs", "found again", "m apart"},
+                 "changes", "movable objects", "patches", "equal signs", "m apart"},
       .rows = {}};
   for (const MergeHypothesis& h : merge.check.hypotheses) {
     const bool is_weighed = h.outcome != HypothesisOutcome::refuted;
     const bool has_walls = h.counts.num_wall_patches > 0;
-    const bool was_looked_for = h.counts.num_looked_for > 0;
-    table.rows.push_back(
-        {std::string(to_string(h.outcome)), format("{}", h.loops.size()),
-         is_weighed ? format("{:.1f}", h.evidence) : "-", is_weighed ? format("{:.1f}", h.walls) : "-",
-         format("{:.0f}", h.counts.compared_m), format("{}", h.num_checked), format("{}", h.num_passed),
-         format("{}", h.counts.num_distinctive), format("{}", h.counts.num_changes),
-         format("{}", h.counts.num_things), format("{}", h.counts.num_wall_patches),
-         has_walls ? format("{:.0f} %", 100.0 * h.counts.equal_signs) : "-",
-         was_looked_for ? format("{}, {} missed", h.counts.num_found_again, h.counts.num_not_found) : "-",
-         format("{:.1f}", h.from_best_m)});
+    table.rows.push_back({std::string(to_string(h.outcome)), format("{}", h.loops.size()),
+                          is_weighed ? format("{:.1f}", h.evidence) : "-",
+                          is_weighed ? format("{:.1f}", h.walls) : "-", format("{:.0f}", h.counts.compared_m),
+                          format("{}", h.num_checked), format("{}", h.num_passed),
+                          format("{}", h.counts.num_distinctive), format("{}", h.counts.num_changes),
+                          format("{}", h.counts.num_things), format("{}", h.counts.num_wall_patches),
+                          has_walls ? format("{:.0f} %", 100.0 * h.counts.equal_signs) : "-",
+                          format("{:.1f}", h.from_best_m)});
   }
   return table;
 }
@@ -112,9 +107,6 @@ nlohmann::ordered_json json_of(const SavedMerge& merge) {
                           {"things", h.counts.num_things},
                           {"wall_patches", h.counts.num_wall_patches},
                           {"equal_signs", h.counts.equal_signs},
-                          {"looked_for_again", h.counts.num_looked_for},
-                          {"found_again", h.counts.num_found_again},
-                          {"not_found_again", h.counts.num_not_found},
                           {"from_best_m", h.from_best_m}});
   nlohmann::ordered_json out = {
       {"robots", {merge.a, merge.b}},     {"merged", merge.merged}, {"share_a_map", merge.share_a_map},

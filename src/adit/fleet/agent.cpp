@@ -274,9 +274,7 @@ Agent::Replies Agent::go_on_checking(RobotId peer) {
   MergeChecker& check = checks_.at(peer);
   PlaceComparer comparer(*map_, discernment(), config_.registration_in_use());
   for (auto asked = check.next(kCloudsPerMessage); !asked.empty(); asked = check.next(kCloudsPerMessage)) {
-    session.await_comparison_of(their_keyframes(asked), asks_to_register(asked.front().question)
-                                                            ? CloudKind::submap
-                                                            : CloudKind::view);
+    session.await_comparison_of(their_keyframes(asked));
     if (!session.has_comparison()) return request_of(session);
     check.add(comparer.with_views(asked, session.views()));
   }

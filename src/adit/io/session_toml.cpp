@@ -59,9 +59,6 @@ toml::table merge_table(const FleetGraph& fleet, const MergeCheck& check) {
                     {"changes", static_cast<std::int64_t>(h.counts.num_changes)},
                     {"things", static_cast<std::int64_t>(h.counts.num_things)},
                     {"wall_patches", static_cast<std::int64_t>(h.counts.num_wall_patches)},
-                    {"looked_for_again", static_cast<std::int64_t>(h.counts.num_looked_for)},
-                    {"found_again", static_cast<std::int64_t>(h.counts.num_found_again)},
-                    {"not_found_again", static_cast<std::int64_t>(h.counts.num_not_found)},
                     {"equal_signs", rounded(h.counts.equal_signs)},
                     {"evidence_of_walls", rounded(h.walls)},
                     {"loops", loops}});
@@ -248,9 +245,6 @@ MergeHypothesis hypothesis_in(const toml::table& table) {
               count_in(table, "changes"),
               count_in(table, "things"),
               count_in(table, "wall_patches"),
-              count_in(table, "looked_for_again"),
-              count_in(table, "found_again"),
-              count_in(table, "not_found_again"),
               table["compared_m"].value_or(0.0),
               table["equal_signs"].value_or(0.5),
               0.0};

@@ -161,9 +161,6 @@ void for_judged_fields(Judged& h, const Field& field) {
   field("changes", h.counts.num_changes);
   field("things", h.counts.num_things);
   field("wall_patches", h.counts.num_wall_patches);
-  field("looked_for_again", h.counts.num_looked_for);
-  field("found_again", h.counts.num_found_again);
-  field("not_found_again", h.counts.num_not_found);
   field("equal_signs", h.counts.equal_signs);
   field("equal_signs_sigma", h.counts.equal_signs_sigma);
 }

@@ -29,17 +29,18 @@ void get(Reader& in, TestedPlace& place) {
 
 void put(Writer& out, const HypothesisCounts& counts) {
   for (const std::uint32_t value :
-       {counts.num_distinctive, counts.num_changes, counts.num_things, counts.num_wall_patches,
-        counts.num_looked_for, counts.num_found_again, counts.num_not_found})
+       {counts.num_distinctive, counts.num_changes, counts.num_things, counts.num_wall_patches})
     out.scalar(value);
   for (const double value : {counts.compared_m, counts.equal_signs, counts.equal_signs_sigma})
     out.scalar(value);
 }
 void get(Reader& in, HypothesisCounts& counts) {
+  constexpr std::uint8_t kLastWithMore = 12;
+  constexpr int kMore = 3;  // of places that were looked for again
   for (std::uint32_t* value :
-       {&counts.num_distinctive, &counts.num_changes, &counts.num_things, &counts.num_wall_patches,
-        &counts.num_looked_for, &counts.num_found_again, &counts.num_not_found})
+       {&counts.num_distinctive, &counts.num_changes, &counts.num_things, &counts.num_wall_patches})
     *value = in.scalar<std::uint32_t>();
+  for (int i = 0; in.version() <= kLastWithMore && i < kMore; ++i) in.scalar<std::uint32_t>();
   for (double* value : {&counts.compared_m, &counts.equal_signs, &counts.equal_signs_sigma}) {
     *value = in.scalar<double>();
     if (!std::isfinite(*value)) in.refuse();

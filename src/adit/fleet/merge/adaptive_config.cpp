@@ -36,9 +36,6 @@ Fields fields_of(MergeCheckConfig& c) {
       {"wall_spacing_m", &c.wall_spacing_m, "m", 0.1, 1000.0,
        "path between two pairs of scans whose walls are compared where little evidence is missing"},
       {"max_wall_checks", &c.max_wall_checks, "", 0, 10000, "such pairs between the places, at most"},
-      {"max_found_again", &c.max_found_again, "", 0, 10000,
-       "distinctive places whose submaps are registered without a guess, at most, where an alignment has few "
-       "loops"},
       {"first_checks", &c.first_checks, "", 1, 10000,
        "places compared per hypothesis before the best ones are compared further"},
       {"max_hypotheses", &c.max_hypotheses, "", 1, 1000,

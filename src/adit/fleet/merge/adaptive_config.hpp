@@ -36,7 +36,6 @@ struct MergeCheckConfig {
   int max_checks = 200;
   double wall_spacing_m = 1.0;
   int max_wall_checks = 96;
-  int max_found_again = 8;
   int first_checks = 8;
   int max_hypotheses = 12;
   double loops_agree = 0.99;

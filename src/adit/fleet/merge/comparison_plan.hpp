@@ -17,7 +17,6 @@ enum class PlaceQuestion : std::uint8_t {
   agreement,  ///< Whether it agrees; and where it does, by what a displacement shows and how the walls stand.
   walls,      ///< How the walls stand, also beside what differs.
   displacement,  ///< By what a displacement would show, although it differs.
-  registration,  ///< Whether registration finds it where nothing is known of it.
 };
 
 /// Whether that question asks by what a displacement shows, or how walls stand, at a place that `differs`.
@@ -29,11 +28,6 @@ enum class PlaceQuestion : std::uint8_t {
   return question == PlaceQuestion::walls || (question == PlaceQuestion::agreement && !differs);
 }
 ///@}
-
-/// Whether that question is put to submaps, which are registered, and not to views, which are compared.
-[[nodiscard]] constexpr bool asks_to_register(PlaceQuestion question) {
-  return question == PlaceQuestion::registration;
-}
 
 /// Two keyframes that stand side by side if the loops are true.
 struct PlannedComparison {

@@ -49,7 +49,7 @@ constexpr std::array kOrigins = {
     Origin{"fleet.copied_worth", kSitesDiffer, "2026-11-29"},
     Origin{"fleet.agreement_if_copied", kOfCopies, "2026-11-29"},
     Origin{"fleet.agreement_if_copied_worth", kOfCopies, "2026-11-29"},
-    Origin{"error_rate", "2027 false hypotheses of 33 field worlds (decision 0095)", "2026-12-01"},
+    Origin{"error_rate", "one wrong merge of 87 pairs with 0.5 % (decision 0095)", "2026-12-01"},
     Origin{"rival_rate", "106 true and 1501 false hypotheses of 34 field worlds (decision 0063)",
            "2026-11-27"},
     Origin{"refusal_rate", kChosen, "2026-11-21"},

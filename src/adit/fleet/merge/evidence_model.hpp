@@ -30,7 +30,7 @@ inline constexpr FleetEvidence kFleetEvidence;
 
 /// The values that are settings of each robot.
 struct EvidenceModel {
-  double error_rate = 5e-3;
+  double error_rate = 2e-3;
   double rival_rate = 0.02;
   double refusal_rate = 0.01;
 

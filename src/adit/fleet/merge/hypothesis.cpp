@@ -172,14 +172,6 @@ std::vector<std::size_t> Hypothesis::to_look_at_again() const {
   return out;
 }
 
-std::vector<PlannedComparison> Hypothesis::distinctive() const {
-  std::vector<PlannedComparison> out;
-  for (std::size_t i = 0; i < compared.size(); ++i)
-    if (!compared[i].differs() && compared[i].is_distinctive) out.push_back(plan[i]);
-  std::ranges::sort(out, {}, &PlannedComparison::theirs);
-  return out;
-}
-
 std::size_t Hypothesis::num_changes_unless_explained() const {
   Changes all = structures;
   std::size_t unlocated = num_unlocated;

@@ -17,14 +17,6 @@
 
 namespace adit {
 
-/// Where registration without a guess puts the submaps of a place.
-enum class FoundAgain : std::uint8_t {
-  not_asked,  ///< It was not tried.
-  there,      ///< Where the fit of what was seen has them.
-  slides,     ///< They are free to slide along the tunnel, which tells nothing.
-  elsewhere,  ///< Or nowhere.
-};
-
 /// What comparing the scans of one place has shown.
 struct ComparedPlace {
   double difference = 0.0;      ///< Over the limit of Discernment: above 1 the scans cannot be of one place.
@@ -40,8 +32,6 @@ struct ComparedPlace {
   /// differ only once what differs is explained.
   std::optional<DisplacementSigns> signs = {};
   bool is_explained = false;  ///< What differs was counted before, at another place, or was not seen again.
-  FoundAgain found_again =
-      FoundAgain::not_asked;  ///< Where registration alone puts it, where that was asked.
   /// Share of the returns of either scan that nothing confirmed (RobotMap::unconfirmed).
   ///@{
   std::optional<float> unconfirmed_own = {};
@@ -81,14 +71,8 @@ struct Hypothesis {
   std::vector<std::size_t> loops;                              ///< Indices, ascending.
   std::vector<PlannedComparison> plan;                         ///< Places of the claimed overlap.
   std::vector<std::optional<PlannedComparison>> second_looks;  ///< Of each place of the plan, until taken.
-  std::vector<PlannedComparison> wall_plan;  ///< Pairs between the places, where walls have to decide.
-  std::size_t num_walls_compared = 0;        ///< Of the first pairs of that plan.
-  /// Places that were registered without a guess, and what came of it.
-  ///@{
-  std::size_t num_looked_for = 0;
-  std::size_t num_found_again = 0;
-  std::size_t num_not_found = 0;
-  ///@}
+  std::vector<PlannedComparison> wall_plan;     ///< Pairs between the places, where walls have to decide.
+  std::size_t num_walls_compared = 0;           ///< Of the first pairs of that plan.
   std::vector<ComparedPlace> compared;          ///< Of the first places of the plan, without their offsets.
   WallOffsets offsets;                          ///< Of all compared walls.
   Changes structures{model.structure_reach_m};  ///< Doors, blocked or worked tunnels.
@@ -104,8 +88,6 @@ struct Hypothesis {
   /// Places of which it is not known yet by what a displacement would show, although they count since what
   /// differs there is explained.
   [[nodiscard]] std::vector<std::size_t> to_ask_for_signs() const;
-  /// The pairs of scans that agreed at distinctive places, along the path of the other robot.
-  [[nodiscard]] std::vector<PlannedComparison> distinctive() const;
   /// What comparing a place has shown; the places of the plan in turn.
   void add(const ComparedPlace& place);
   /// What a second look at a place that differed has shown.

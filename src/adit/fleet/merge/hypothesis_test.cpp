@@ -34,18 +34,6 @@ TEST(Hypothesis, ASecondLookThatAgreesIsNoSecondPairForTheWalls) {
   EXPECT_EQ(h.wall_plan.front().theirs, 24U);
 }
 
-TEST(Hypothesis, DistinctivePlacesAreThePairsThatAgreedAlongThePath) {
-  Hypothesis h;
-  h.plan = {{30, 30, Pose()}, {10, 10, Pose()}, {40, 40, Pose()}, {20, 20, Pose()}, {50, 50, Pose()}};
-  h.second_looks.resize(5);
-  h.second_looks[3] = PlannedComparison{22, 22, Pose()};
-  for (const ComparedPlace& place : {kAgrees, kAgrees, test::kSilent, kDiffers, kDiffers}) h.add(place);
-  h.add_second_look(3, kAgrees);
-  std::vector<std::uint32_t> keyframes;
-  for (const PlannedComparison& place : h.distinctive()) keyframes.push_back(place.theirs);
-  EXPECT_EQ(keyframes, (std::vector<std::uint32_t>{10, 22, 30}));
-}
-
 ComparedPlace in_dust(ComparedPlace place, const std::optional<float>& own,
                       const std::optional<float>& theirs) {
   place.unconfirmed_own = own;

@@ -11,7 +11,6 @@
 #include "adit/fleet/merge/merge_decision.hpp"
 #include "adit/fleet/merge/merge_refusal.hpp"
 #include "adit/fleet/merge/merge_verdict.hpp"
-#include "adit/fleet/search/path.hpp"
 
 namespace adit {
 namespace {
@@ -36,8 +35,7 @@ bool lacks_walls(const Hypothesis& h, int num_patches) {
 }  // namespace
 
 MergeChecker::MergeChecker(LoopsBetween between, OwnMeasurements own, const AdaptiveConfig& config)
-    : hypotheses_(std::move(between), std::move(own), config),
-      place_keyframes_(static_cast<std::size_t>(config.search.place_keyframes)) {}
+    : hypotheses_(std::move(between), std::move(own), config) {}
 
 std::optional<std::size_t> MergeChecker::to_go_on_with() const {
   double best_finished = -std::numeric_limits<double>::infinity();
@@ -80,58 +78,14 @@ std::optional<std::size_t> MergeChecker::whose_walls_to_compare(const std::vecto
     if (lacks_walls(best, config().evidence.walls.min_patches)) return order.front();
     return others.empty() ? std::nullopt : std::optional(others.front());
   }
-  const double forgivable = has_places_to_find_again(best) ? -hypotheses_.evidence_of_few_loops(best) : 0.0;
-  // Walls that speak against it are looked at more closely, too, before anything is forgiven.
-  const bool may_decide = decision == MergeDecision::too_little_evidence ||
-                          (decision == MergeDecision::other_walls && forgivable > 0.0);
-  if (!may_decide) return {};
-  const double missing = hypotheses_.needed() - hypotheses_.evidence(best) - forgivable;
+  if (decision != MergeDecision::too_little_evidence) return {};
+  const double missing = hypotheses_.needed() - hypotheses_.evidence(best);
   const double possible = hypotheses_.most_evidence_of_walls(best) - hypotheses_.evidence_of_walls(best);
   if (best.num_walls_compared < best.wall_plan.size() && possible >= missing) return order.front();
   // The more look-alikes have other walls, the fewer are of one mould, beside the one that the prior stands
   // for.
   const double others_possible = std::log1p(static_cast<double>(others.size()));
   return !others.empty() && others_possible >= missing ? std::optional(others.front()) : std::nullopt;
-}
-
-std::vector<PlannedComparison> MergeChecker::to_find_again(const Hypothesis& h) const {
-  const auto is_one_place = [&](std::size_t a, std::size_t b) {
-    return (a > b ? a - b : b - a) < place_keyframes_;
-  };
-  std::vector<PlannedComparison> places;
-  for (const PlannedComparison& place : h.distinctive()) {
-    // Scans beside those of a loop, or of one another, would be the same finding a second time.
-    const bool is_beside_a_loop = std::ranges::any_of(h.loops, [&](std::size_t l) {
-      return is_one_place(place.own, hypotheses_.loops()[l].a) ||
-             is_one_place(place.theirs, hypotheses_.loops()[l].b);
-    });
-    if (!is_beside_a_loop && (places.empty() || !is_one_place(place.theirs, places.back().theirs)))
-      places.push_back(place);
-  }
-  std::vector<PlannedComparison> out;
-  for (const std::uint32_t i :
-       evenly_spread(places.size(), static_cast<std::size_t>(config().max_found_again))) {
-    out.push_back(places[i]);
-    out.back().question = PlaceQuestion::registration;
-  }
-  const bool may_be_many = static_cast<double>(h.loops.size() + out.size()) > config().evidence.few_loops;
-  return may_be_many ? out : std::vector<PlannedComparison>();
-}
-
-bool MergeChecker::has_places_to_find_again(const Hypothesis& h) const {
-  return static_cast<double>(h.loops.size()) <= config().evidence.few_loops &&
-         h.num_looked_for < to_find_again(h).size();
-}
-
-/// All places are looked for, also once enough have been found: to stop then would be to choose.
-std::optional<std::size_t> MergeChecker::whose_places_to_find_again(
-    const std::vector<std::size_t>& order) const {
-  const Hypothesis& best = hypotheses_[order.front()];
-  if (!has_places_to_find_again(best)) return {};
-  const bool is_needed = best.num_looked_for > 0 || decide(hypotheses_, order) != MergeDecision::accepted;
-  const bool would_do =
-      decide(hypotheses_, order, -hypotheses_.evidence_of_few_loops(best)) == MergeDecision::accepted;
-  return is_needed && would_do ? std::optional(order.front()) : std::nullopt;
 }
 
 std::optional<MergeChecker::Step> MergeChecker::next_step() const {
@@ -149,7 +103,6 @@ std::optional<MergeChecker::Step> MergeChecker::next_step() const {
   const Hypothesis& best = hypotheses_[order.front()];
   if (!best.is_finished() && !hypotheses_.differs_too_often(best)) return going_on_with(order.front());
   if (const auto which = whose_walls_to_compare(order)) return Step{Stage::walls, *which};
-  if (const auto which = whose_places_to_find_again(order)) return Step{Stage::find_again, *which};
   return std::nullopt;
 }
 
@@ -177,8 +130,6 @@ std::vector<PlannedComparison> MergeChecker::planned(const Step& step, std::size
     }
     case Stage::walls:
       return asking(PlaceQuestion::walls, part_of(h.wall_plan, h.num_walls_compared, num));
-    case Stage::find_again:
-      return part_of(to_find_again(h), h.num_looked_for, num);
   }
   return {};
 }
@@ -205,13 +156,6 @@ void MergeChecker::add(const std::vector<ComparedPlace>& places) {
     }
     case Stage::walls:
       for (const ComparedPlace& place : places) h.add_walls(place);
-      break;
-    case Stage::find_again:
-      for (const ComparedPlace& place : places) {
-        ++h.num_looked_for;
-        h.num_found_again += place.found_again == FoundAgain::there;
-        h.num_not_found += place.found_again == FoundAgain::elsewhere;
-      }
       break;
   }
 }

@@ -51,7 +51,7 @@ class MergeChecker {
 
  private:
   /// What is compared of a hypothesis, in this order; signs whenever what differs at a place is explained.
-  enum class Stage : std::uint8_t { places, second_looks, signs, walls, find_again };
+  enum class Stage : std::uint8_t { places, second_looks, signs, walls };
   struct Step {
     Stage stage = Stage::places;
     std::size_t hypothesis = 0;
@@ -63,12 +63,6 @@ class MergeChecker {
   /// elsewhere could give what it lacks.
   [[nodiscard]] std::optional<std::size_t> whose_walls_to_compare(
       const std::vector<std::size_t>& order) const;
-  /// The best hypothesis, where it lacks only what having few loops takes away.
-  [[nodiscard]] std::optional<std::size_t> whose_places_to_find_again(
-      const std::vector<std::size_t>& order) const;
-  /// Distinctive places away from its loops, evenly spread; none where they could not make few loops many.
-  [[nodiscard]] std::vector<PlannedComparison> to_find_again(const Hypothesis& hypothesis) const;
-  [[nodiscard]] bool has_places_to_find_again(const Hypothesis& hypothesis) const;
   /// None when the check is over.
   [[nodiscard]] std::optional<Step> next_step() const;
   [[nodiscard]] std::vector<PlannedComparison> planned(const Step& step, std::size_t num) const;
@@ -76,7 +70,6 @@ class MergeChecker {
   [[nodiscard]] const MergeCheckConfig& config() const { return hypotheses_.config(); }
 
   WeighedHypotheses hypotheses_;
-  std::size_t place_keyframes_;  ///< Nearer than this, keyframes are of one place (SearchConfig).
 };
 
 }  // namespace adit

@@ -9,8 +9,7 @@
 namespace adit {
 
 /// The first of these that holds of the best hypothesis; decision 0010 in this order.
-MergeDecision decide(const WeighedHypotheses& hypotheses, const std::vector<std::size_t>& order,
-                     double forgiven) {
+MergeDecision decide(const WeighedHypotheses& hypotheses, const std::vector<std::size_t>& order) {
   if (order.empty()) return MergeDecision::no_loops;
   const Hypothesis& best = hypotheses[order.front()];
 
@@ -22,7 +21,7 @@ MergeDecision decide(const WeighedHypotheses& hypotheses, const std::vector<std:
   // Against chance. Only places where a displacement along the tunnel would show are evidence, by how seldom
   // look-alikes of the own map agree for as long (Wald's test).
   const double evidence = hypotheses.evidence(best);
-  if (!(evidence + forgiven >= hypotheses.needed())) {  // NaN refuses, here and among rivals
+  if (!(evidence >= hypotheses.needed())) {  // NaN refuses, here and among rivals
     if (evidence - hypotheses.evidence_of_walls(best) >= hypotheses.needed())
       return MergeDecision::other_walls;
     return best.num_distinctive() == 0 ? MergeDecision::nothing_distinctive

@@ -27,16 +27,15 @@ enum class MergeDecision : std::uint8_t {
 /// The best hypothesis, then the others by how near they are to being its rival; refuted ones last.
 [[nodiscard]] std::vector<std::size_t> best_first(const WeighedHypotheses& hypotheses);
 
-/// Why maps are joined or not, if nothing more were compared. `order`: that of `best_first`. `forgiven`:
-/// evidence that the best hypothesis is spared.
-[[nodiscard]] MergeDecision decide(const WeighedHypotheses& hypotheses, const std::vector<std::size_t>& order,
-                                   double forgiven = 0.0);
+/// Why maps are joined or not, if nothing more were compared. `order`: that of `best_first`.
+[[nodiscard]] MergeDecision decide(const WeighedHypotheses& hypotheses,
+                                   const std::vector<std::size_t>& order);
 
 /// What the hypotheses of a merge check come to.
 struct MergeJudgement {
   const WeighedHypotheses& hypotheses;               ///< Must outlive this.
   std::vector<std::size_t> order;                    ///< Of `best_first`.
-  MergeDecision decision = MergeDecision::no_loops;  ///< Of `decide`, with nothing forgiven.
+  MergeDecision decision = MergeDecision::no_loops;  ///< Of `decide`.
   /// There is one unless no loop aligns the maps.
   [[nodiscard]] const Hypothesis& best() const { return hypotheses[order.front()]; }
 };

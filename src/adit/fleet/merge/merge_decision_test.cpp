@@ -78,18 +78,19 @@ TEST(BestFirst, DoesNotMeasureTheOwnMapToRankASingleOne) {
   EXPECT_TRUE(best_first(hypotheses_from({}, nullptr)).empty());
 }
 
-TEST(Decide, SparesTheBestOneTheEvidenceThatIsForgiven) {
+TEST(Decide, AcceptsTheBestOneWithWhatIsNeededAndNotWithLess) {
   WeighedHypotheses hypotheses = hypotheses_from(kTrueLoops, measured(look_alikes(0.5)));
   const std::vector<std::size_t> order = best_first(hypotheses);
-  EXPECT_EQ(decide(hypotheses, order, 1e9), MergeDecision::nothing_compared);
   Hypothesis& best = hypotheses[0];
+  best.known_before = 1e9;
+  EXPECT_EQ(decide(hypotheses, order), MergeDecision::nothing_compared);
   compare_all(best, kAgrees);
-  best.known_before += hypotheses.needed() - hypotheses.evidence(best) - 1.0;  // 1 is missing
+  best.known_before += hypotheses.needed() - hypotheses.evidence(best) - 1e-3;
   EXPECT_EQ(decide(hypotheses, order), MergeDecision::too_little_evidence);
-  EXPECT_EQ(decide(hypotheses, order, 0.9), MergeDecision::too_little_evidence);
-  EXPECT_EQ(decide(hypotheses, order, 1.1), MergeDecision::accepted);
+  best.known_before += 2e-3;
+  EXPECT_EQ(decide(hypotheses, order), MergeDecision::accepted);
   best.known_before = kNotANumber;
-  EXPECT_EQ(decide(hypotheses, order, 1e9), MergeDecision::too_little_evidence);
+  EXPECT_EQ(decide(hypotheses, order), MergeDecision::too_little_evidence);
 }
 
 }  // namespace

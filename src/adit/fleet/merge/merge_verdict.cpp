@@ -18,9 +18,6 @@ HypothesisCounts counts_of(const WeighedHypotheses& hypotheses, const Hypothesis
           static_cast<std::uint32_t>(h.num_changes_unless_explained()),
           static_cast<std::uint32_t>(h.things.num()),
           static_cast<std::uint32_t>(walls.num_patches),
-          static_cast<std::uint32_t>(h.num_looked_for),
-          static_cast<std::uint32_t>(h.num_found_again),
-          static_cast<std::uint32_t>(h.num_not_found),
           1000.0 * hypotheses.compared_km(h),
           walls.share,
           walls.sigma};

@@ -8,8 +8,6 @@
 
 #include "adit/core/parallel.hpp"
 #include "adit/core/picked.hpp"
-#include "adit/registration/features.hpp"
-#include "adit/registration/registration.hpp"
 
 namespace adit {
 namespace {
@@ -29,17 +27,6 @@ SearchableSurface received_scan(const Clouds::Cloud& received, const Registratio
   return scan_of(scan, received.viewpoint.cast<double>(), config);
 }
 
-Features features_of(const Clouds::Cloud& submap, const RegistrationConfig& config) {
-  PointCloud cloud;
-  cloud.points = submap.points;
-  return compute_features(cloud, config);
-}
-
-/// One question is put to all.
-bool are_to_be_registered(const std::vector<PlannedComparison>& asked) {
-  return !asked.empty() && asks_to_register(asked.front().question);
-}
-
 }  // namespace
 
 bool PlaceComparer::agrees_displaced(std::uint32_t own, const SeenSurface& theirs,
@@ -48,33 +35,6 @@ bool PlaceComparer::agrees_displaced(std::uint32_t own, const SeenSurface& their
     const SeenSurface& there = discernment_.views().at(displaced);
     return agreeing_fit(there, theirs, T_own_theirs, discernment_.limit(), registration_).has_value();
   });
-}
-
-FoundAgain PlaceComparer::found_again(const PlannedComparison& place, const SubmapOfTheirs& theirs) const {
-  constexpr double kSamePlace = 0.5;  // metres
-  constexpr double kSameWay = 0.2;    // radians
-  const Registration found =
-      register_features(discernment_.features().at(place.own), theirs.features, registration_);
-  if (found.verdict != LoopVerdict::accepted) return FoundAgain::elsewhere;
-  if (found.weak_axis < kWeakAxis) return FoundAgain::slides;
-  const LocalFit near = fit_near(discernment_.views().at(place.own), theirs.surface, place.T_own_theirs,
-                                 discernment_.limit(), registration_);
-  const Vector6 off = (near.T_a_b.inverse() * *found.T_a_b).log();
-  const bool is_there = off.head<3>().norm() < kSamePlace && off.tail<3>().norm() < kSameWay;
-  return is_there ? FoundAgain::there : FoundAgain::elsewhere;
-}
-
-void PlaceComparer::prepare_submaps(const std::vector<std::uint32_t>& keyframes) {
-  discernment_.views().prepare(keyframes);
-  discernment_.features().prepare(keyframes);
-}
-
-std::vector<ComparedPlace> PlaceComparer::look_for(const std::vector<PlannedComparison>& asked,
-                                                   const std::vector<SubmapOfTheirs>& theirs) const {
-  std::vector<ComparedPlace> places(asked.size());
-  parallel_for_each(asked.size(),
-                    [&](std::size_t i) { places[i].found_again = found_again(asked[i], theirs[i]); });
-  return places;
 }
 
 PlaceComparer::Fitted PlaceComparer::fit(const PlannedComparison& place, const SeenSurface& theirs) const {
@@ -155,16 +115,6 @@ std::vector<ComparedPlace> PlaceComparer::with_views(const std::vector<PlannedCo
   parallel_for_each(asked.size(), [&](std::size_t i) {
     theirs[i].emplace(received_view(views.at(asked[i].theirs), registration_));
   });
-  if (are_to_be_registered(asked)) {
-    prepare_submaps(own_keyframes(asked));
-    std::vector<Features> features(asked.size());
-    parallel_for_each(asked.size(), [&](std::size_t i) {
-      features[i] = features_of(views.at(asked[i].theirs), registration_);
-    });
-    std::vector<SubmapOfTheirs> submaps;
-    for (std::size_t i = 0; i < asked.size(); ++i) submaps.push_back({*theirs[i], features[i]});
-    return look_for(asked, submaps);
-  }
   std::vector<Fitted> found =
       compare_views(asked, [&](std::size_t i) -> const SeenSurface& { return *theirs[i]; }, {});
   for (std::size_t i = 0; i < asked.size(); ++i) {
@@ -182,15 +132,6 @@ std::vector<ComparedPlace> PlaceComparer::with_views(const std::vector<PlannedCo
 
 std::vector<ComparedPlace> PlaceComparer::within_own_map(const std::vector<PlannedComparison>& asked) {
   const std::vector<std::uint32_t> later = their_keyframes(asked);
-  if (are_to_be_registered(asked)) {
-    std::vector<std::uint32_t> both = own_keyframes(asked);
-    both.insert(both.end(), later.begin(), later.end());
-    prepare_submaps(both);
-    std::vector<SubmapOfTheirs> submaps;
-    for (const std::uint32_t k : later)
-      submaps.push_back({discernment_.views().at(k), discernment_.features().at(k)});
-    return look_for(asked, submaps);
-  }
   std::vector<Fitted> found = compare_views(
       asked, [&](std::size_t i) -> const SeenSurface& { return discernment_.views().at(later[i]); }, later);
   for (std::size_t i = 0; i < asked.size(); ++i) {

@@ -22,8 +22,7 @@ class PlaceComparer {
   PlaceComparer(const RobotMap& map, Discernment& discernment, const RegistrationConfig& registration)
       : map_(map), discernment_(discernment), registration_(registration) {}
 
-  /// Own keyframes with those of a peer, whose `views` have all that are asked for: submaps where the places
-  /// are to be registered. One question is put to all of them.
+  /// Own keyframes with those of a peer, whose `views` have all that are asked for.
   [[nodiscard]] std::vector<ComparedPlace> with_views(const std::vector<PlannedComparison>& asked,
                                                       const PeerSession::Views& views);
   /// Keyframes of the own map with later ones of it.
@@ -49,17 +48,6 @@ class PlaceComparer {
   /// by what both see, cannot.
   [[nodiscard]] bool agrees_displaced(std::uint32_t own, const SeenSurface& theirs,
                                       const Pose& T_own_theirs) const;
-  /// What was seen of theirs around a place, ready to be fitted and to be registered.
-  struct SubmapOfTheirs {
-    const SeenSurface& surface;
-    const Features& features;
-  };
-  /// Makes what registering those own keyframes needs.
-  void prepare_submaps(const std::vector<std::uint32_t>& keyframes);
-  /// Registers places that were compared before, one submap of theirs for each.
-  [[nodiscard]] std::vector<ComparedPlace> look_for(const std::vector<PlannedComparison>& asked,
-                                                    const std::vector<SubmapOfTheirs>& theirs) const;
-  [[nodiscard]] FoundAgain found_again(const PlannedComparison& place, const SubmapOfTheirs& theirs) const;
   /// Of the places where walls are asked for and the views agree.
   [[nodiscard]] static std::vector<std::size_t> those_with_walls(const std::vector<PlannedComparison>& asked,
                                                                  const std::vector<Fitted>& found);

@@ -24,7 +24,7 @@ constexpr float kIntensityOfPeer = 100.0F;
 /// are left out.
 ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
                        const std::function<bool(const Eigen::Vector3f&)>& is_seen_by_peer,
-                       PlaceQuestion question = PlaceQuestion::agreement, CloudKind sent = CloudKind::view) {
+                       PlaceQuestion question = PlaceQuestion::agreement) {
   auto own = std::make_shared<RobotMap>(*in_a_tube(kBlock));
   own->unconfirmed[kBesideTheBlock] = 0.06F;
   const auto theirs = in_a_tube(boxes_of_peer, {1});
@@ -33,9 +33,9 @@ ComparedPlace compared(const std::vector<test::Box>& boxes_of_peer,
       own, chain_of(graph_of(*own)), [] { return std::vector<LoopCandidate>(); },
       std::make_shared<FeatureStore>(own, config.registration, config.submap), config);
   PlaceComparer comparer(*own, discernment, config.registration);
-  Clouds::Cloud cloud = clouds_of(*theirs, {{kBesideTheBlock}, sent},
-                                  {config.registration.voxel_size, config.submap, config.view})
-                            .clouds[0];
+  Clouds::Cloud cloud =
+      clouds_of(*theirs, {{kBesideTheBlock}}, {config.registration.voxel_size, config.submap, config.view})
+          .clouds[0];
   PointCloud seen;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     if (!is_seen_by_peer(cloud.points[i])) continue;
@@ -86,27 +86,6 @@ TEST(PlaceComparer, WallsKnowTheIntensitiesThatThePeerSent) {
     EXPECT_NEAR(offset.by_sensors[kErrorsOfSensor + kIntensityError] / offset.by_known[1],
                 std::log10(static_cast<double>(kIntensityOfPeer)), 1e-6);
   }
-}
-
-FoundAgain found_again(const std::vector<test::Box>& boxes_of_peer,
-                       const std::function<bool(const Eigen::Vector3f&)>& is_seen_by_peer,
-                       CloudKind sent = CloudKind::submap) {
-  return compared(boxes_of_peer, is_seen_by_peer, PlaceQuestion::registration, sent).found_again;
-}
-
-TEST(PlaceComparer, RegistrationFindsAPlaceAgainWhereItCannotSlide) {
-  EXPECT_EQ(compared(kBlock, everything).found_again, FoundAgain::not_asked);
-  EXPECT_EQ(found_again(kBlock, everything), FoundAgain::there);
-  EXPECT_NE(found_again(kBlock, away_from_the_block), FoundAgain::there);
-  EXPECT_NE(found_again({}, everything), FoundAgain::there);
-}
-
-TEST(PlaceComparer, ASubmapOfFewPointsIsFoundAgainWhereAViewIsNot) {
-  const auto one_of_three = [](const Eigen::Vector3f& p) {
-    return mix64(1, static_cast<std::uint64_t>((p.array() * 1000.0F).abs().sum())) % 3 == 0;
-  };
-  EXPECT_EQ(found_again(kBlock, one_of_three), FoundAgain::there);
-  EXPECT_NE(found_again(kBlock, one_of_three, CloudKind::view), FoundAgain::there);
 }
 
 TEST(PlaceComparer, ABlockThatOnlyOneTubeHasDiffers) {

@@ -65,13 +65,11 @@ double WeighedHypotheses::prior_evidence(const Hypothesis& h) const {
   return h.known_before + std::log(num / static_cast<double>(loops_.size())) + evidence_of_few_loops(h);
 }
 
-/// Where robots shared a tunnel, search seldom finds it once or twice alone, unless much looks alike; then it
-/// finds it where it is looked for. That many loops agree is no evidence in turn: where tunnels are copies
-/// they do, too.
+/// Where robots shared a tunnel, search seldom finds it once or twice alone. That many loops agree is no
+/// evidence in turn: where tunnels are copies they do, too.
 double WeighedHypotheses::evidence_of_few_loops(const Hypothesis& h) const {
   const EvidenceModel& model = config_.evidence;
-  const std::size_t found_again = h.num_found_again > h.num_not_found ? h.num_found_again : 0;
-  return static_cast<double>(h.loops.size() + found_again) > model.few_loops
+  return static_cast<double>(h.loops.size()) > model.few_loops
              ? 0.0
              : std::min(0.0, std::log(model.few_loops_if_true / model.few_loops_if_false));
 }

@@ -85,14 +85,13 @@ std::optional<CloudRequest> PeerSession::request() const {
     if (request.indices.size() == kCloudsPerMessage) break;
     request.indices.push_back(index);
   }
-  if (request.indices.empty()) request = {missing_views(), compared_};
+  if (request.indices.empty()) request = {missing_views(), CloudKind::view};
   if (request.indices.empty()) return std::nullopt;
   return request;
 }
 
-void PeerSession::await_comparison_of(std::vector<std::uint32_t> keyframes, CloudKind kind) {
+void PeerSession::await_comparison_of(std::vector<std::uint32_t> keyframes) {
   constexpr std::size_t kMaxViews = 512;  // some tens of megabytes
-  if (std::exchange(compared_, kind) != kind) views_.clear();
   to_compare_ = std::move(keyframes);
   if (to_compare_.empty() || views_.size() > kMaxViews) forget_views();
 }
@@ -113,7 +112,7 @@ std::vector<std::uint32_t> PeerSession::missing_views() const {
 }
 
 void PeerSession::take_views(const Clouds& clouds) {
-  if (clouds.kind != compared_) return;
+  if (clouds.kind != CloudKind::view) return;
   for (const Clouds::Cloud& cloud : clouds.clouds)
     if (awaits(cloud.index)) views_.insert_or_assign(cloud.index, cloud);
 }

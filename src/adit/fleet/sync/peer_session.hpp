@@ -67,11 +67,11 @@ class PeerSession {
   void await_clouds_of(const std::vector<LoopCandidate>& candidates);
   /// Candidates that wait for clouds.
   [[nodiscard]] std::size_t num_waiting() const;
-  /// Views, or submaps, by the peer's keyframe.
+  /// By the peer's keyframe.
   using Views = std::map<std::uint32_t, Clouds::Cloud>;
-  /// The peer's keyframes whose clouds the merge check needs; none ends the comparison, and all clouds are
-  /// forgotten, as are those of the other kind.
-  void await_comparison_of(std::vector<std::uint32_t> keyframes, CloudKind kind = CloudKind::view);
+  /// The peer's keyframes whose views the merge check needs; none ends the comparison, and all views are
+  /// forgotten.
+  void await_comparison_of(std::vector<std::uint32_t> keyframes);
   /// Forgets clouds that are not awaited; they are asked for again when they are.
   void forget_views();
 
@@ -104,7 +104,6 @@ class PeerSession {
   bool is_searched_ = false;
   std::map<std::uint32_t, std::vector<LoopCandidate>> waiting_;  ///< By the peer's keyframe.
   std::vector<std::uint32_t> to_compare_;
-  CloudKind compared_ = CloudKind::view;  ///< Of `to_compare_` and `views_`.
   Views views_;
 };
 

@@ -25,8 +25,8 @@ namespace adit {
 /// robot of this version reads what one of the oldest says, which does not read it in turn: all robots of a
 /// fleet have to be updated together. What an older version saved stays readable.
 ///@{
-inline constexpr std::uint8_t kProtocolVersion = 12;
-/// Lacks the unconfirmed shares; otherwise identical.
+inline constexpr std::uint8_t kProtocolVersion = 13;
+/// Lacks the unconfirmed shares, and like 12 has three counts of a hypothesis more; otherwise identical.
 inline constexpr std::uint8_t kOldestProtocolVersion = 11;
 ///@}
 /// The most that one message holds; longer lists are sent in parts.
@@ -164,13 +164,7 @@ struct HypothesisCounts {
   std::uint32_t num_changes = 0;       ///< Of structure, each once.
   std::uint32_t num_things = 0;        ///< That stand on the floor and only one robot met, each once.
   std::uint32_t num_wall_patches = 0;  ///< That two pairs of scans or more saw.
-  /// Places that were registered without a guess, because loops were few, and those found there and not.
-  ///@{
-  std::uint32_t num_looked_for = 0;
-  std::uint32_t num_found_again = 0;
-  std::uint32_t num_not_found = 0;
-  ///@}
-  double compared_m = 0.0;  ///< Length of tunnel that the compared scans show.
+  double compared_m = 0.0;             ///< Length of tunnel that the compared scans show.
   /// Of the relief of walls: the share of equal signs and its standard deviation, 0.5 without patches.
   ///@{
   double equal_signs = 0.5;
