@@ -19,12 +19,17 @@ constexpr double kMetresPerScan = 0.5;  // one a second
 
 Pose in_hall_at(double seconds) { return Pose::translation_of(kMetresPerScan * seconds, 0, 0); }
 
-/// A robot that drives along a hall with two pillars, its LiDAR turned and shifted on it (test::kMount).
+/// A robot with wheels that drives along a hall with two pillars, its LiDAR turned and shifted on it
+/// (test::kMount).
 Recording drive_with_turned_lidar() {
   Recording recording;
   recording.name = "ada";
   recording.T_base_lidar = test::kMount;
   for (std::int64_t i = 0; i < 8; ++i) recording.scan_stamps.push_back(Stamp{(i + 1) * 1'000'000'000});
+  for (std::int64_t i = 0; i < 200; ++i) {  // from half a second before the first scan
+    const Stamp stamp{500'000'000 + i * 50'000'000};
+    recording.wheel.push_back({stamp, in_hall_at(stamp.seconds() - 1.0)});
+  }
   recording.read_scan = [stamps = recording.scan_stamps](std::size_t i) -> Result<Scan> {
     test::Scene hall;
     hall.rooms = {{Vector3(-10, -5, 0), Vector3(30, 5, 5)}};

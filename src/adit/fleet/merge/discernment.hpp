@@ -73,7 +73,6 @@ class Discernment {
   ///@{
   [[nodiscard]] ViewStore& views() { return views_; }
   [[nodiscard]] ScanStore& scans() { return scans_; }
-  [[nodiscard]] FeatureStore& features() { return *features_; }
   ///@}
   /// Of views and scans.
   [[nodiscard]] std::size_t num_cached_bytes() const { return views_.num_bytes() + scans_.num_bytes(); }

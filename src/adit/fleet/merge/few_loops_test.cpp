@@ -33,5 +33,22 @@ TEST(FewLoops, SpeakAgainstAnAlignmentAndManyForNone) {
   EXPECT_EQ(evidence_of(kTrueLoops, 2.0), evidence_of(kTrueLoops, 1.0));
 }
 
+TEST(FewLoops, AreRefusedWhereTheyLackWhatManyWouldHave) {
+  const std::vector<PcmLoop> two = {loop_at(80), loop_at(90)};
+  const auto agrees = [](const PlannedComparison& asked) {
+    EXPECT_EQ(asked.question, PlaceQuestion::agreement);
+    return kAgrees;
+  };
+  MergeCheckConfig config = by_places();
+  MergeChecker easy = a_check(two, 0.5, config);
+  config.evidence.error_rate = std::exp(-run(easy, agrees).evidence - 1.0);
+  MergeChecker checker = a_check(two, 0.5, config);
+  const MergeCheck check = run(checker, agrees);
+  EXPECT_FALSE(check.accepted);
+  EXPECT_NEAR(check.needed - check.evidence, 1.0, 1e-9);
+  MergeChecker many = a_check(kTrueLoops, 0.5, config);
+  EXPECT_TRUE(run(many, agrees).accepted);
+}
+
 }  // namespace
 }  // namespace adit

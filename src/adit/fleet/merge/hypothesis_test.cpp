@@ -34,6 +34,20 @@ TEST(Hypothesis, ASecondLookThatAgreesIsNoSecondPairForTheWalls) {
   EXPECT_EQ(h.wall_plan.front().theirs, 24U);
 }
 
+TEST(Hypothesis, APlaceIsThatOfItsSecondLookWhereThatAgreed) {
+  Hypothesis h;
+  h.plan = {{10, 110, Pose()}, {20, 120, Pose()}};
+  h.second_looks = {std::nullopt, PlannedComparison{22, 122, Pose()}};
+  h.add(kAgrees);
+  h.add(kDiffers);
+  h.add_second_look(1, kAgrees);
+  const std::vector<TestedPlace> places = h.places();
+  ASSERT_EQ(places.size(), 2U);
+  EXPECT_EQ(places[1].a, 22U);
+  EXPECT_EQ(places[1].b, 122U);
+  EXPECT_EQ(places[1].outcome, PlaceOutcome::distinctive);
+}
+
 ComparedPlace in_dust(ComparedPlace place, const std::optional<float>& own,
                       const std::optional<float>& theirs) {
   place.unconfirmed_own = own;
