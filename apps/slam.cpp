@@ -90,8 +90,11 @@ Result<Job> job_again(const SlamOptions& options, const Common& common) {
                "session that a later step names: {}{}",
                options.rerun, steps_of(job.provenance),
                is_georeferenced ? "; its georeference is not among them: adit georeference does it" : ""));
-  const Result<> set = parse_config(fields_of(job.config), job.provenance.configuration);
-  if (!set) return fail(options.rerun + ": configuration", set.error());
+  const Result<std::vector<std::string>> not_taken =
+      parse_saved_config(fields_of(job.config), job.provenance.configuration);
+  if (!not_taken) return fail(options.rerun + ": configuration", not_taken.error());
+  for (const std::string& setting : *not_taken)
+    print_notes("slam", {format("{}: configuration, {}; this version does without", options.rerun, setting)});
   if (is_georeferenced)
     print_notes("slam", {format("{} is georeferenced; that is not repeated: adit georeference does it",
                                 options.rerun)});

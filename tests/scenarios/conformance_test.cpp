@@ -150,6 +150,7 @@ TEST(Conformance, MapsOfAllLayoutsAreReadForEver) {
     EXPECT_EQ(map->step_covariances[1], 0.01 * Matrix6::Identity());
     EXPECT_TRUE(map->searchable[0]);
     EXPECT_EQ(map->unconfirmed[1], 0.125F);
+    EXPECT_EQ(robot_map_bytes(*map), robot_map_bytes(read_robot_map(kCases / "robot_map_8.adit").value()));
   }
 }
 

@@ -96,7 +96,9 @@ struct Recording {
   std::string lidar;         ///< The sensor's name, "" when unknown.
   Pose T_base_lidar;         ///< The mount: where the LiDAR sits on the robot.
   std::string mount_source;  ///< How the mount is known, for people: "/tf_static: base_link -> os_lidar".
-  bool lidar_moves = false;  ///< On the robot: recorded clouds are not as from T_base_lidar, scans are.
+  /// Whether recorded clouds are in the frame of `T_base_lidar`, as scans are: not where the LiDAR moves on
+  /// the robot, nor where the files of a folder are in another frame.
+  bool clouds_in_mount_frame = true;
   std::vector<std::string> assumptions;  ///< By the reader, a sentence each with its remedy.
   std::vector<std::string> warnings;     ///< What could not be read, a sentence each.
   /// Scans that were recorded and cannot be used, as their stamps do not ascend with the others' or cannot be

@@ -94,7 +94,7 @@ Result<> leave_scans_with_pose(Recording& recording, Tracks& tracks, const Movin
   tracks.scans = std::move(scans);
   tracks.stamps = std::move(stamps);
   recording.T_base_lidar = *T_base_lidar.at(tracks.stamps.front());
-  recording.lidar_moves = true;
+  recording.clouds_in_mount_frame = false;
   recording.mount_source += ", which moves; scans are given as from the place of the first";
   return {};
 }

@@ -103,8 +103,8 @@ bool is_in_lidar_frame(ControlRow& row, const ControlMark& mark, bool has_positi
     row.wrong(format("mark_frame is '{}'; it is base or lidar", frame));
   else if (!mark.stamp)
     row.wrong(
-        "mark_frame is of marks in a scan: give its robot and stamp, or leave mark_frame empty for a mark "
-        "in map.ply");
+        "mark_frame is for marks in a scan: give robot and stamp, or leave mark_frame empty for a mark in "
+        "map.ply");
   else if (frame == "lidar" && !has_position)
     row.wrong("mark_frame is lidar, and mark_x, mark_y and mark_z are missing; 0, 0, 0 is the LiDAR itself");
   return frame == "lidar";

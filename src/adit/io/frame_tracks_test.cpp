@@ -172,7 +172,7 @@ TEST(MovingLidar, ScansAreGivenAsFromOnePlace) {
   const Result<Recording> recording = file_with_mast().read();
   ASSERT_TRUE(recording) << recording.error().message;
   EXPECT_LT(distance(recording->T_base_lidar, mast_at(0.0) * kHead), 1e-9);
-  EXPECT_TRUE(recording->lidar_moves);
+  EXPECT_FALSE(recording->clouds_in_mount_frame);
   EXPECT_NE(recording->mount_source.find("/tf: base_link -> mast -> lidar, which moves"), std::string::npos);
   ASSERT_EQ(recording->num_scans(), 8U);  // two came after the last link
   ASSERT_EQ(recording->warnings.size(), 1U);
@@ -193,7 +193,7 @@ TEST(MovingLidar, AMountThatIsGivenIsTaken) {
   ASSERT_TRUE(recording) << recording.error().message;
   EXPECT_EQ(recording->num_scans(), 10U);
   EXPECT_EQ(recording->T_base_lidar.translation(), Vector3(1, 2, 3));
-  EXPECT_FALSE(recording->lidar_moves);
+  EXPECT_TRUE(recording->clouds_in_mount_frame);
   EXPECT_EQ(recording->read_scan(3)->cloud.points[0],
             ros::decode_cloud(clouds_from_the_mast(4).back().second)->scan.cloud.points[0]);
 }

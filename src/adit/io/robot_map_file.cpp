@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -30,6 +31,7 @@ static_assert(std::endian::native == std::endian::little, "numbers stand in the 
 ///@{
 constexpr std::string_view kMagic = "adit map 8\n";
 constexpr std::string_view kMagicOf7 = "adit map 7\n";
+static_assert(kMagic.size() == kMagicOf7.size());
 ///@}
 
 /// Appends what `transfer` names.
@@ -243,12 +245,18 @@ bool is_whole(const PointCloud& cloud) {
          (cloud.time_offsets_ns.empty() || cloud.time_offsets_ns.size() == n);
 }
 
+bool are_finite(const std::vector<float>& values) {
+  return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+}
+
 bool is_whole(const ScanContext& place, const ScanContextConfig& config) {
   const auto rings = static_cast<std::size_t>(config.num_rings);
   const auto sectors = static_cast<std::size_t>(config.num_sectors);
   return place.num_rings == config.num_rings && place.num_sectors == config.num_sectors &&
          place.unit_columns.size() == rings * sectors && place.norms.size() == sectors &&
-         place.ring_key.size() == rings && place.sector_key.size() == sectors;
+         place.ring_key.size() == rings && place.sector_key.size() == sectors &&
+         are_finite(place.unit_columns) && are_finite(place.norms) && are_finite(place.ring_key) &&
+         are_finite(place.sector_key);
 }
 
 /// The solver inverts the covariance of each step but the first.

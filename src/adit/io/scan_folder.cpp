@@ -361,6 +361,7 @@ Result<Recording> read_scan_folder(const fs::path& given, ScanSelection selectio
   if (reading.T_base_lidar) set_mount(*recording, mount->T_base_lidar);
   recording->T_base_lidar = mount->T_base_lidar;
   recording->mount_source = mount->source;
+  recording->clouds_in_mount_frame = mount->T_lidar_cloud.log().isZero();
   take_kitti_truth(*recording, sequence_of(folder), scans->size(), selection);
   const Result<CloudReading> as_first =
       read_as_first(*known, *recording, clouds, is_kitti(sequence_of(folder)));

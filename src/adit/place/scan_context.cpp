@@ -134,8 +134,6 @@ ADIT_WIDE_VECTORS void find_cells(const PolarGrid& grid, const Eigen::Vector3f* 
 
 int positive_modulo(int a, int n) { return ((a % n) + n) % n; }
 
-const simd::Float8& load8(const float* x) { return *reinterpret_cast<const simd::Float8*>(x); }
-
 /// Sum of a[i] b[i]. Lane by lane, so that the order of additions does not depend on the machine.
 ADIT_WIDE_VECTORS float dot(const float* a, const float* b, std::size_t n) {
   constexpr std::size_t kLanes = 8;
@@ -143,8 +141,9 @@ ADIT_WIDE_VECTORS float dot(const float* a, const float* b, std::size_t n) {
   simd::Float8 sums[kSums] = {};
   std::size_t i = 0;
   for (; i + kSums * kLanes <= n; i += kSums * kLanes)
-    for (std::size_t s = 0; s < kSums; ++s) sums[s] += load8(a + i + s * kLanes) * load8(b + i + s * kLanes);
-  for (; i + kLanes <= n; i += kLanes) sums[0] += load8(a + i) * load8(b + i);
+    for (std::size_t s = 0; s < kSums; ++s)
+      sums[s] += simd::load8(a + i + s * kLanes) * simd::load8(b + i + s * kLanes);
+  for (; i + kLanes <= n; i += kLanes) sums[0] += simd::load8(a + i) * simd::load8(b + i);
   const simd::Float8 lanes = (sums[0] + sums[1]) + (sums[2] + sums[3]);
   float sum = 0.0F;
   for (std::size_t l = 0; l < kLanes; ++l) sum += lanes[l];

@@ -218,6 +218,47 @@ TEST(ScanContext, DistanceFollowsTheDefinition) {
   }
 }
 
+/// Where the sector keys are nearest, by a plain loop.
+int aligned_by_definition(const ScanContext& query, const ScanContext& match) {
+  int best = 0;
+  double greatest = -1.0;
+  for (int shift = 0; shift < query.num_sectors; ++shift) {
+    double product = 0.0;
+    for (int s = 0; s < query.num_sectors; ++s)
+      product +=
+          static_cast<double>(query.sector_key[static_cast<std::size_t>(s)]) *
+          static_cast<double>(match.sector_key[static_cast<std::size_t>((s + shift) % query.num_sectors)]);
+    if (product > greatest) {
+      greatest = product;
+      best = shift;
+    }
+  }
+  return best;
+}
+
+// Whole heights, so that products are exact and ties are ties.
+TEST(ScanContext, GridsOfAnySizeAreComparedByTheDefinition) {
+  Rng rng(8);
+  for (const auto& [rings, sectors] :
+       {std::pair(1, 3), std::pair(7, 5), std::pair(3, 61), std::pair(8, 16), std::pair(40, 720)}) {
+    const auto random_context = [&, rings = rings, sectors = sectors] {
+      std::vector<float> heights;
+      for (int i = 0; i < rings * sectors; ++i)
+        heights.push_back(static_cast<float>(rings * static_cast<int>(rng.below(4))));
+      return from_heights(rings, sectors, heights);
+    };
+    for (int trial = 0; trial < 20; ++trial) {
+      const ScanContext a = random_context();
+      const ScanContext b = random_context();
+      for (const int shift : {0, 1, sectors / 2, sectors - 1})
+        EXPECT_NEAR(distance_at(a, b, shift), distance_by_definition(a, b, shift), 1e-5);
+      const int reach = static_cast<int>(std::lround(0.05 * sectors));
+      const int off = std::abs(compare(a, b).shift - aligned_by_definition(a, b));
+      EXPECT_LE(std::min(off, sectors - off), reach) << rings << " x " << sectors;
+    }
+  }
+}
+
 TEST(ScanContext, NoSharedSectorIsDistanceOne) {
   std::vector<float> heights(20 * 60, 0.0F);
   const ScanContext nothing = from_heights(20, 60, heights);

@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "adit/core/check.hpp"
 #include "adit/core/format.hpp"
 #include "adit/core/parallel.hpp"
 
@@ -89,8 +90,9 @@ Result<KeyframeSelection> keyframe_selection(std::string_view name) {
       "unknown keyframe policy '{}'; known are adaptive, all, tunnel_filter, tunnel_filter_keep", name));
 }
 
-RobotMap select_keyframes(const RobotMap& map, KeyframeSelection selection,
-                          const TunnelFilterConfig& filter) {
+RobotMap select_keyframes(const RobotMap& map, KeyframeSelection selection, TunnelFilterConfig filter) {
+  const Result<> valid = check_fields(fields_of(filter));
+  ADIT_CHECK(valid.has_value(), valid.error().message.c_str());
   if (selection == KeyframeSelection::tunnel_filter)
     return without_tunnel_keyframes(map, are_tunnel_like(map, filter));
   RobotMap selected = map;

@@ -69,6 +69,6 @@ enum class KeyframeSelection {
 /// `filter`, and where its cloud has no point near enough to tell. Throws ContractViolation when `filter` is
 /// out of its ranges.
 [[nodiscard]] RobotMap select_keyframes(const RobotMap& map, KeyframeSelection selection,
-                                        const TunnelFilterConfig& filter);
+                                        TunnelFilterConfig filter);
 
 }  // namespace adit

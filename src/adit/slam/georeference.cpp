@@ -61,8 +61,8 @@ Result<Vector3> in_base_frame(const PlacedSession& session, const ControlMark& m
   if (of_map != mapped.end() && of_map->T_base_lidar) return *of_map->T_base_lidar * mark.position;
   return fail(format(
       "its mark is in the LiDAR's frame, and the session does not say where the LiDAR of {} sits: it moves "
-      "on the robot, or an earlier version of adit mapped it; give the mark in the base frame, or map the "
-      "recording again",
+      "on the robot, the clouds were in another frame, or adit study or an earlier version mapped it; give "
+      "the mark in the base frame, or map the recording again",
       mark.robot));
 }
 

@@ -93,12 +93,12 @@ void note_gaps(const Recording& recording, std::vector<std::string>& notes) {
 }
 
 std::optional<Pose> fixed_mount(const Recording& recording) {
-  return recording.lidar_moves ? std::nullopt : std::optional(recording.T_base_lidar);
+  return recording.clouds_in_mount_frame ? std::optional(recording.T_base_lidar) : std::nullopt;
 }
 
-/// Turns whatever goes wrong into an error of this robot, so that the others go on.
+/// Under that policy. Turns whatever goes wrong into an error of this robot, so that the others go on.
 Result<RobotMap> map_one(const Recording& recording, RobotId id, const RobotSlamConfig& config,
-                         const Phase& phase, LeftOut& left_out) {
+                         KeyframeSelection policy, const Phase& phase, LeftOut& left_out) {
   try {
     Result<RobotMap> map =
         map_recording(with_damaged_scans_empty(recording, left_out), id, config, [&](std::size_t) {
@@ -106,7 +106,8 @@ Result<RobotMap> map_one(const Recording& recording, RobotId id, const RobotSlam
           return true;
         });
     if (const Result<> any = left_out.unless_all(); !any) return fail(recording.name, any.error());
-    return map;
+    return map.map(
+        [&](const RobotMap& whole) { return select_keyframes(whole, policy, config.tunnel_filter); });
   } catch (const std::exception& error) {
     return fail(recording.name + ": " + error.what());
   }
@@ -145,7 +146,8 @@ Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig
   {
     const Phase phase("mapping", num_scans(recordings));
     parallel_for_each(recordings.size(), [&](std::size_t i) {
-      maps[i] = map_one(recordings[i], (*ids)[num_before + i], configs[i], phase, left_out[i]);
+      maps[i] =
+          map_one(recordings[i], (*ids)[num_before + i], configs[i], config.keyframes, phase, left_out[i]);
     });
   }
   for (std::size_t i = 0; i < maps.size(); ++i) {
@@ -157,8 +159,7 @@ Result<Mapping> map_robots(const std::vector<Recording>& given, const SlamConfig
       mapping.notes.push_back(format("{}: {}", recordings[i].name, *sentence));
     note_quality(*maps[i], mapping.notes);
     note_slips(*maps[i], recordings[i], mapping.notes);
-    mapping.robots.push_back({std::make_shared<const RobotMap>(
-                                  select_keyframes(*maps[i], config.keyframes, config.robot.tunnel_filter)),
+    mapping.robots.push_back({std::make_shared<const RobotMap>(std::move(*maps[i])),
                               std::string(to_string(configs[i].odometry.method)), recordings[i].lidar,
                               fixed_mount(recordings[i])});
   }

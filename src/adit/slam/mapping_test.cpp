@@ -93,7 +93,7 @@ TEST(Mapping, ASensorThatWouldSpoilTheMapIsNotedUnlessChecksAreOff) {
 
 TEST(Mapping, TheMountIsThatOfTheRecordedCloudsOrUnknown) {
   Recording on_a_mast = drive("bo", 0.1);
-  on_a_mast.lidar_moves = true;
+  on_a_mast.clouds_in_mount_frame = false;
   const Result<Mapping> mapping = map_robots({drive("ada"), on_a_mast}, SlamConfig{});
   ASSERT_TRUE(mapping) << mapping.error().message;
   ASSERT_TRUE(mapping->robots.at(0).T_base_lidar);

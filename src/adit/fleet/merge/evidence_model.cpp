@@ -49,7 +49,7 @@ constexpr std::array kOrigins = {
     Origin{"fleet.copied_worth", kSitesDiffer, "2026-11-29"},
     Origin{"fleet.agreement_if_copied", kOfCopies, "2026-11-29"},
     Origin{"fleet.agreement_if_copied_worth", kOfCopies, "2026-11-29"},
-    Origin{"error_rate", "one wrong merge of 87 pairs with 0.5 % (decision 0095)", "2026-12-01"},
+    Origin{"error_rate", "of 93 pairs 0.5 % merged one wrongly (decisions 0060, 0095)", "2026-12-01"},
     Origin{"rival_rate", "106 true and 1501 false hypotheses of 34 field worlds (decision 0063)",
            "2026-11-27"},
     Origin{"refusal_rate", kChosen, "2026-11-21"},
@@ -126,7 +126,7 @@ double number_of(const Field& field) {
 Fields fields_of(EvidenceModel& c) {
   Fields fields = {
       {"error_rate", &c.error_rate, "", 1e-12, 0.5,
-       "largest chance that a wrong merge passes, by this model (measured: decision 0095)"},
+       "largest chance that a wrong merge passes, by this model (measured: decisions 0060 and 0095)"},
       {"rival_rate", &c.rival_rate, "", 1e-12, 0.5,
        "chance that another alignment is the right one, by their evidence, above which it is a rival"},
       {"refusal_rate", &c.refusal_rate, "", 1e-12, 0.5,
