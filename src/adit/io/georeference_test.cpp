@@ -50,7 +50,7 @@ TEST(ControlPoints, MarksInAScanMayBeInTheFrameOfTheLidar) {
   EXPECT_ERROR(parse_control_points(heading + "A,1,2,3,0.01,red,7,4,5,6,map\n"),
                "line 2: mark_frame is 'map'; it is base or lidar");
   EXPECT_ERROR(parse_control_points(heading + "A,1,2,3,0.01,red,,4,5,6,lidar\n"),
-               "mark_frame is of marks in a scan: give its robot and stamp");
+               "mark_frame is for marks in a scan: give robot and stamp");
   EXPECT_ERROR(parse_control_points(heading + "A,1,2,3,0.01,red,7,,,,lidar\n"), "0, 0, 0 is the LiDAR");
 }
 
