@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "adit/study/study.hpp"
 
+#include <utility>
+
 #include "adit/core/format.hpp"
 #include "adit/core/progress.hpp"
 #include "adit/core/version.hpp"
@@ -41,9 +43,8 @@ struct UnderPolicy {
 std::vector<UnderPolicy> under_policies(const Study& study, const std::vector<const RobotRun*>& runs) {
   std::vector<UnderPolicy> all;
   for (const KeyframeSelection policy : study.policies) {
-    SlamConfig config = with_policy(policy, study.config).slam;
-    std::vector<std::shared_ptr<const RobotMap>> maps = selected_maps(runs, config);
-    all.push_back({std::move(config), std::move(maps)});
+    const SlamConfig config = with_policy(policy, study.config).slam;
+    all.push_back({config, selected_maps(runs, config)});
   }
   return all;
 }
