@@ -52,10 +52,6 @@ using Int8 = Unaligned<std::int32_t, 8>::Type;
 [[nodiscard]] inline Float4 load4(const float* x) {
   return Float4(*reinterpret_cast<const Unaligned<float, 4>::Type*>(x));
 }
-/// Eight floats, where they stand.
-[[nodiscard, gnu::always_inline]] inline const Float8& load8(const float* x) {
-  return *reinterpret_cast<const Float8*>(x);
-}
 /// The same value in every lane.
 [[nodiscard]] inline Float4 all4(float x) { return Float4{x, x, x, x}; }
 /// Lane by lane. Where `a` is NaN: `min` gives b, `max` a.

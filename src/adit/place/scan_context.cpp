@@ -140,10 +140,13 @@ ADIT_WIDE_VECTORS float dot(const float* a, const float* b, std::size_t n) {
   constexpr std::size_t kSums = 4;  // none waits for the one before
   simd::Float8 sums[kSums] = {};
   std::size_t i = 0;
-  for (; i + kSums * kLanes <= n; i += kSums * kLanes)
-    for (std::size_t s = 0; s < kSums; ++s)
-      sums[s] += simd::load8(a + i + s * kLanes) * simd::load8(b + i + s * kLanes);
-  for (; i + kLanes <= n; i += kLanes) sums[0] += simd::load8(a + i) * simd::load8(b + i);
+  for (; i + kSums * kLanes <= n; i += kSums * kLanes) {
+    const simd::Float8* eights_a = reinterpret_cast<const simd::Float8*>(a + i);
+    const simd::Float8* eights_b = reinterpret_cast<const simd::Float8*>(b + i);
+    for (std::size_t s = 0; s < kSums; ++s) sums[s] += eights_a[s] * eights_b[s];
+  }
+  for (; i + kLanes <= n; i += kLanes)
+    sums[0] += *reinterpret_cast<const simd::Float8*>(a + i) * *reinterpret_cast<const simd::Float8*>(b + i);
   const simd::Float8 lanes = (sums[0] + sums[1]) + (sums[2] + sums[3]);
   float sum = 0.0F;
   for (std::size_t l = 0; l < kLanes; ++l) sum += lanes[l];
