@@ -17,7 +17,8 @@
 namespace adit::app {
 namespace {
 
-/// The metadata.yaml of a bag is none: where it is opened as a recording, it is said what to give instead.
+/// By its name. The metadata.yaml of a bag is no routes file: opening it as a recording fails and names the
+/// folder of the bag, which is what to give.
 bool is_routes_file(const std::string& input) {
   const std::string extension = std::filesystem::path(input).extension().string();
   if (extension != ".yaml" && extension != ".yml") return false;

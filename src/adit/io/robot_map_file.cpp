@@ -27,7 +27,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers stand in the file as they do in memory");
 
 /// The last digit counts the layouts that there have been. A change of RobotMap raises it, and what layout 7
-/// and later ones lack or have too much is then filled in or passed over: sessions keep such files.
+/// and later ones lack is then filled in, and what they have besides is passed over: sessions keep such
+/// files.
 ///@{
 constexpr std::string_view kMagic = "adit map 8\n";
 constexpr std::string_view kMagicOf7 = "adit map 7\n";

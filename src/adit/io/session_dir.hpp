@@ -27,7 +27,8 @@ struct RobotProvenance {
   std::string lidar;      ///< As the recording names it; "" when unknown.
   std::size_t scans = 0;  ///< Of its recording; 0 of a robot that could not be mapped.
   std::string failure;    ///< One line that names the robot; "" when it was mapped.
-  /// The mount; none where the LiDAR moves on the robot, and where an earlier version mapped it.
+  /// The mount, if recorded clouds are in its frame (Recording::clouds_in_mount_frame); none where adit study
+  /// or an earlier version mapped it.
   std::optional<Pose> T_base_lidar = {};
 
   /// Whether it is about the map of that name: a robot that failed may have had the name, too.

@@ -15,9 +15,9 @@ namespace {
 /// The hall in a grid whose coordinates are small, so that doubles leave room below 1e-9 m.
 const Pose kT_grid_hall(so3::exp({0, 0, 2.2}), {403.4, 842.9, -312.6});
 
-constexpr double kMetresPerScan = 0.5;  // one a second
+constexpr double kSpeed = 0.5;  // metres a second
 
-Pose in_hall_at(double seconds) { return Pose::translation_of(kMetresPerScan * seconds, 0, 0); }
+Pose in_hall_at(double seconds) { return Pose::translation_of(kSpeed * seconds, 0, 0); }
 
 /// A robot with wheels that drives along a hall with two pillars, its LiDAR turned and shifted on it
 /// (test::kMount).

@@ -18,7 +18,7 @@ struct MappedRobot {
   std::shared_ptr<const RobotMap> map;    ///< Without keyframes where the policy left none.
   std::string odometry;                   ///< The method that ran.
   std::string lidar;                      ///< As the recording names it; "" when unknown.
-  std::optional<Pose> T_base_lidar = {};  ///< The mount; none where the LiDAR moves on the robot.
+  std::optional<Pose> T_base_lidar = {};  ///< The mount, if recorded clouds are in its frame.
 };
 
 /// A recording that could not be mapped.
