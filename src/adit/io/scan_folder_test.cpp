@@ -169,6 +169,7 @@ TEST_P(ScanFolderFormats, LoseNothing) {
   EXPECT_EQ(back->lidar, "vlp-16");
   EXPECT_LT((back->T_base_lidar.inverse() * recording.T_base_lidar).log().norm(), 1e-12);
   EXPECT_EQ(back->mount_source, "recording.toml");
+  EXPECT_TRUE(back->clouds_in_mount_frame);
   EXPECT_TRUE(back->assumptions.empty());
   EXPECT_EQ(back->scan_stamps, recording.scan_stamps);
   EXPECT_EQ(tum_text(back->wheel), tum_text(recording.wheel));
@@ -278,6 +279,7 @@ TEST(ScanFolder, CloudsInTheBaseFrameAreBroughtBackToTheLidar) {
   const Result<Recording> back = read_scan_folder(folder / "out");
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(back->T_base_lidar.translation(), Vector3(0, 0, 2));
+  EXPECT_FALSE(back->clouds_in_mount_frame);
   EXPECT_EQ(back->read_scan(0)->cloud.points[0], Eigen::Vector3f(0.1F, 2, 1));
   put_file(folder / "out" / "recording.toml", "mount = '0 0'\n");
   EXPECT_ERROR(read_scan_folder(folder / "out"), "out: mount '0 0': 2 numbers");
